@@ -64,6 +64,20 @@ def not_judged(name: str, unit: str, bound: float, why: str) -> Finding:
     return Finding(name, None, None, unit, bound, "not judged", why)
 
 
+def judged(  # noqa: D417
+    name: str, value: float, expected_sd: float, unit: str, bound: float, hint: str, remedy: str = ""
+) -> Finding:
+    """A check with its verdict; the remedy is added to the hint of a value outside.
+
+    Args:
+        name, value, expected_sd, unit, bound, hint: As of :class:`Finding`.
+        remedy: Text on what to do.
+    """
+    verdict = judgement(value, expected_sd, bound)
+    text = f"{hint}{remedy}" if verdict == "outside" else hint
+    return Finding(name, value, expected_sd, unit, bound, verdict, text)
+
+
 def judgement(value: float, expected_sd: float, bound: float) -> Judgement:
     """The verdict on a value.
 

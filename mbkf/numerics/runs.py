@@ -5,13 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import BoolArray
+from mbkf.conventions import Array, BoolArray
 
 
 def runs(mask: BoolArray) -> list[tuple[int, int]]:
     """First sample of each unbroken run of True in a mask (S,), and the sample after its last."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def stretches(mask: BoolArray) -> list[Array]:
+    """Sample numbers of each unbroken run of True in a mask (S,)."""
+    return [np.asarray(np.arange(first, after)) for first, after in runs(mask)]
 
 
 def spread_indices(length: int, most: int, first: int = 0) -> NDArray[np.intp]:

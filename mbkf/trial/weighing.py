@@ -56,7 +56,7 @@ def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
 
 def _weighed(subject: Subject, capture: Capture) -> Finding:
     """What the plates of a capture say of the mass."""
-    finding = mass.untold("the capture has too few of the subject's markers")
+    finding = mass.undetermined("the capture has too few of the subject's markers")
     for _ in range(PASSES):
         with single_threaded():
             try:

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mbkf.numerics.runs import runs, spread_indices
+from mbkf.numerics.runs import runs, spread_indices, stretches
 
 
 def test_runs_at_the_ends_and_between():
@@ -38,3 +38,10 @@ def test_nothing_is_spread_over_an_empty_sequence():
     assert len(spread_indices(0, 10)) == 0
     assert len(spread_indices(1, 10, first=1)) == 0
     assert spread_indices(3, 10, first=1).tolist() == [1, 2]
+
+
+def test_stretches_are_the_unbroken_runs():
+    mask = np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], bool)
+    assert [run.tolist() for run in stretches(mask)] == [[0, 1], [4], [6, 7, 8]]
+    assert stretches(np.zeros(3, bool)) == []
+    assert [run.tolist() for run in stretches(np.ones(2, bool))] == [[0, 1]]

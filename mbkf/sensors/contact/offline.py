@@ -13,6 +13,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
+from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import dilated, majority, second_derivative
 from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.plates import (
@@ -173,12 +174,6 @@ def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: fl
         else:
             foot[frames] = nearer_foot(mean)
     return foot
-
-
-def stretches(mask: BoolArray) -> list[Array]:
-    """Frame numbers of each unbroken run of True in a mask (T,)."""
-    frames = np.flatnonzero(mask)
-    return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1) if len(frames) else []
 
 
 def _together(soles: Array, areas: PlateAreas, rate_hz: float) -> BoolArray:

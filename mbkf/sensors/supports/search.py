@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
+from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import bridged, dilated
-from mbkf.sensors.contact.offline import FootLoads, stretches
+from mbkf.sensors.contact.offline import FootLoads
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.momentum import WholeBody

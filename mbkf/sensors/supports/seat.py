@@ -12,8 +12,8 @@ from itertools import combinations
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import bridged
-from mbkf.sensors.contact.offline import stretches
 from mbkf.sensors.supports.momentum import WholeBody
 
 WINDOW_S = 0.25

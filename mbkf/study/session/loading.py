@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contact.offline import stretches
+from mbkf.numerics.runs import stretches
 
 AIRBORNE_SHARE = 0.05
 """Below this share of body weight nothing bears the body."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
-from mbkf.sensors.contact.offline import stretches
+from mbkf.numerics.runs import stretches
 from mbkf.study.session.loading import BodyPath, body_path
 from mbkf.study.session.records import Measure
 

@@ -14,7 +14,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.session import TrialKind
-from mbkf.sensors.contact.offline import stretches
+from mbkf.numerics.runs import stretches
 from mbkf.trial.protocol.standing import stands_still
 
 LEAST_SEEN = 0.3

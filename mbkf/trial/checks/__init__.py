@@ -1,1 +1,1 @@
-"""Checks of a capture that stand apart from what a filter forces: mass, plates, clocks, floor and markers."""
+"""Checks of a capture that do not rest on a filter: mass, plates, clocks, floor and markers."""

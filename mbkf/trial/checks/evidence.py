@@ -1,4 +1,4 @@
-"""What a body's motion, known from markers alone, asks for, beside what its plates give, averaged alike."""
+"""Both sides of Newton's law: the wrench that a motion of markers requires, and that of the plates, averaged alike."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
+from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import dilated, slopes
-from mbkf.sensors.contact.offline import assign_feet, stretches
+from mbkf.sensors.contact.offline import assign_feet
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.supports.momentum import LEAST_WINDOW, WholeBody
 from mbkf.trial.preparation.markers_alone import Motion
@@ -20,8 +21,8 @@ WINDOW_S = 0.1
 """Duration over which rates of momentum and plates are taken."""
 
 BRIDGE_S = 0.1
-"""A shorter stretch of frames in which a foot seems to stand beside the plates is one of landing or leaving: it is
-judged, as clocks that differ show nowhere else."""
+"""A shorter stretch of frames in which a foot seems to stand beside the plates is one of landing or leaving. It counts,
+since unequal clocks show nowhere else."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +36,10 @@ class Evidence:
         plates: The plates, P of them.
         centre_m: (T, 3) centre of mass.
         momentum: (T, 6) of the body, about it.
-        asked: (T, 6) force N and moment N m about the centre of mass that the motion asks for besides weight.
-        given: (T, P, 6) what each plate gives, about the centre of mass, averaged as ``asked`` is.
+        asked: (T, 6) force N and moment N m about the centre of mass that the motion requires besides weight.
+        given: (T, P, 6) wrench of each plate about the centre of mass, averaged as ``asked`` is.
         raw: (T, P, 6) plates' wrenches about the world's origin, frame by frame; NaN where not recorded.
-        accounted: (T,) frames in which every foot that bears stands on a plate.
+        accounted: (T,) frames in which every loaded foot stands on a plate.
         floor_m: Height of the floor as the soles show it.
     """
 
@@ -98,12 +99,12 @@ class Evidence:
 
     @property
     def total(self) -> Array:
-        """(T, 6) what all plates together give."""
+        """(T, 6) wrench of all plates together."""
         return np.asarray(self.given.sum(axis=1))
 
     @property
     def clear(self) -> BoolArray:
-        """(T,) accounted frames whose averages reach into no other."""
+        """(T,) accounted frames whose averaging window holds accounted frames only."""
         return self.known & self.accounted & ~dilated(~self.accounted, round(0.5 * WINDOW_S * self.rate_hz))
 
     @property
@@ -112,12 +113,12 @@ class Evidence:
         return np.asarray(~np.isnan(self.asked[:, 0]) & ~np.isnan(self.given).any(axis=(1, 2)))
 
     def gives(self, plates: Sequence[PlateReadings]) -> Array:
-        """(T, P, 6) what other readings of the plates give, as ``given``."""
+        """(T, P, 6) :attr:`given` of other readings of the plates."""
         raw = plate_wrenches(tuple(plates), self.times_s, self.rate_hz)
         return _averaged(_about(raw, self.centre_m), self.rate_hz)
 
     def with_plate(self, p: int, plate: PlateReadings) -> Evidence:
-        """The same with other readings of plate ``p``; which frames are accounted for stays."""
+        """The same with other readings of plate ``p`` and the same accounted frames."""
         plates, given = list(self.plates), self.given.copy()
         plates[p], given[:, p] = plate, self.gives([plate])[:, 0]
         return replace(self, plates=tuple(plates), given=given)

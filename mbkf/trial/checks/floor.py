@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import centres_of_pressure, surface_height
 from mbkf.sensors.contact.rules import REACH_M, SOLE_ENDS
@@ -15,17 +15,17 @@ from mbkf.trial.preparation.markers_alone import Motion
 NAME = "soles against plates' surfaces"
 
 BOUND_MM, SOLE_MM = 30.0, 12.0
-"""Soles further above or below a plate are told; shoes and scaled feet differ by the second (standard deviation)."""
+"""Largest height of soles over a plate without a warning, and standard deviation due to shoes and scaled feet."""
 
 LOADED_SHARE = 0.3
-"""A foot stands on a plate that gives more than this share of body weight."""
+"""A foot stands on a plate that carries more than this share of body weight."""
 
 LEAST_S = 0.1
-"""Duration that is needed."""
+"""Least duration of a foot on a plate."""
 
 
 def floor_finding(evidence: Evidence, model: Body, motion: Motion) -> Finding:
-    """How far the soles are above the plates that they stand on, mm; of the plate that is furthest off.
+    """Height of the soles above the plate that they stand on, mm; the largest over the plates.
 
     Args:
         evidence: Plates.
@@ -45,8 +45,6 @@ def floor_finding(evidence: Evidence, model: Body, motion: Motion) -> Finding:
     if not above:
         return not_judged(NAME, "mm", BOUND_MM, "needs a foot that stands on a plate")
     off_mm, name = max(above, key=lambda one: abs(one[0]))
-    verdict = judgement(off_mm, SOLE_MM, BOUND_MM)
     hint = f"they lie {abs(off_mm):.0f} mm {'above' if off_mm > 0 else 'below'} plate '{name}'"
-    if verdict == "outside":
-        hint += ": thick shoes, a wrong height of the plate, or feet that are scaled badly"
-    return Finding(NAME, off_mm, SOLE_MM, "mm", BOUND_MM, verdict, hint)
+    remedy = ": check for thick shoes, a wrong height of the plate, or badly scaled feet"
+    return judged(NAME, off_mm, SOLE_MM, "mm", BOUND_MM, hint, remedy)

@@ -1,7 +1,7 @@
-"""Plates against each other: the gain of each one's vertical force by what the motion asks for.
+"""Plates against each other: the gain of each one's vertical force, from the force that the motion requires.
 
-a_z = Σ_p c_p f_z,p over the frames in which only feet on plates bear; a plate's gain is 1 / c_p. Only its ratio to the
-others' is told here, which does not depend on the mass.
+a_z = Σ_p c_p f_z,p over the frames in which only feet on plates carry load; a plate's gain is 1 / c_p. Its ratio to the
+others', which this check judges, does not depend on the mass.
 """
 
 from __future__ import annotations
@@ -9,39 +9,39 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.checks.newton import expected_force
 
 NAME = "plates against plates"
 
 BOUND_PERCENT = 5.0
-"""Plates whose gains differ by more are told."""
+"""Largest difference of gains without a warning."""
 
 BODY_PERCENT = 1.5
-"""What legs and their scaled masses make plates seem to differ by."""
+"""Apparent difference due to the scaled masses of the legs."""
 
 LEAST_S = 0.3
-"""A plate is compared that carries most of the load for so long."""
+"""A plate is compared if it carries most of the load for this long."""
 
 MOST_SD_PERCENT = 4.0
-"""A difference that is known no better is not judged."""
+"""A difference with a larger standard deviation is not judged."""
 
 LEAST_SHARE = 0.5
-"""Most of the load."""
+"""Share of the load from which a plate carries most of it."""
 
 NOISE_S = 0.1
-"""Time over which what motion and plates differ by stays alike."""
+"""Correlation time of the difference between motion and plates."""
 
 RCOND = 1e-3
-"""A plate that hardly gives anything has no gain of its own."""
+"""Relative singular value below which a hardly loaded plate gets no gain of its own."""
 
 EXPLAINED = 2.0
-"""What gains leave is noise where it is less than so many times what is lacking where all is well."""
+"""Gains explain the motion if they leave less than this many times the force that right captures lack."""
 
 
 def gain_finding(evidence: Evidence) -> Finding:
-    """By how much the plate that is furthest off differs from the others, %."""
+    """Gain of the plate that differs most over that of the others, %."""
     clear = evidence.clear
     vertical = np.where(clear[:, None], evidence.given[:, :, 2], 0.0)
     most = vertical > LEAST_SHARE * np.maximum(vertical.sum(axis=1), 1.0)[:, None]
@@ -60,16 +60,14 @@ def gain_finding(evidence: Evidence) -> Finding:
         found.append((100.0 * float(mean / inverse[p] - 1.0), float(np.hypot(sd, BODY_PERCENT)), names[p]))
     off, sd, name = max(found, key=lambda one: abs(one[0]) / one[1])
     if sd > MOST_SD_PERCENT:
-        return not_judged(NAME, "%", BOUND_PERCENT, f"the motion tells gains only to {sd:.0f} %")
-    verdict = judgement(off, sd, BOUND_PERCENT)
+        return not_judged(NAME, "%", BOUND_PERCENT, f"the motion determines gains to {sd:.0f} % only")
     hint = f"plate '{name}' reads {abs(off):.0f} % {'more' if off > 0 else 'less'} than the others"
-    if verdict == "outside":
-        hint += ": look at the gains and units of both" if len(names) == 2 else ": look at its gain and unit"
-    return Finding(NAME, off, sd, "%", BOUND_PERCENT, verdict, hint)
+    remedy = ": check the gains and units of both" if len(names) == 2 else ": check its gain and unit"
+    return judged(NAME, off, sd, "%", BOUND_PERCENT, hint, remedy)
 
 
 def _fitted(vertical: Array, evidence: Evidence) -> tuple[Array, Array]:
-    """(P,) inverse gains and their covariance, from what plates give in clear frames (n, P)."""
+    """(P,) inverse gains and their covariance, from the plates' vertical forces in clear frames (n, P)."""
     asked = evidence.asked[evidence.clear, 2]
     inverse = np.linalg.lstsq(vertical, asked, rcond=RCOND)[0]
     left = asked - vertical @ inverse
@@ -78,9 +76,9 @@ def _fitted(vertical: Array, evidence: Evidence) -> tuple[Array, Array]:
 
 
 def explained(evidence: Evidence) -> bool:
-    """Whether feet on plates, each with a gain of its own, give all that the motion asks for in the vertical.
+    """True if plates with a gain each give the whole vertical force that the motion requires.
 
-    What looks like a seat or a hand may be a plate that reads too little.
+    The apparent load on a seat or a hand is then that of a plate that reads too little.
     """
     clear = evidence.clear
     if clear.sum() < LEAST_S * evidence.rate_hz:

@@ -1,4 +1,4 @@
-"""All checks of a trial, in the order in which one explains the next."""
+"""All checks of a trial, in an order in which a fault that one finds is corrected for the next."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.preparation.markers_alone import Motion
 
 OTHERS_S = 0.2
-"""So near to a contact of another part than a foot, what plates give is not all."""
+"""Within this time of a contact of another part than a foot, plates do not carry the whole load."""
 
 
 def marker_checks(markers: MarkerTrajectories, subject: Subject) -> tuple[Finding, ...]:
@@ -38,8 +38,8 @@ def plate_checks(
 ) -> tuple[Finding, ...]:
     """Checks of the plates against the motion of markers alone.
 
-    A plate that lies otherwise than its file says, and a clock that is late, are put right for the checks that follow,
-    so that each tells one thing; Newton's law is told as the capture has it.
+    Wrong axes of a plate and a late clock are corrected for the checks that follow, so that each finds one fault;
+    Newton's law is judged for the capture as it is.
 
     Args:
         model: The body.
@@ -47,7 +47,7 @@ def plate_checks(
         times_s: (T,) times of the frames.
         rate_hz: Frame rate.
         plates: The plates.
-        others: (T,) frames in which parts besides the feet were found to bear; None for none.
+        others: (T,) frames in which parts besides the feet carry load.
     """
     if not plates:
         return ()
@@ -55,26 +55,26 @@ def plate_checks(
     def evidence_of(given: tuple[PlateReadings, ...]) -> Evidence:
         return Evidence.of(model, motion, times_s, rate_hz, given)
 
-    as_told = evidence_of(plates)
+    as_read = evidence_of(plates)
     near = np.zeros(len(times_s), dtype=bool)
-    if others is not None and not gains.explained(as_told):
+    if others is not None and not gains.explained(as_read):
         near = dilated(others, round(OTHERS_S * rate_hz))
-    axes, laid = orientation.axes_findings(as_told.without(near))
+    axes, laid = orientation.axes_findings(as_read.without(near))
     turned = any(one.verdict == "outside" for one in axes)
-    evidence = evidence_of(laid) if turned else as_told
+    evidence = evidence_of(laid) if turned else as_read
     clock = clocks.clock_finding(evidence.without(near))
     if clock.verdict == "outside" and clock.value is not None:
         evidence = evidence_of(clocks.delayed(laid, -1e-3 * clock.value))
     gain = gains.gain_finding(evidence.without(near))
     weight = mass.mass_finding(evidence, near, gain.verdict != "outside")
-    before = newton.newton_findings(as_told.restricted(evidence.accounted & ~near))
+    before = newton.newton_findings(as_read.restricted(evidence.accounted & ~near))
     places = orientation.place_findings(evidence.without(near))
     height = floor.floor_finding(evidence, model, motion)
     return (weight, *before, gain, clock, *axes, *places, height)
 
 
-def told(checks: tuple[Finding, ...]) -> tuple[str, ...]:
-    """What is to be told of checks in words: those outside; Newton's law where no other one explains it."""
+def messages(checks: tuple[Finding, ...]) -> tuple[str, ...]:
+    """Warnings of checks outside their bounds; of Newton's law only if no other check explains it."""
     outside = [one for one in checks if one.verdict == "outside"]
     consequences = (newton.FORCE, newton.MOMENT)
     causes = [one for one in outside if one.name not in consequences]

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
-from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.io.subject import Subject
 from mbkf.model.sides import mirrored
 
 NAME = "left against right lengths"
 
 BOUND_PERCENT, PERSON_PERCENT = 6.0, 1.5
-"""Limbs that differ by more are told; those of healthy persons differ by the second (standard deviation)."""
+"""Largest difference of limbs without a warning, and standard deviation of that of healthy persons."""
 
 
 def length_finding(subject: Subject) -> Finding:
-    """By how much the limb that differs most is longer on the right, %."""
+    """Right length over left, % more, of the limb that differs most."""
     factors, errors = subject.scale_factors, _standard_errors(subject)
     found = []
     for name, right in factors.items():
@@ -28,11 +28,8 @@ def length_finding(subject: Subject) -> Finding:
     if not found:
         return not_judged(NAME, "%", BOUND_PERCENT, "the body has one scale factor for both sides")
     percent, sd, limb = max(found, key=lambda one: abs(one[0]) / one[1])
-    verdict = judgement(percent, sd, BOUND_PERCENT)
     hint = f"the right {limb} is scaled {abs(percent):.1f} % {'longer' if percent > 0 else 'shorter'} than the left"
-    if verdict != "inside":
-        hint += ": look at the markers of both"
-    return Finding(NAME, percent, sd, "%", BOUND_PERCENT, verdict, hint)
+    return judged(NAME, percent, sd, "%", BOUND_PERCENT, hint, ": check the markers of both")
 
 
 def _standard_errors(subject: Subject) -> dict[str, float]:

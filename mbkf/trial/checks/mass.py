@@ -1,7 +1,7 @@
-"""The body's mass against its plates: their impulse is that of weight and of what momentum changes by.
+"""The body's mass against its plates: their impulse is that of the weight plus the change of momentum.
 
-Over a stretch from t₀ to t₁ in which all that bears stands on plates, ∫ f_z dt = m (g (t₁ − t₀) + ż(t₁) − ż(t₀)), z the
-height of the centre of mass, which does not depend on the mass as segments' masses are shares of it. In standing, and
+Over a stretch from t₀ to t₁ in which plates carry the whole load, ∫ f_z dt = m (g (t₁ − t₀) + ż(t₁) − ż(t₀)). The
+height z of the centre of mass does not depend on the mass m, since segments' masses are shares of it. In standing, and
 over whole cycles, the velocities cancel.
 """
 
@@ -13,53 +13,54 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.findings import Finding, judgement, not_judged
-from mbkf.sensors.contact.offline import stretches
+from mbkf.numerics.runs import stretches
 from mbkf.trial.checks.evidence import Evidence
 
 NAME = "mass against plates"
 
 BOUND_PERCENT = 5.0
-"""A mass that plates contradict by more is told, with the better one."""
+"""Largest difference of masses without a warning."""
 
 SPEED_SD_M_S = 0.03
-"""How well the vertical speed of the centre of mass is known from markers: what plates give in public walks differs
-between steps of 0.6 s by 0.5 %."""
+"""Standard deviation of the vertical speed of the centre of mass from markers. Plates' impulses of steps of 0.6 s in
+public walks differ by 0.5 %."""
 
 SCALE_PERCENT = 1.0
-"""How well plates and a person's scales agree: clothes, shoes and calibrations differ by so much."""
+"""Difference between plates and a person's scales due to clothes, shoes and calibration (standard deviation)."""
 
 LEAST_S, LEAST_RUN_S = 0.5, 0.25
-"""Duration that is needed in all, and in one stretch."""
+"""Least duration in all, and of one stretch."""
 
 PART_S, PARTS_PERCENT = 0.5, 4.0
-"""Parts of a trial, of about this duration, agree on the mass to this; else something besides the feet bears."""
+"""Parts of a trial, of about this duration, agree on the mass to this; else something besides the feet carries load."""
 
 
 def mass_finding(evidence: Evidence, others: BoolArray, plates_agree: bool = True) -> Finding:
-    """By how much the plates contradict the mass, % of it.
+    """The mass given over that of the plates, % more.
 
     Args:
         evidence: Motion and plates.
-        others: (T,) frames in or near which parts besides the feet were found to bear.
-        plates_agree: Whether plates agree with each other; where they do not, none can accuse the mass.
+        others: (T,) frames in or near which parts besides the feet carry load.
+        plates_agree: False for plates that contradict each other; the mass is then doubtful at most.
     """
     for frames in (evidence.accounted, evidence.accounted & ~others):
         parts = _parts(frames, evidence.rate_hz)
         if sum(len(part) - 1 for part in parts) < LEAST_S * evidence.rate_hz:
-            return untold("needs half a second in which only feet on plates bear")
+            return undetermined("needs half a second in which only feet on plates carry load")
         impulse, per_kg = np.array([_impulses(evidence, part) for part in parts]).T
         ratio = impulse / per_kg / evidence.mass_kg
         mass_kg = float(impulse.sum() / per_kg.sum())
         spread = float(np.sqrt(np.average((ratio - ratio.mean()) ** 2, weights=per_kg)))
         if spread * evidence.mass_kg <= 0.01 * PARTS_PERCENT * mass_kg:
             return _judged(evidence.mass_kg, mass_kg, per_kg, parts, plates_agree)
-    return untold(
-        f"parts of the trial differ by {100 * spread:.0f} %: something besides the feet may bear, or plates differ"
+    return undetermined(
+        f"parts of the trial differ by {100 * spread:.0f} %: "
+        "something besides the feet may carry load, or plates differ"
     )
 
 
-def untold(why: str) -> Finding:
-    """The check where the capture tells no mass."""
+def undetermined(why: str) -> Finding:
+    """The check of a capture that does not determine the mass."""
     return not_judged(NAME, "%", BOUND_PERCENT, why)
 
 
@@ -90,10 +91,10 @@ def _judged(
 
     Args:
         stated_kg: The mass that the body was given.
-        mass_kg: What plates say.
+        mass_kg: That of the plates.
         per_kg: (n,) impulses of a body of 1 kg by part.
-        parts: The parts; where one begins with the frame that ends another, its velocity cancels.
-        plates_agree: Whether plates agree with each other.
+        parts: The parts; the velocity at a frame that ends one and begins another cancels.
+        plates_agree: False for plates that contradict each other.
     """
     breaks = 1 + sum(a[-1] != b[0] for a, b in pairwise(parts))
     speeds = 100.0 * SPEED_SD_M_S * np.sqrt(2.0 * breaks) / per_kg.sum()
@@ -101,9 +102,9 @@ def _judged(
     percent = 100.0 * (stated_kg / mass_kg - 1.0)
     verdict = judgement(percent, sd, BOUND_PERCENT)
     if verdict == "outside" and not plates_agree:
-        hint = f"the plates say {mass_kg:.1f} kg instead of {stated_kg:.1f}, but do not agree with each other"
+        hint = f"the plates give {mass_kg:.1f} kg instead of {stated_kg:.1f}, but contradict each other"
         return Finding(NAME, percent, sd, "%", BOUND_PERCENT, "doubtful", hint)
-    hint = f"the plates say {mass_kg:.1f} kg, the subject has {stated_kg:.1f} kg"
+    hint = f"the plates give {mass_kg:.1f} kg, the subject has {stated_kg:.1f} kg"
     if verdict == "outside":
         hint += f"; scale with --mass {mass_kg:.1f} or --mass auto, or check the plates' units and gains"
     return Finding(NAME, percent, sd, "%", BOUND_PERCENT, verdict, hint, mass_kg)

@@ -1,28 +1,28 @@
-"""Newton's law before any filter makes it hold: what the motion of markers asks for, less what the plates give."""
+"""Newton's law before a filter imposes it: the wrench that the motion of markers requires less that of the plates."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from mbkf.conventions import BoolArray
-from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.checks.orientation import carried
 
 FORCE, MOMENT = "force that plates lack", "moment that plates lack"
 
 FORCE_BOUND, MOMENT_BOUND = 10.0, 4.0
-"""More of body weight, % and % m, is told."""
+"""Largest missing force and moment without a warning, % of body weight and % of it times m."""
 
 REST_PERCENT, MOVING_SHARE = 2.5, 0.1
-"""What is lacking where all is well: a share of body weight, and of what acceleration asks for (soft tissue and
-segments' masses); public walks lack 3 to 5 % of body weight, a run 14 %."""
+"""Missing force of right captures: a share of body weight, and of the force that accelerates (soft tissue and segments'
+masses). Public walks lack 3 to 5 % of body weight, a run 14 %."""
 
 LEVER_CM = 1.5
-"""The lever at which whole ground reactions seem to pass the centre of mass by."""
+"""Lever by which whole ground reactions of right captures miss the centre of mass."""
 
 LEAST_S = 0.25
-"""Duration that is needed."""
+"""Least duration of clear frames."""
 
 
 def newton_findings(evidence: Evidence) -> tuple[Finding, Finding]:
@@ -31,7 +31,7 @@ def newton_findings(evidence: Evidence) -> tuple[Finding, Finding]:
     if not clear.any():
         clear = carried(evidence)
     if clear.sum() < LEAST_S * evidence.rate_hz:
-        why = "needs frames in which only feet on plates bear"
+        why = "needs frames in which only feet on plates carry load"
         return (
             not_judged(FORCE, "% BW", FORCE_BOUND, why),
             not_judged(MOMENT, "% BW m", MOMENT_BOUND, why),
@@ -42,23 +42,15 @@ def newton_findings(evidence: Evidence) -> tuple[Finding, Finding]:
     )
     force_sd = 100.0 * expected_force(evidence, clear) / weight_n
     moment_sd = LEVER_CM * float(np.sqrt((evidence.asked[clear, :3] ** 2).sum(axis=1).mean())) / weight_n
-    hint = "of markers alone, before a filter makes it hold"
+    hint = "of markers alone, before a filter imposes Newton's law"
     return (
-        Finding(FORCE, force, force_sd, "% BW", FORCE_BOUND, judgement(force, force_sd, FORCE_BOUND), hint),
-        Finding(
-            MOMENT,
-            moment,
-            moment_sd,
-            "% BW m",
-            MOMENT_BOUND,
-            judgement(moment, moment_sd, MOMENT_BOUND),
-            hint,
-        ),
+        judged(FORCE, force, force_sd, "% BW", FORCE_BOUND, hint),
+        judged(MOMENT, moment, moment_sd, "% BW m", MOMENT_BOUND, hint),
     )
 
 
 def expected_force(evidence: Evidence, frames: BoolArray) -> float:
-    """Root mean square of the force that is lacking where all is well, N.
+    """Root mean square of the force that a right capture lacks, N.
 
     Args:
         evidence: Motion and plates.

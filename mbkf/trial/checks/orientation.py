@@ -1,8 +1,8 @@
-"""Each plate's axes and place: whether it fits the motion as its file has it, or turned, mirrored or moved better.
+"""Axes and place of each plate: the motion shows plates that are turned, mirrored or moved.
 
 While a plate carries most of the load, its shear and its moment about the centre of mass have to be those that the
-motion asks for. The plate is tried in the eight ways in which a rectangle can be laid down, turned by quarters and
-mirrored; where it lies beside its place by d, the moment d × f is missing.
+motion requires. The plate is tried in the eight ways in which a rectangle can be laid down, turned by quarters and
+mirrored; a plate that lies beside its place by d lacks the moment d × f.
 """
 
 from __future__ import annotations
@@ -13,43 +13,43 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.findings import Finding, judged, judgement, not_judged
 from mbkf.io.records import PlateReadings
 from mbkf.trial.checks.evidence import Evidence
 
 SHEAR_SHARE, MOMENT_M = 0.04, 0.025
-"""What shear, in body weights, and moment, in body weights times m, differ by where all is well (root of mean square
-per component in public walks and runs: 0.02 to 0.07 and 0.01 to 0.03)."""
+"""Usual misfit of shear, in body weights, and of moment, in body weights times m (root of mean square per component in
+public walks and runs: 0.02 to 0.07 and 0.01 to 0.03)."""
 
 BOUND = 1.5
-"""A plate that misfits so many times as much as it does laid down in another way lies in that one. The right way
-misfits less than any other: 0.1 to 0.6 times as much."""
+"""Misfit over that of another way to lay the plate down from which that one is right. The right way's is 0.1 to 0.6
+times the best of the others."""
 
 TIMES_SD = 0.5
-"""Standard deviation of that number where two ways fit alike."""
+"""Standard deviation of that ratio between two ways that fit alike."""
 
 BOUND_MM, PLACE_MM = 50.0, 15.0
-"""A plate further beside its place than the first is told; scaled bodies' centres of mass are wrong by the second."""
+"""Largest distance from its place without a warning, and error of scaled bodies' centres of mass."""
 
 NOISE_S = 0.1
-"""Time over which what motion and plates differ by stays alike."""
+"""Correlation time of the difference between motion and plates."""
 
 ALONE, BESIDE = 0.7, 0.25
-"""A plate is judged while it carries the first share of what all give; its axes, where it never does, the second."""
+"""A plate is judged while it carries the first share of the load; its axes, if it never does, the second share."""
 
 MATCHES = 0.25
-"""Frames count in which the plates' vertical force is what the motion asks for to this share, whatever stands where."""
+"""Frames count in which the plates' vertical force is that of the motion to this share, up to one gain."""
 
 LEAST_S = 0.2
-"""Duration that is needed."""
+"""Least duration of such frames."""
 
 UNLOADED = "nothing stands on this plate alone for long enough"
 
 
 def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateReadings, ...]]:
-    """One finding for each plate, and the plates laid down as fits best where that is not as their file has it.
+    """One finding for each plate, and the plates with wrong axes corrected.
 
-    The plate that gains most by it is laid down otherwise first; the others are judged beside it as it lies then.
+    The plate that gains most is corrected first; the others are then judged beside the corrected one.
     """
     found: dict[int, Finding] = {}
     while True:
@@ -65,7 +65,7 @@ def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateR
 
 
 def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
-    """How far each plate lies beside its place: d that makes most of the missing moment d × f."""
+    """Distance d of each plate from its place, from the missing moment d × f."""
     findings = []
     gain = _gain(evidence)
     for p, plate in enumerate(evidence.plates):
@@ -79,12 +79,12 @@ def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
 
 
 def laid(plate: PlateReadings, quarters: int, mirrored: bool) -> PlateReadings:
-    """A plate's readings as if it lay otherwise: mirrored across its own x axis, then turned about the vertical.
+    """A plate's readings as if it were mirrored across its own x axis, then turned about the vertical.
 
     Args:
         plate: The plate.
-        quarters: By how many quarter turns.
-        mirrored: Whether it is mirrored.
+        quarters: Number of quarter turns.
+        mirrored: False to turn it only.
     """
     turn = _matrix(plate, quarters, mirrored)
     # A moment is an axial vector: mirrored, it changes its sign besides.
@@ -111,7 +111,7 @@ def _matrix(plate: PlateReadings, quarters: int, mirrored: bool) -> Array:
 
 
 def _ways() -> Iterator[tuple[int, bool, str]]:
-    """The other ways to lay a plate down: quarter turns, mirrored, and in words."""
+    """The other ways to lay a plate down: number of quarter turns, mirrored or not, and text."""
     for mirrored in (False, True):
         for quarters in range(4):
             words = [f"turned by {90 * quarters}°"] if quarters else []
@@ -122,7 +122,7 @@ def _ways() -> Iterator[tuple[int, bool, str]]:
 
 
 def carried(evidence: Evidence) -> BoolArray:
-    """(T,) frames in which plates carry what the motion asks for, up to one gain, whoever stands where."""
+    """(T,) frames in which plates carry the force that the motion requires, up to one gain."""
     asked, total = evidence.asked[:, 2], evidence.total[:, 2]
     bears = evidence.known & (asked > 0.3 * evidence.weight_n) & (total > 0.3 * asked)
     if not bears.any():
@@ -132,13 +132,7 @@ def carried(evidence: Evidence) -> BoolArray:
 
 
 def _bearing(evidence: Evidence, p: int, *shares: float) -> BoolArray | None:
-    """(T,) frames in which a plate carries most, or the least share that is enough; None where they are too few.
-
-    Args:
-        evidence: Motion and plates.
-        p: Which plate.
-        shares: Shares of the load that are enough, the best one first; both where none is named.
-    """
+    """(T,) frames in which plate ``p`` carries the first of the shares (both by default) that lasts; None else."""
     share = evidence.given[:, p, 2] / np.maximum(evidence.total[:, 2], 1.0)
     for least in shares or (ALONE, BESIDE):
         frames = carried(evidence) & (share > least)
@@ -148,7 +142,7 @@ def _bearing(evidence: Evidence, p: int, *shares: float) -> BoolArray | None:
 
 
 def _gain(evidence: Evidence) -> float:
-    """What plates give over what the motion asks for, so that a wrong mass accuses no plate."""
+    """Force of the plates over that of the motion, so that a wrong mass is not blamed on a plate."""
     frames = carried(evidence)
     if not frames.any():
         return 1.0
@@ -156,7 +150,7 @@ def _gain(evidence: Evidence) -> float:
 
 
 def _misfit(missing: Array, weight_n: float) -> float:
-    """Root of the mean square of a missing wrench (n, 6) in units of its usual spread, shear and moment alike."""
+    """Root mean square of a missing wrench (n, 6) in units of its usual misfit, shear and moment alike."""
     shear, moment = missing[:, :2] / (SHEAR_SHARE * weight_n), missing[:, 3:] / (MOMENT_M * weight_n)
     return float(np.sqrt(np.mean(np.hstack([shear, moment]) ** 2)))
 
@@ -178,26 +172,18 @@ def _axes(evidence: Evidence, p: int) -> tuple[Finding, PlateReadings]:
     verdict = judgement(times, TIMES_SD, BOUND)
     hint = "its misfit over the least one turned or mirrored"
     if verdict == "outside":
-        hint = f"{ways[best][2]} it fits {times:.1f} times as well: are its corners and axes right?"
+        hint = f"{ways[best][2]} it fits {times:.1f} times as well: check its corners and axes"
     return Finding(name, times, TIMES_SD, "times", BOUND, verdict, hint), tried[best]
 
 
 def _place(name: str, given: Array, missing: Array, rate_hz: float) -> Finding:
-    """How far a plate lies beside its place: d that makes most of missing moments (n, 6) d × f, f given (n, 6).
-
-    Args:
-        name: Name of the finding.
-        given: What the plate gives.
-        missing: What is missing.
-        rate_hz: Frame rate.
-    """
-    # Only what is alike in all frames counts: the mean moment over the mean force.
+    """Distance d of a plate from its place, from its wrench (n, 6) and the missing one, whose moment is d × f."""
+    # The part common to all frames counts: the mean moment over the mean force.
     force, moment = given[:, 2].mean(), missing[:, 3:5]
     along, across = -moment[:, 1].mean() / force, moment[:, 0].mean() / force
     off_mm = 1e3 * float(np.hypot(along, across))
     samples = max(len(moment) / (NOISE_S * rate_hz), 1.0)
     sd_mm = 1e3 * float(moment.std(axis=0).max() / force / np.sqrt(samples))
     sd_mm = float(np.hypot(sd_mm, PLACE_MM))
-    verdict = judgement(off_mm, sd_mm, BOUND_MM)
-    hint = f"the motion has it {1e3 * along:+.0f} mm along x, {1e3 * across:+.0f} mm along y of where it is said to be"
-    return Finding(name, off_mm, sd_mm, "mm", BOUND_MM, verdict, hint)
+    hint = f"the motion places it {1e3 * along:+.0f} mm along x, {1e3 * across:+.0f} mm along y from the file's place"
+    return judged(name, off_mm, sd_mm, "mm", BOUND_MM, hint)

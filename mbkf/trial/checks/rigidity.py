@@ -1,6 +1,6 @@
 """Markers of one segment against each other: their distances stay, up to the movement of skin.
 
-No body and no filter enters but the list of which segment carries which marker.
+The check uses the segments that carry the markers, no body and no filter.
 """
 
 from __future__ import annotations
@@ -10,23 +10,23 @@ from itertools import combinations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
 
 NAME = "markers stay on their segments"
 
 BOUND_MM = 30.0
-"""A marker whose distances change by more (standard deviation) is told."""
+"""Largest standard deviation of distances without a warning."""
 
 SKIN_MM = 6.0
-"""What skin moves a marker along a line to another one by, at least."""
+"""Least standard deviation of a distance, due to skin."""
 
 LEAST_FRAMES = 20
-"""Frames in which two markers are seen together."""
+"""Least number of frames in which two markers are seen together."""
 
 TAIL_PERCENT, TAIL_SD = 5.0, 1.645
-"""The spread is taken between these ends of the distribution, so that few exchanged frames do not make it."""
+"""The spread is taken between these percentiles, so that few exchanged frames do not raise it."""
 
 
 def rigidity_finding(markers: MarkerTrajectories, subject: Subject) -> Finding:
@@ -47,21 +47,19 @@ def rigidity_finding(markers: MarkerTrajectories, subject: Subject) -> Finding:
             expected = float(np.hypot(SKIN_MM, np.hypot(noise_mm[first], noise_mm[second])))
             for name in (first, second):
                 spreads[name].append((spread, expected))
-    # A marker that moves does so against all others, those against it alone: the median tells which.
+    # A loose marker moves against all others, which move against it alone: the median separates them.
     typical = {name: np.median(pairs, axis=0) for name, pairs in spreads.items() if pairs}
     if not typical:
         return not_judged(NAME, "mm", BOUND_MM, "no segment carries two markers")
     name = max(typical, key=lambda one: float(typical[one][0] / typical[one][1]))
     value, sd = (float(x) for x in typical[name])
-    verdict = judgement(value, sd, BOUND_MM)
     hint = f"{name} moves most against the others of its segment ({own[name].segment.replace('_', ' ')})"
-    if verdict == "outside":
-        hint += ": it is named wrongly, came loose, or sits on another segment"
-    return Finding(NAME, value, sd, "mm", BOUND_MM, verdict, hint)
+    remedy = ": check its name and segment, and whether it came loose"
+    return judged(NAME, value, sd, "mm", BOUND_MM, hint, remedy)
 
 
 def _spread_mm(apart: Array) -> float | None:
-    """Spread of the length of vectors (T, 3), mm; None where too few are known."""
+    """Spread of the length of vectors (T, 3), mm; None for too few known ones."""
     length = np.linalg.norm(apart, axis=1)
     length = length[~np.isnan(length)]
     if len(length) < LEAST_FRAMES:

@@ -9,8 +9,8 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.inertial_regressor import PER_OWN, PER_SEGMENT, InertialRegressor
 from mbkf.numerics.correlated_regression import Series
+from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import slopes
-from mbkf.sensors.contact.offline import stretches
 from mbkf.sensors.supports.momentum import LEAST_WINDOW
 from mbkf.trial.checks.evidence import WINDOW_S, Evidence
 from mbkf.trial.inertia.prior import PLACE

@@ -10,7 +10,7 @@ from mbkf.io.findings import Finding
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.scaling.verdict import DOUBTS_KEY
-from mbkf.trial.checks.judge import told
+from mbkf.trial.checks.judge import messages
 from mbkf.trial.preparation.coverage import INFERRED_KEY
 from mbkf.trial.results import innovations
 from mbkf.trial.results.supports import supports_told
@@ -27,7 +27,7 @@ def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruct
     report = subject.report
     inferred, doubts = report.get(INFERRED_KEY), report.get(DOUBTS_KEY)
     return (
-        *told(tuple(checks)),
+        *messages(tuple(checks)),
         *innovations.told(found),
         *((str(inferred["told"]),) if isinstance(inferred, dict) else ()),
         *(f"the subject file: {doubt}" for doubt in (doubts if isinstance(doubts, list) else ())),

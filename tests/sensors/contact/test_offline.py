@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
-from mbkf.sensors.contact.offline import assign_feet, stretches
+from mbkf.sensors.contact.offline import assign_feet
 from mbkf.sensors.contact.rules import BOTH
 from mbkf.sensors.contact.sharing import expected_stance
 from mbkf.sensors.contact.soles import sole_points
@@ -277,13 +277,6 @@ def test_the_floor_lies_where_the_soles_are_lowest(height_m):
     q[30:40] = np.nan
     assert assigned(q, []).floor_m == pytest.approx(height_m, abs=1e-9)
     assert np.isnan(assigned(np.full_like(q, np.nan), []).floor_m)
-
-
-def test_stretches_are_the_unbroken_runs():
-    mask = np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], bool)
-    assert [run.tolist() for run in stretches(mask)] == [[0, 1], [4], [6, 7, 8]]
-    assert stretches(np.zeros(3, bool)) == []
-    assert [run.tolist() for run in stretches(np.ones(2, bool))] == [[0, 1]]
 
 
 @pytest.mark.parametrize("outline", [True, False])

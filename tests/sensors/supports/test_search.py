@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.sensors.contact.offline import stretches
+from mbkf.numerics.runs import stretches
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.search import ON_FLOOR_M, RESTS_M_S, RESTS_S, other_contacts

@@ -6,7 +6,7 @@ import pytest
 from mbkf.io.findings import Finding
 from mbkf.trial.checks import newton
 from mbkf.trial.checks.clocks import delayed
-from mbkf.trial.checks.judge import marker_checks, plate_checks, told
+from mbkf.trial.checks.judge import marker_checks, messages, plate_checks
 from mbkf.trial.checks.orientation import laid
 from tests.checked import amplified, body, motion, plates, recorded
 from tests.dynamics import trial
@@ -59,6 +59,8 @@ def test_causes_are_told_and_consequences_where_there_is_none():
     cause = Finding("mass against plates", 30.0, 1.0, "%", 5.0, "outside", "weigh anew", 70.0)
     follows = Finding(newton.FORCE, 25.0, 3.0, "% BW", 10.0, "outside", "of markers alone")
     well = Finding("clocks", 1.0, 2.0, "ms", 8.0, "inside", "one clock")
-    assert told((cause, follows, well)) == ("mass against plates: +30 % (noise explains ± 2); weigh anew",)
-    assert [line.partition(":")[0] for line in told((follows, well))] == [newton.FORCE]
-    assert told((well,)) == ()
+    assert messages((cause, follows, well)) == (
+        "mass against plates: +30 % (noise explains ± 2); weigh anew",
+    )
+    assert [line.partition(":")[0] for line in messages((follows, well))] == [newton.FORCE]
+    assert messages((well,)) == ()
