@@ -99,7 +99,9 @@ def test_torques_and_their_derivatives_are_pinocchio_s(seed):
     """Each foot hangs on any joint; its wrench stands still in the world."""
     s = moving(seed)
     nv, feet = s.model.nv, s.rng.integers(1, s.model.njoints, size=2)
-    moves = np.array([[_is_before(s.model, k, foot) for k in range(nv)] for foot in feet])
+    joint_of = np.repeat(np.arange(1, s.model.njoints), [joint.nv for joint in s.model.joints[1:]])
+    below = np.array([np.isin(joint_of, list(joint)) for joint in s.model.supports])  # dofs that move a joint
+    moves = below[feet]
     tau, by_state, jacobian = s.tree.torques(s.q, s.v, s.a, moves, s.w)
     by_q, by_v, by_a = pin.computeRNEADerivatives(s.model, s.data, s.q, s.v, s.a)
     expected, by_q = s.data.tau.copy(), by_q.copy()
@@ -107,7 +109,7 @@ def test_torques_and_their_derivatives_are_pinocchio_s(seed):
     for foot, own in zip((slice(6), slice(6, 12)), moves, strict=True):
         J = s.data.J * own
         turns = (J.T @ crossed(s.w[foot]) @ J).T
-        by_q -= turns * [[_is_before(s.model, k, _joint(s.model, i)) for k in range(nv)] for i in range(nv)]
+        by_q -= turns * below[joint_of]
         expected -= J.T @ s.w[foot]
         assert_same(by_state[:, 3 * nv :][:, foot], -J.T)
     assert_same(tau, expected)
@@ -115,16 +117,6 @@ def test_torques_and_their_derivatives_are_pinocchio_s(seed):
     assert_same(by_state[:, :nv], by_q)
     assert_same(by_state[:, nv : 2 * nv], by_v)
     assert_same(by_state[:, 2 * nv : 3 * nv], by_a)
-
-
-def _joint(model, dof):
-    """Joint of a dof."""
-    return next(i for i in range(1, model.njoints) if dof < model.joints[i].idx_v + model.joints[i].nv)
-
-
-def _is_before(model, dof, joint):
-    """Whether a dof moves a joint."""
-    return _joint(model, dof) in list(model.supports[int(joint)])
 
 
 @often
