@@ -18,7 +18,7 @@ from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
-from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
+from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
 from mbkf.trial.preparation.exchanged import trials_put_right
 from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set, inferred_choice
@@ -157,7 +157,7 @@ def _scaled(
             settings=settings,
             progress=progress,
         )
-    told = told_axes(captures, checked)
+    told = corrected_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
     extra: dict[str, object] = {USE_KEY: use.as_report()}
     if exchanged:

@@ -132,8 +132,8 @@ def test_markers_in_the_wrong_unit(factor, unit, tmp_path, everywhere):
 
 @pytest.mark.slow
 def test_unit_given_wrongly(person, refuse_scale, refuse_reconstruct):
-    refuse_scale([person.static, "--mass", "75", "--unit", "m"], "which no person is", "--unit mm")
-    refuse_reconstruct([person.trial, "--unit", "m"], "which no person is", "--unit mm")
+    refuse_scale([person.static, "--mass", "75", "--unit", "m"], "outside 0.65 to 2.6 m", "--unit mm")
+    refuse_reconstruct([person.trial, "--unit", "m"], "outside 0.65 to 2.6 m", "--unit mm")
     refuse_reconstruct([person.trial, "--unit", "furlong"], "unknown", "'furlong'", "mm")
     refuse_reconstruct([person.trial, "--up", "w"], "unknown", "'w'", "z")
 

@@ -1,4 +1,4 @@
-"""Captures with their axes checked before anything is followed: against a protocol, or against a scaled person."""
+"""Captures with their axes checked before tracking: against a protocol, or against a scaled person."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from mbkf.trial.axes.decision import AxesFinding, applied, find_axes, may_follow
 from mbkf.trial.axes.evidence import marker_places
 
 REPORT_KEY = "axes"
-"""Key of a subject's report under which captures that were put right are told."""
+"""Key of a subject's report that lists its captures with corrected axes."""
 
 
 def checked_for_protocol(captures: Sequence[Capture], protocol: Protocol) -> list[Capture]:
-    """Captures of a person to be scaled, with their axes checked and put right.
+    """Captures of a person to be scaled, with their axes checked and corrected.
 
     Args:
         captures: Static and moving trials of one person.
         protocol: The markers they wear.
 
     Raises:
-        InvalidInput: The axes or the unit of a capture cannot be right, and it is not clear what they are.
+        InvalidInput: The axes or the unit of a capture are wrong, and the right ones are not clear.
     """
     places = [
         marker_places(one.markers.names, protocol.match(one.markers.names), protocol.body) for one in captures
@@ -37,16 +37,16 @@ def checked_for_protocol(captures: Sequence[Capture], protocol: Protocol) -> lis
 
 
 def checked_for_subject(capture: Capture, subject: Subject) -> Capture:
-    """A trial of a scaled person, with its axes checked and put right.
+    """A trial of a scaled person, with its axes checked and corrected.
 
-    A trial that does not tell its axes takes those that the person was scaled with.
+    A trial without evidence on its axes takes those that the person was scaled with.
 
     Args:
         capture: The trial.
         subject: The person.
 
     Raises:
-        InvalidInput: The axes or the unit of the trial cannot be right, and it is not clear what they are.
+        InvalidInput: The axes or the unit of the trial are wrong, and the right ones are not clear.
     """
     found = find_axes_for_subject(capture, subject)
     alike = turned_like_subject(capture, subject)
@@ -56,24 +56,19 @@ def checked_for_subject(capture: Capture, subject: Subject) -> Capture:
 
 
 def find_axes_for_subject(capture: Capture, subject: Subject) -> AxesFinding:
-    """What a trial of a scaled person tells about its axes."""
+    """Evidence on the axes of a scaled person's trial."""
     names = capture.markers.names
     places = marker_places(names, match_names(names, subject.markers), reference_body(subject))
     return find_axes(capture, places)
 
 
 def find_axes_by_names(capture: Capture) -> AxesFinding:
-    """What a capture tells about its axes by the markers that any of the shipped protocols knows."""
+    """Evidence on a capture's axes from the markers of any shipped protocol."""
     return find_axes(capture, marker_places(capture.markers.names, {}, load_body("human18")))
 
 
-def told_axes(read: Sequence[Capture], checked: Sequence[Capture]) -> list[dict[str, str]]:
-    """What was put right of captures, as plain data for the report of the person scaled from them.
-
-    Args:
-        read: The captures as they were read.
-        checked: The same after the check.
-    """
+def corrected_axes(read: Sequence[Capture], checked: Sequence[Capture]) -> list[dict[str, str]]:
+    """Corrections of captures before (``read``) and after the check, as plain data for the subject's report."""
     return [
         {"capture": one.path, "read": one.axes, "used": other.axes, "note": other.notes[-1]}
         for one, other in zip(read, checked, strict=True)
@@ -82,24 +77,19 @@ def told_axes(read: Sequence[Capture], checked: Sequence[Capture]) -> list[dict[
 
 
 def turned_like_subject(capture: Capture, subject: Subject) -> Capture:
-    """A capture without evidence of its own in the axes that its person's captures were put right to.
+    """A capture without evidence on its axes, of unlabelled points perhaps, corrected like those of its subject.
 
-    Args:
-        capture: The capture, of unlabelled points perhaps.
-        subject: The person.
-
-    Returns:
-        The capture itself where the person's captures were right, or read in other axes, or its axes were given.
+    It is returned as it is if those were right, or read in other axes, or if its axes were given.
     """
     if capture.axes_source in (AxesSource.GIVEN, AxesSource.UP_GIVEN, AxesSource.MADE, AxesSource.BODY):
         return capture
-    told = subject.report.get(REPORT_KEY)
-    for one in told if isinstance(told, list) else []:
+    corrected = subject.report.get(REPORT_KEY)
+    for one in corrected if isinstance(corrected, list) else []:
         if one["read"] == capture.axes:
             turn = axes_matrix(one["used"]) @ axes_matrix(capture.axes).T
             note = (
                 f"axes {one['used']} as in the subject's static trial; --axes={capture.axes} keeps the file's"
             )
-            made = put_right(capture, np.asarray(turn))
-            return replace(made, notes=(*made.notes, note))
+            found = put_right(capture, np.asarray(turn))
+            return replace(found, notes=(*found.notes, note))
     return capture

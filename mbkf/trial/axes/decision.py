@@ -1,4 +1,4 @@
-"""What is done about a capture's axes: left as they are, put right, or refused, by the body and the plates in it."""
+"""Decision on a capture's axes, from the body and the plates in it: kept, corrected or refused."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from mbkf.trial.axes.evidence import FLAT_SINE, BodyAttitude, MarkerPlaces, body
 from mbkf.trial.axes.plates import contradiction, pushed_away
 
 UPRIGHT_COSINE = np.cos(np.deg2rad(30.0))
-"""A body stands upright along an axis that its height makes less than this angle with."""
+"""A body stands upright along an axis within this angle of its height."""
 
 ALWAYS, EVER = 0.95, 0.05
-"""Shares of frames: upright all the time, and at times. Who stands along an axis in all frames of a capture, with legs
-straight and feet across it, was not lying; who does so at times may rise from the floor."""
+"""Shares of frames: upright all the time, and at times. A person who stands along an axis in all frames of a capture,
+with straight legs and feet across it, is not lying; one who does so at times may rise from the floor."""
 
 STRAIGHT = 0.6
 """Height over that of the reference body of the same size, above which a body is not folded."""
 
 STANDING = 0.5
-"""Share of the frames upright along an axis in which a foot lies across it, from which a person stands along it: 1 of a
-walk, 0.93 of a run; 0.2 to 0.35 of two persons who lie with their toes on the floor."""
+"""Share of the frames upright along an axis with a foot across it from which a person stands along it: 1 in a walk,
+0.93 in a run; 0.2 to 0.35 in two persons who lie with their toes on the floor."""
 
 HANDED, SAME_SIGN = 0.3, 0.9
 """Mean triple product of forward, left and up, and the share of frames of its sign, from which the body is taken to be
@@ -46,23 +46,23 @@ EXPLAINED, SCATTER = 0.7, 0.45
 within segments that it may have (0.05 to 0.32; names in a wrong order 0.64 and more): else the names are others'."""
 
 POSSIBLE_M, PLAUSIBLE_M = (0.65, 2.6), (1.0, 2.2)
-"""Heights of a person beyond which a unit is refused, and between which another is proposed."""
+"""Heights of a person outside which a unit is refused, and between which another is proposed."""
 
 _AXES = {name: np.array(rows[2], dtype=np.float64) for name, rows in WORLD_AXES.items()}
 """World directions by the names of axes."""
 
 
 class Verdict(StrEnum):
-    """What was found about a capture's axes."""
+    """Verdict on a capture's axes."""
 
     RIGHT = "right"
     """Up and handedness are those of the body."""
     PUT_RIGHT = "put right"
-    """They were not, and it is clear what they are."""
+    """Up or handedness were wrong; the right ones are clear."""
     KEPT = "kept"
-    """They may not be; they are kept, for the reason that the note gives."""
+    """The axes may be wrong; they are kept, for the reason that the note gives."""
     UNCLEAR = "unclear"
-    """Somebody lies who never stands, and the file does not say which axis points up."""
+    """The person lies and never stands, and the file does not state the axis that points up."""
     REFUSED = "refused"
     """Body and plates, or body and file, contradict each other."""
     UNKNOWN = "unknown"
@@ -73,12 +73,12 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class AxesFinding:
-    """What was found about a capture's axes.
+    """Verdict on a capture's axes and correction.
 
     Attributes:
         verdict: The verdict.
-        turn: (3, 3) what the capture has to be turned by; the identity unless axes are put right.
-        note: One line about it, "" where there is nothing to tell.
+        turn: (3, 3) signed permutation that corrects the capture; the identity unless axes are put right.
+        note: One line for the user, or "".
     """
 
     verdict: Verdict
@@ -89,21 +89,21 @@ class AxesFinding:
 def right_axes(
     captures: Sequence[Capture], places: Sequence[MarkerPlaces], *, with_plates: bool = True
 ) -> list[Capture]:
-    """Captures of one person with their axes checked, and put right where that is needed.
+    """Captures of one person with their axes checked and, if wrong, corrected.
 
-    A capture that does not tell its axes takes those of the others that were read alike: a laboratory's static and
-    moving trials have the same. What it does tell, where its feet stand, is not overruled.
+    A capture without evidence takes the axes of the others that were read alike: a laboratory's static and moving
+    trials have the same. Evidence of its own is not overruled.
 
     Args:
         captures: The captures.
         places: Places of each one's markers on the body.
-        with_plates: Whether plates are used: captures that are upright are refused where they push elsewhere.
+        with_plates: True to refuse upright captures whose plates push in another direction than up.
 
     Returns:
         The captures, in their order; the same objects where nothing was changed or remarked.
 
     Raises:
-        InvalidInput: Body, plates and file contradict each other, or the body is of no person's size.
+        InvalidInput: Body, plates and file contradict each other, or the body's height is impossible.
     """
     found = [
         find_axes(one, place, with_plates=with_plates) for one, place in zip(captures, places, strict=True)
@@ -121,22 +121,17 @@ def right_axes(
 
 
 def may_follow(finding: AxesFinding, turn: Array) -> bool:
-    """Whether a capture about which this was found may be turned as another of the same person was.
-
-    Args:
-        finding: What was found about it.
-        turn: (3, 3) what the other was turned by.
-    """
+    """True if a capture with this finding may be turned as another one of the same person was, by ``turn`` (3, 3)."""
     if finding.verdict is Verdict.KEPT:  # its up is known, its handedness is not
         return bool(turn[2, 2] == 1.0)
     return finding.verdict in (Verdict.UNKNOWN, Verdict.UNCLEAR)
 
 
 def applied(capture: Capture, finding: AxesFinding) -> Capture:
-    """The capture with what was found about it: turned, and with the note; itself where there is neither.
+    """The capture turned and with the note of a finding.
 
     Raises:
-        InvalidInput: Its axes or its unit cannot be right, and it is not clear what they are.
+        InvalidInput: Its axes or its unit are wrong, and the right ones are not clear.
     """
     if finding.verdict in (Verdict.REFUSED, Verdict.UNCLEAR):
         raise InvalidInput(f"{capture.path or 'capture'}: {finding.note}")
@@ -146,23 +141,18 @@ def applied(capture: Capture, finding: AxesFinding) -> Capture:
 
 
 def put_right(capture: Capture, turn: Array) -> Capture:
-    """A capture turned into the axes of the body in it.
-
-    Args:
-        capture: The capture.
-        turn: (3, 3) signed permutation.
-    """
+    """A capture turned into the axes of the body in it by a signed permutation (3, 3)."""
     found = turned(capture, turn, AxesSource.BODY)
     return replace(found, plates=tuple(recentred(plate) for plate in found.plates))
 
 
 def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = True) -> AxesFinding:
-    """Whether a capture's axes are those of the person in it.
+    """Verdict on a capture's axes by the person in it.
 
     Args:
         capture: A capture whose markers have names.
         places: Places of its markers on the body.
-        with_plates: As for :func:`right_axes`.
+        with_plates: As in :func:`right_axes`.
     """
     same = np.eye(3)
     if capture.axes_source is AxesSource.GIVEN:
@@ -170,8 +160,7 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
     body = body_attitude(capture.markers, places)
     if body is None or np.median(body.explained) < EXPLAINED or body.scatter > SCATTER:
         return AxesFinding(Verdict.UNKNOWN, same)
-    impossible = _impossible_size(capture, body, places)
-    if impossible:
+    if impossible := _impossible_size(capture, body, places):
         return AxesFinding(Verdict.REFUSED, same, impossible)
     old, up, mirrored = axes_matrix(capture.axes), _up(capture, body), _mirrored(body)
     if up.unclear:
@@ -187,20 +176,19 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
     if np.array_equal(turn, same):
         against = pushed_away(capture.plates) if with_plates and _stands_along(body, "z") else ""
         if against:
-            hint = "look at the axes of both (--up, --axes)"
+            hint = "check the axes of both (--up, --axes)"
             return AxesFinding(Verdict.REFUSED, same, f"the body stands upright, but {against}; {hint}")
         return AxesFinding(Verdict.KEPT if remarks else Verdict.RIGHT, same, "; ".join(remarks))
-    against = contradiction(capture, turn, places)
-    if against:
+    if against := contradiction(capture, turn, places):
         hint = f"name the axes that point forward, left and up (--axes={capture.axes} keeps them)"
         return AxesFinding(Verdict.REFUSED, same, f"{evidence}, but {against}; {hint}")
-    told = _told(capture, axes_text(new), evidence, up.axis)
-    return AxesFinding(Verdict.PUT_RIGHT, turn, "; ".join([told, *remarks]))
+    correction = _correction(capture, axes_text(new), evidence, up.axis)
+    return AxesFinding(Verdict.PUT_RIGHT, turn, "; ".join([correction, *remarks]))
 
 
 @dataclass(frozen=True)
 class _Up:
-    """World axis that points up in truth; what is to be told about it; whether it is not clear after all."""
+    """World axis that points up in truth, a remark for the user, and True if the axis is not clear."""
 
     axis: str
     remark: str = ""
@@ -208,7 +196,7 @@ class _Up:
 
 
 def _up(capture: Capture, body: BodyAttitude) -> _Up:
-    """Which axis points up: the one that the body is along, or, where it lies at times, the one it stands along."""
+    """The axis that points up: the body's own, or, for a person who lies at times, the one along which it stands."""
     main = nearest_axis(body.up.mean(axis=0))
     standing = [a for a in _AXES if _along(body, a) >= EVER and _on_feet(body, a) >= STANDING]
     axis = main
@@ -225,8 +213,11 @@ def _up(capture: Capture, body: BodyAttitude) -> _Up:
     if capture.axes_source in (AxesSource.PLATES, AxesSource.SCREEN, AxesSource.MADE):
         return _Up("z", f"{share}; up is {capture.up_axis}, as the file says")
     if standing == ["z"]:
-        return _Up("z", f"{share}, but stands on its feet along {capture.up_axis} only, which is taken as up")
-    hint = f"which axis points up? give --up (--up={capture.up_axis} where the person lies)"
+        return _Up(
+            "z",
+            f"{share}, but stands on its feet along {capture.up_axis} only; {capture.up_axis} is taken as up",
+        )
+    hint = f"name the axis that points up with --up (--up={capture.up_axis} if the person lies)"
     return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", unclear=True)
 
 
@@ -241,13 +232,13 @@ def _along(body: BodyAttitude, axis: str) -> float:
 
 
 def _stands_along(body: BodyAttitude, axis: str) -> bool:
-    """Whether the body stands on its feet along a world axis all the time, with straight legs."""
+    """True if the body stands on its feet along a world axis all the time, with straight legs."""
     straight = bool(np.median(body.stretch) >= STRAIGHT * body.size)
     return straight and _along(body, axis) >= ALWAYS and _on_feet(body, axis) >= STANDING
 
 
 def _on_feet(body: BodyAttitude, axis: str) -> float:
-    """Share of the frames upright along a world axis in which a foot lies across it; 0 where no foot is seen."""
+    """Share of the frames upright along a world axis in which a foot lies across it; 0 without a seen foot."""
     along = body.up @ _AXES[axis] > UPRIGHT_COSINE
     rise = np.abs(body.feet[along] @ _AXES[axis])
     seen = ~np.isnan(rise).all(axis=1)
@@ -255,7 +246,7 @@ def _on_feet(body: BodyAttitude, axis: str) -> float:
 
 
 def _mirrored(body: BodyAttitude) -> bool | None:
-    """Whether right and left are exchanged; None where it cannot be told."""
+    """True if right and left are exchanged; None without evidence."""
     seen = body.handedness[~np.isnan(body.handedness)]
     if not len(seen) or abs(seen.mean()) < HANDED:
         return None
@@ -264,7 +255,7 @@ def _mirrored(body: BodyAttitude) -> bool | None:
 
 
 def _impossible_size(capture: Capture, body: BodyAttitude, places: MarkerPlaces) -> str:
-    """That a body is too small or too large for a person, so that the unit is wrong; "" where it is not."""
+    """Message on a body too small or too large for a person, whose unit is wrong; "" otherwise."""
     height, used = body.size * places.height_m, capture.length_unit
     if np.isnan(height) or POSSIBLE_M[0] <= height <= POSSIBLE_M[1]:
         return ""
@@ -274,11 +265,12 @@ def _impossible_size(capture: Capture, body: BodyAttitude, places: MarkerPlaces)
         if PLAUSIBLE_M[0] <= other <= PLAUSIBLE_M[1]:
             hint = f"in {unit} it is {other:.2f} m: give --unit {unit}"
             break
-    return f"read in {used}, the body is {height:.4g} m tall, which no person is; {hint}"
+    low, high = POSSIBLE_M
+    return f"read in {used}, the body is {height:.4g} m tall, outside {low:g} to {high:g} m; {hint}"
 
 
 def _evidence(body: BodyAttitude, axis: str, mirrored: bool, old: Array) -> str:
-    """Why axes are put right, in words."""
+    """Reason for corrected axes, in words."""
     words = []
     if axis != "z":
         words.append(
@@ -289,8 +281,8 @@ def _evidence(body: BodyAttitude, axis: str, mirrored: bool, old: Array) -> str:
     return " and ".join(words)
 
 
-def _told(capture: Capture, new: str, evidence: str, axis: str) -> str:
-    """What was put right, in one line."""
+def _correction(capture: Capture, new: str, evidence: str, axis: str) -> str:
+    """Correction of axes, in one line."""
     kept = f"--axes={capture.axes} keeps them"
     if axis == "z":
         what = "markers and plates" if capture.plates else "markers"

@@ -1,4 +1,4 @@
-"""What the markers of a person tell about axes: where the body's up is, whether it is mirrored, how large it is."""
+"""Evidence of a person's markers on axes: the body's upward direction, its handedness and its size."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from mbkf.model.protocol import ProtocolMarker, load_protocol, protocol_names
 from mbkf.numerics.runs import spread_indices
 
 FRAMES = 60
-"""Frames, spread over the capture, that are looked at; a person's attitude changes slowly."""
+"""Number of frames, spread over the capture; a person's attitude changes slowly."""
 
 FEWEST_MARKERS = 6
-"""Markers with a known place that a frame needs."""
+"""Least number of markers with a known place in a frame."""
 
 LEAST_SPREAD_M = np.array([0.05, 0.15, 0.3])
-"""Root of the summed squares by which the markers' reference places have to spread in depth, breadth and height, so
-that the direction can be told."""
+"""Least root of the summed squares of the markers' reference places in depth, breadth and height that determines the
+direction."""
 
 LEAST_PAIR_M = 0.1
-"""Two markers of a segment nearer to each other than this tell little about the body's size."""
+"""Least distance of two markers of a segment that counts for the body's size."""
 
 FLAT_SINE = 0.45
-"""A foot whose direction leaves the floor by less than this sine stands, or nearly: 27°."""
+"""A foot stands, or nearly, with its direction within this sine of the floor: 27°."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class MarkerPlaces:
     Attributes:
         columns: (K,) their columns in the capture.
         segments: (K,) the segments that carry them.
-        neutral_m: (K, 3) where they are on the reference body that stands, facing x, m.
+        neutral_m: (K, 3) places on the reference body that stands, facing x, m.
         feet: Segments of right and of left foot.
         height_m: Height of the reference body, m.
     """
@@ -53,7 +53,7 @@ class MarkerPlaces:
 
 @dataclass(frozen=True)
 class BodyAttitude:
-    """The body in the frames that were looked at, in the capture's world axes.
+    """The body in some frames, in the capture's world axes.
 
     Attributes:
         up: (N, 3) unit directions from the feet towards the head.
@@ -61,8 +61,8 @@ class BodyAttitude:
         handedness: (N,) triple product of forward, left and up as unit vectors: 1 for a person, −1 for a mirror image;
             NaN where depth or breadth is not seen.
         feet: (N, 2, 3) unit directions from heel to toe of right and left foot, NaN where not seen.
-        size: Lengths within segments over those of the reference body, NaN where none is seen.
-        scatter: Interquartile range of these ratios over their median: small where the names are right.
+        size: Lengths within segments over those of the reference body, NaN without one.
+        scatter: Interquartile range of these ratios over their median: small for right names.
         explained: (N,) share of the markers' spread that the reference places explain.
     """
 
@@ -80,8 +80,8 @@ def marker_places(
 ) -> MarkerPlaces:
     """Places of a capture's markers on the reference body.
 
-    Names that the protocol or subject does not know are looked up in the shipped protocols of the same body: which side
-    and which part of the body R.PSIS is on is known, whoever's protocol it belongs to.
+    Names that the protocol or subject does not know are looked up in the shipped protocols of the same body: R.PSIS is
+    on the same side and segment in each.
 
     Args:
         names: Names in the capture.
@@ -115,7 +115,7 @@ def marker_places(
 
 
 def _shipped(names: tuple[str, ...], body: BodyDescription) -> dict[str, ProtocolMarker]:
-    """Markers of the shipped protocols of this body by these names; none where protocols differ on the segment."""
+    """Markers of the shipped protocols of this body by these names, if all of them agree on the segment."""
     found: dict[str, ProtocolMarker] = {}
     disputed = set()
     for protocol in (load_protocol(name) for name in protocol_names() if names):
@@ -128,7 +128,7 @@ def _shipped(names: tuple[str, ...], body: BodyDescription) -> dict[str, Protoco
 
 
 def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAttitude | None:
-    """How the body stands in a capture, right-handed or mirrored.
+    """Attitude of the body in a capture, right-handed or mirrored.
 
     In a frame, positions p of the markers are regressed on their places in the neutral posture, p ≈ f d + l y + u z:
     y and z about the mean of all markers, the depth d about the mean of each segment's, since limbs swing forwards and
@@ -140,7 +140,7 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
         places: Their places on the body.
 
     Returns:
-        The attitude in the frames in which the markers suffice; None where they do in none.
+        The attitude in the frames with enough markers; None without such a frame.
     """
     positions = markers.positions_m[:, places.columns]
     enough = np.flatnonzero((~np.isnan(positions).any(axis=2)).sum(axis=1) >= FEWEST_MARKERS)
@@ -165,25 +165,25 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
 def _frame(
     points: Array, neutral: Array, segments: NDArray[np.str_]
 ) -> tuple[Array, float, float, float] | None:
-    """Up, stretch, handedness and explained share of a frame's markers; None where they do not show up."""
+    """Up, stretch, handedness and explained share of a frame's markers; None without evidence on up."""
     design = np.column_stack([_depth(neutral, segments), (neutral - neutral.mean(axis=0))[:, 1:]])
-    told = np.linalg.norm(design, axis=0) >= LEAST_SPREAD_M
-    if not told[2]:
+    spread_enough = np.linalg.norm(design, axis=0) >= LEAST_SPREAD_M
+    if not spread_enough[2]:
         return None
     centred = points - points.mean(axis=0)
-    slopes, *_ = np.linalg.lstsq(design[:, told], centred, rcond=None)
+    slopes, *_ = np.linalg.lstsq(design[:, spread_enough], centred, rcond=None)
     lengths = np.linalg.norm(slopes, axis=1)
     if not (lengths > 0.0).all():
         return None
     units = slopes / lengths[:, None]
-    handedness = float(np.linalg.det(units)) if told.all() else np.nan
+    handedness = float(np.linalg.det(units)) if spread_enough.all() else np.nan
     spread = (centred**2).sum()
-    explained = 1.0 - ((centred - design[:, told] @ slopes) ** 2).sum() / spread if spread else 0.0
+    explained = 1.0 - ((centred - design[:, spread_enough] @ slopes) ** 2).sum() / spread if spread else 0.0
     return units[-1], float(lengths[-1]), handedness, float(explained)
 
 
 def _depth(neutral: Array, segments: NDArray[np.str_]) -> Array:
-    """(K,) how far each marker is in front of the mean of its segment's."""
+    """(K,) distance of each marker in front of the mean of its segment's."""
     depth = np.zeros(len(neutral))
     for segment in set(segments):
         own = segments == segment
@@ -192,7 +192,7 @@ def _depth(neutral: Array, segments: NDArray[np.str_]) -> Array:
 
 
 def _foot(points: Array, neutral: Array, own: BoolArray) -> Array:
-    """(3,) unit direction from heel to toe, NaN where the foot's markers do not show it."""
+    """(3,) unit direction from heel to toe; NaN for a foot with too few markers."""
     ahead = neutral[own, 0] - neutral[own, 0].mean() if own.any() else np.zeros(0)
     if np.linalg.norm(ahead) < LEAST_SPREAD_M[0]:
         return np.full(3, np.nan)
@@ -202,12 +202,12 @@ def _foot(points: Array, neutral: Array, own: BoolArray) -> Array:
 
 
 def _sizes(positions: Array, places: MarkerPlaces, segments: NDArray[np.str_]) -> tuple[float, float, float]:
-    """Quartiles of measured over reference distances between markers of the same segment, NaN where there are none."""
+    """Quartiles of measured over reference distances between markers of the same segment; NaN without such a pair."""
     first, second = np.triu_indices(len(segments), 1)
     reference = np.linalg.norm(places.neutral_m[first] - places.neutral_m[second], axis=1)
-    told = (segments[first] == segments[second]) & (reference >= LEAST_PAIR_M)
-    measured = np.linalg.norm(positions[:, first[told]] - positions[:, second[told]], axis=2)
-    ratios = (measured / reference[told])[~np.isnan(measured)]
+    pairs = (segments[first] == segments[second]) & (reference >= LEAST_PAIR_M)
+    measured = np.linalg.norm(positions[:, first[pairs]] - positions[:, second[pairs]], axis=2)
+    ratios = (measured / reference[pairs])[~np.isnan(measured)]
     if not ratios.size:
         return np.nan, np.nan, np.nan
     low, middle, high = np.percentile(ratios, [25, 50, 75])

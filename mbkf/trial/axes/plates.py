@@ -1,4 +1,4 @@
-"""What force plates tell about axes: which way their surfaces face, where they push a person, and where from."""
+"""Evidence of force plates on axes: the side their surfaces face, and direction and place of their forces."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from mbkf.io.turning import turned_plate
 from mbkf.trial.axes.evidence import MarkerPlaces
 
 PUSHING_N, LEAST_SAMPLES = 50.0, 20
-"""Force of a loaded plate, and the least number of samples with it, that tell where a person is pushed to."""
+"""Least force of a loaded plate, and least number of loaded samples, that count as evidence."""
 
 OUTLYING = 10.0
-"""A sample of more than so many times the usual force says no more than one of that force."""
+"""A sample counts at most as much as one of this many times the median force."""
 
 UPWARD_COSINE = np.cos(np.deg2rad(30.0))
-"""The ground pushes upwards on the whole, within this angle: friction averages out."""
+"""The summed force of the ground points upwards within this angle: friction averages out."""
 
 UNDER_FOOT_M = 0.35
-"""A centre of pressure further from every marker of a foot than this is not under it."""
+"""Largest distance from the nearest marker of a foot to a centre of pressure under it."""
 
 _SAMPLES = 200
 _UP = np.array([0.0, 0.0, 1.0])
 
 
 def contradiction(capture: Capture, turn: Array, places: MarkerPlaces) -> str:
-    """Why a capture's plates do not agree with its being turned, "" where they do, or tell nothing.
+    """Contradiction between a capture's plates and a correction of its axes, in words; "" for agreement or no evidence.
 
     Args:
         capture: The capture as it was read.
@@ -49,11 +49,9 @@ def contradiction(capture: Capture, turn: Array, places: MarkerPlaces) -> str:
 
 
 def pushed_away(plates: Sequence[PlateReadings]) -> str:
-    """Where plates push that do not push upwards, in words; "" where they do, or carry nobody."""
+    """Direction of plates' forces that do not point upwards, in words; "" for upward forces or too few of them."""
     pushes = [_pushes(plate) for plate in plates]
-    if sum(map(len, pushes)) < LEAST_SAMPLES:
-        return ""
-    if _signs_differ(pushes):
+    if sum(map(len, pushes)) < LEAST_SAMPLES or _signs_differ(pushes):
         return ""
     whole = sum((push.sum(axis=0) for push in pushes), np.zeros(3))
     if whole[2] > UPWARD_COSINE * np.linalg.norm(whole):
@@ -62,7 +60,7 @@ def pushed_away(plates: Sequence[PlateReadings]) -> str:
 
 
 def _pushes(plate: PlateReadings) -> Array:
-    """(n, 3) forces of a plate's loaded samples, N; none counts more than ten of their median, as a wrong one might."""
+    """(n, 3) forces of a plate's loaded samples, N, limited to ten times their median against wrong ones."""
     size = np.linalg.norm(plate.force_n, axis=1)
     loaded = np.isfinite(size) & (size > PUSHING_N)
     if not loaded.any():
@@ -72,7 +70,7 @@ def _pushes(plate: PlateReadings) -> Array:
 
 
 def _signs_differ(pushes: Sequence[Array]) -> bool:
-    """Whether some plates push upwards and the others pull: the vertical is right, and a sign wrong."""
+    """True if some plates push upwards and the others pull: the vertical is right, and a sign wrong."""
     wholes = [push.sum(axis=0) for push in pushes if len(push)]
     cosines = np.array([whole[2] / np.linalg.norm(whole) for whole in wholes if whole.any()])
     upright = np.abs(cosines) > UPWARD_COSINE
@@ -80,7 +78,7 @@ def _signs_differ(pushes: Sequence[Array]) -> bool:
 
 
 def _beside_feet(capture: Capture, plates: Sequence[PlateReadings], turn: Array, places: MarkerPlaces) -> str:
-    """That the centres of pressure are not under the feet, in words."""
+    """Message on centres of pressure that are not under the feet; "" otherwise."""
     on_feet = [segment in places.feet[0] | places.feet[1] for segment in places.segments]
     if not any(on_feet):
         return ""

@@ -13,8 +13,8 @@ from mbkf.model.protocol import load_protocol
 from mbkf.trial.axes.captures import (
     checked_for_protocol,
     checked_for_subject,
+    corrected_axes,
     find_axes_by_names,
-    told_axes,
     turned_like_subject,
 )
 from mbkf.trial.axes.decision import Verdict
@@ -100,8 +100,8 @@ def test_static_and_trial_are_checked_together():
     captures = [misread(STATIC), misread(TRIAL)]
     checked = checked_for_protocol(captures, PROTOCOL)
     np.testing.assert_allclose(checked[1].markers.positions_m, TRIAL.markers.positions_m)
-    assert [one["capture"] for one in told_axes(captures, checked)] == ["static.trc", "trial.trc"]
-    assert told_axes([STATIC], checked_for_protocol([STATIC], PROTOCOL)) == []
+    assert [one["capture"] for one in corrected_axes(captures, checked)] == ["static.trc", "trial.trc"]
+    assert corrected_axes([STATIC], checked_for_protocol([STATIC], PROTOCOL)) == []
 
 
 def test_names_alone_tell_the_axes():

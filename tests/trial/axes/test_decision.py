@@ -201,7 +201,7 @@ def test_bodies_of_no_persons_size_are_refused(factor, proposed):
     grown = replace(capture.markers, positions_m=factor * capture.markers.positions_m)
     refused = found(replace(capture, markers=grown))
     assert refused.verdict is Verdict.REFUSED
-    assert "which no person is" in refused.note
+    assert "outside 0.65 to 2.6 m" in refused.note
     assert "--unit" in refused.note
     if proposed:
         assert f"--unit {proposed}" in refused.note
