@@ -1,4 +1,27 @@
-"""`mbkf batch`: many trials, on this computer or a cluster."""
+"""Reconstruct many trials: a folder for each, tables over all.
+
+Scales every person once, reconstructs every trial and writes tables of all of them.
+
+Examples:
+  mbkf batch study --out results
+  mbkf batch trials.csv --out results --workers 8
+  mbkf batch trials.toml --out results --dask tcp://10.0.0.1:8786    (a cluster's scheduler; "local" for this computer)
+  mbkf batch study --out results --shard 3/16                        (one of 16 independent jobs)
+
+A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names the person. Standing trials
+are known by their names (static, calibration, t-pose, …); ground reactions lie beside their trial under its name with
+"grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and plates do not. A list names
+them instead:
+
+  subject,trial,static,forces,mass_kg                    [[subject]]
+  P01,P01/walk1.c3d,P01/static.c3d,,71.2                 name = "P01"
+  P01,P01/walk2.c3d,,,                                   static = "P01/static.c3d"
+                                                         trials = ["P01/walk1.c3d", "P01/walk2.c3d"]
+
+Results stand in DIR/SUBJECT[/SESSION]/TRIAL. DIR/summary.csv has a row for each trial, DIR/curves.csv all gait cycles
+at 0 to 100 %; both also as .parquet. A trial that is done and unchanged is skipped. A bad file fails alone, with its
+reason in the table.
+"""
 
 from __future__ import annotations
 
@@ -6,73 +29,38 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
+from mbkf.cli.options import add_lag_option, add_spreads_option, asked_spreads, count, lag_seconds
+
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_EPILOG = """\
-examples:
-  mbkf batch study --out results
-  mbkf batch trials.csv --out results --workers 8
-  mbkf batch trials.toml --out results --dask tcp://10.0.0.1:8786    (a cluster's scheduler; "local" for this computer)
-  mbkf batch study --out results --shard 3/16                        (one of 16 jobs that know nothing of each other)
-
-A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names
-the person. Standing trials are known by their names (static, calibration, t-pose, …), ground reactions lie beside their
-trial under its name with "grf" or "forces", and session.toml states mass_kg, height_m and protocol where captures and
-plates do not.
-A list names them instead:
-
-  subject,trial,static,forces,mass_kg                    [[subject]]
-  P01,P01/walk1.c3d,P01/static.c3d,,71.2                 name = "P01"
-  P01,P01/walk2.c3d,,,                                   static = "P01/static.c3d"
-                                                         trials = ["P01/walk1.c3d", "P01/walk2.c3d"]
-
-Results stand in DIR/SUBJECT[/SESSION]/TRIAL; DIR/summary.csv has a row per trial, DIR/curves.csv all gait cycles at 0
-to 100 %, both as .parquet, too. What is done and unchanged is not done again. A bad file costs only itself: its reason
-stands in the table.
-"""
-
 EXIT_FAILED = 1
-"""Some trial failed."""
+"""Exit code after a trial that failed."""
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.options import add_lag_option, add_spreads_option
-
-    parser = subparsers.add_parser(
-        "batch",
-        help="many trials: a folder per trial, tables over all",
-        description="Scale every person once, reconstruct every trial, and make tables of all of them.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("source", metavar="FOLDER|LIST", help="folder of captures, or a list in TOML or CSV")
     parser.add_argument(
-        "--workers", type=int, metavar="N", help="processes, one thread each (default: one per processor)"
+        "--workers", type=count, metavar="N", help="processes of one thread each (one for each processor)"
     )
-    parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers do it; or local")
+    parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers compute; or local")
     parser.add_argument(
         "--shard",
         metavar="I/N",
-        help="only every N-th trial, from the I-th on; without it the tables of all are made",
+        help="only every N-th trial, beginning with the I-th; a last run without it makes the tables of all",
     )
-    parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="by default dynamic")
+    parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="default: dynamic")
     parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
     later = parser.add_mutually_exclusive_group()
-    later.add_argument("--causal", action="store_true", help="use no later frame")
+    later.add_argument("--causal", action="store_true", help="use no later frames")
     add_lag_option(later)
     add_spreads_option(parser)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Runs the batch and prints what failed.
-
-    Raises:
-        MbkfError: The list is damaged, or there is nothing to do.
-    """
-    from mbkf.cli.options import asked_spreads, lag_seconds
+    """Runs the batch and prints the trials that failed."""
     from mbkf.cli.progress import stages
     from mbkf.study.batch.run import batch
     from mbkf.trial.preparation.presets import with_preset
@@ -96,27 +84,27 @@ def run(args: argparse.Namespace) -> int:
             settings=settings,
             progress=report,
         )
-    return _told(table, args.out)
+    return _print(table, args.out)
 
 
 def shard_of(text: str | None) -> tuple[int, int] | None:
     """(I, N) of a text ``I/N``.
 
     Raises:
-        InvalidInput: It is not one.
+        InvalidInput: The text has another form.
     """
     from mbkf.errors import InvalidInput
 
     if text is None:
         return None
-    number, _, count = text.partition("/")
-    if not (number.isascii() and number.isdecimal() and count.isascii() and count.isdecimal()):
-        raise InvalidInput(f"--shard is I/N, such as 3/16, not '{text}'")
-    return int(number), int(count)
+    number, _, total = text.partition("/")
+    if not (number.isascii() and number.isdecimal() and total.isascii() and total.isdecimal()):
+        raise InvalidInput(f"--shard '{text}': write I/N, such as 3/16")
+    return int(number), int(total)
 
 
-def _told(table: pa.Table, out: str) -> int:
-    """Prints how many trials were done, and why others were not."""
+def _print(table: pa.Table, out: str) -> int:
+    """Prints the counts of trials and the reason of each failure; returns the exit code."""
     statuses = table["status"].to_pylist()
     for row in table.select(["folder", "status", "reason"]).to_pylist():
         if row["status"] == "failed":

@@ -1,11 +1,20 @@
-"""`mbkf imu`: orientation, tuning, joint angles, motion (also live), virtual sensors and strides."""
+"""Inertial sensors: orientation, tuning, joint angles, motion (also live), virtual sensors, stride length.
+
+Examples:
+  mbkf imu orient thigh.csv --frame ENU --filter ekf --compare madgwick --out result
+  mbkf imu tune thigh.csv
+  mbkf imu synth truth.h5 --subject subject.toml --out imus.csv
+
+`mbkf imu COMMAND --help` explains a command and gives an example.
+"""
 
 from __future__ import annotations
 
 import argparse
-import importlib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
+
+from mbkf.cli.options import body_mass, positive, time_window
 
 if TYPE_CHECKING:
     from mbkf.conventions import Array
@@ -16,36 +25,9 @@ if TYPE_CHECKING:
 SUBCOMMANDS = ("orient", "tune", "synth", "angles", "motion", "live", "replay", "stride")
 """Each is the module ``mbkf.cli.imu_<name>``."""
 
-_EPILOG = """\
-examples:
-  mbkf imu orient thigh.csv --frame ENU --filter ekf --compare madgwick --out result
-  mbkf imu tune thigh.csv
-  mbkf imu synth truth.h5 --subject subject.toml --out imus.csv
-
-`mbkf imu COMMAND --help` explains a command and gives an example.
-"""
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the group to the command line."""
-    parser = subparsers.add_parser(
-        "imu",
-        help="inertial sensors: orientation, tuning, joint angles, motion (also live), virtual sensors, stride length",
-        description="Work with inertial sensors.",
-        epilog=_EPILOG,
-    )
-    group = parser.add_subparsers(dest="imu_command", metavar="COMMAND", required=True, title="commands")
-    for name in SUBCOMMANDS:
-        importlib.import_module(f"mbkf.cli.imu_{name}").add_parser(group)
-
-
-def run(args: argparse.Namespace) -> int:
-    """Runs the command of the group that was named."""
-    return int(importlib.import_module(f"mbkf.cli.imu_{args.imu_command}").run(args))
-
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
-    """Options of every command that reads sensors."""
+    """Adds the options of commands that read sensors."""
     parser.add_argument(
         "--units",
         metavar="acc=g,gyr=deg/s",
@@ -55,35 +37,48 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=float, metavar="HZ", help="sample rate of a file that does not state it"
     )
+    parser.add_argument(
+        "--sensor", metavar="NAME", action="append", default=[], help="only this sensor; may be repeated"
+    )
 
 
-def add_standing_options(parser: argparse.ArgumentParser) -> None:
-    """Options of commands that calibrate sensors on a person who stands."""
-    parser.add_argument(
-        "--standing", metavar="T0:T1|FILE", help="when the person stands, s, or a recording of it"
-    )
-    parser.add_argument(
-        "--posture", metavar="MOTION.h5", help="the posture while standing (default: the neutral one)"
-    )
+def add_together_option(parser: argparse.ArgumentParser) -> None:
+    """Adds the option of commands that read several files of one recording."""
     parser.add_argument(
         "--started-together",
         action="store_true",
-        help="several files: they started at the same moment, whatever their clocks tell",
+        help="several files: ignore their clocks, they started at the same moment",
     )
 
 
+def add_posture_option(parser: argparse.ArgumentParser) -> None:
+    """Adds the posture of a person who stands for the calibration."""
+    parser.add_argument("--posture", metavar="MOTION.h5", help="the standing posture (default: neutral)")
+
+
+def add_standing_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options of commands that calibrate sensors on a person who stands."""
+    parser.add_argument(
+        "--standing", metavar="T0:T1|FILE", help="time in which the person stands, s, or a recording of it"
+    )
+    add_posture_option(parser)
+    add_together_option(parser)
+
+
 def add_person_options(parser: argparse.ArgumentParser) -> None:
-    """Options that tell who wears the sensors."""
+    """Adds the options that name the wearer of the sensors."""
     parser.add_argument("--subject", metavar="SUBJECT.toml", help="the scaled person")
-    parser.add_argument("--mass", metavar="KG", type=float, help="body mass of a person who is not scaled")
-    parser.add_argument("--height", metavar="M", type=float, help="body height of a person who is not scaled")
+    parser.add_argument(
+        "--mass", metavar="KG", type=body_mass, help="body mass of a person who is not scaled"
+    )
+    parser.add_argument("--height", metavar="M", type=positive, help="height of a person who is not scaled")
 
 
-def person_told(args: argparse.Namespace) -> Subject:
-    """The person of a file, or of a mass and a height.
+def person_of(args: argparse.Namespace) -> Subject:
+    """The person of a subject file, or of a mass and a height.
 
     Raises:
-        MbkfError: The file cannot be read, or nobody is told.
+        InvalidInput: The options name no person, or two.
     """
     from mbkf.errors import InvalidInput
     from mbkf.io.subject import read_subject
@@ -92,52 +87,47 @@ def person_told(args: argparse.Namespace) -> Subject:
     if args.subject is not None:
         if args.mass is not None or args.height is not None:
             raise InvalidInput(
-                "--mass and --height are for a person who is not scaled; leave them out beside --subject"
+                "--mass and --height are for a person who is not scaled, and --subject names one; give one of both"
             )
         return read_subject(args.subject)
     if args.mass is None or args.height is None:
-        raise InvalidInput("who wears the sensors? give --subject SUBJECT.toml, or --mass KG and --height M")
+        raise InvalidInput(
+            "name the wearer of the sensors: --subject SUBJECT.toml, or --mass KG and --height M"
+        )
     return person_of_stature(args.mass, args.height)
 
 
-def standing_told(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadings, ...] | None:
-    """A time window, a recording, or nothing."""
+def standing_of(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadings, ...] | None:
+    """The time window of ``--standing``, or the recording that it names; None where not given."""
     from pathlib import Path
-
-    from mbkf.errors import InvalidInput
 
     if args.standing is None:
         return None
     if Path(args.standing).exists():
         return read_session([args.standing], args)
-    first, _, last = args.standing.partition(":")
-    try:
-        window = float(first), float(last)
-    except ValueError:
-        window = (1.0, 0.0)
-    if not window[0] < window[1]:
-        raise InvalidInput(f"--standing '{args.standing}': write START:END in s, or name a recording")
-    return window
+    return time_window("--standing", args.standing)
 
 
-def posture_told(path: str, model: HumanModel) -> Array:
-    """(nq,) configuration in the middle of a standing motion."""
+def posture_of(args: argparse.Namespace, model: HumanModel) -> Array | None:
+    """(nq,) configuration in the middle of the motion that ``--posture`` names; None where not given.
+
+    Raises:
+        InvalidInput: The motion belongs to another body.
+    """
     from mbkf.errors import InvalidInput
     from mbkf.trial.inertial.synth import read_motion
 
-    motion = read_motion(path)
+    if args.posture is None:
+        return None
+    motion = read_motion(args.posture)
     if motion.model.nq != model.nq:
-        raise InvalidInput(f"{path}: another body; reconstruct the posture with this subject")
+        raise InvalidInput(f"{args.posture} holds another body; reconstruct the posture with this subject")
     middle: Array = motion.q[len(motion.q) // 2]
     return middle
 
 
 def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, ...]:
-    """The sensors of all files named on the command line, each on its own clock.
-
-    Raises:
-        MbkfError: A file or a unit cannot be used.
-    """
+    """The sensors of all files, each on its own clock; equal names get their file's name in front."""
     from dataclasses import replace
     from pathlib import Path
 
@@ -151,16 +141,27 @@ def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, .
 
 
 def read_session(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, ...]:
-    """The sensors of all files named on the command line, on one clock.
-
-    Raises:
-        MbkfError: A file or a unit cannot be used, or the sensors have no time in common.
-    """
+    """The sensors of all files on one clock."""
     from mbkf.io.imu.files import read_imu_session
 
     return read_imu_session(
         paths, units=parse_units(args.units), rate_hz=args.rate, started_together=args.started_together
     )
+
+
+def chosen(readings: Sequence[ImuReadings], names: Sequence[str]) -> list[ImuReadings]:
+    """The sensors of the given names; all without names.
+
+    Raises:
+        UnknownName: A sensor is not there.
+    """
+    from mbkf.errors import UnknownName
+
+    known = [one.name for one in readings]
+    for name in names:
+        if name not in known:
+            raise UnknownName("sensor", name, known, "--sensor")
+    return [one for one in readings if not names or one.name in names]
 
 
 def parse_units(text: str) -> dict[str, str]:

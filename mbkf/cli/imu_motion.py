@@ -1,4 +1,18 @@
-"""`mbkf imu motion`: a person's motion, reactions and torques from inertial sensors alone."""
+"""Motion, reactions and torques from sensors on pelvis, chest and legs, without magnetometers.
+
+Sensors are named after their segments (pelvis, torso, right_thigh, femur_r, left_foot …): eight of them, seven without
+the chest, or three on a leg for its knee and ankle. No magnetometer, camera or force plate is needed. The person
+stands still for a second, in the trial or in a recording of its own; boxes are strapped on flat, z away from the body,
+x up the limb (on the feet forward). The floor is level. Reactions of the ground need sensors on both feet.
+
+Examples:
+  mbkf imu motion walk.csv --mass 72 --height 1.78 --out result
+  mbkf imu motion walk.csv --standing stand.csv --subject subject.toml --out result
+  mbkf imu motion walk.csv --standing 0:3 --posture static/motion.h5 --subject subject.toml --out result
+  mbkf imu motion leg.csv --sensor right_thigh --sensor right_shank --sensor right_foot --subject subject.toml --out leg
+
+Writes the folder that 'mbkf reconstruct' writes (summary.json, motion.h5, OpenSim's files), and mounts.toml.
+"""
 
 from __future__ import annotations
 
@@ -6,57 +20,39 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbkf.cli.imu import (
+    add_person_options,
+    add_reading_options,
+    add_standing_options,
+    chosen,
+    person_of,
+    posture_of,
+    read_session,
+    standing_of,
+)
+
 if TYPE_CHECKING:
-    from mbkf.trial.inertial.motion import InertialMotion
+    from mbkf.io.results import Reconstruction
 
-_EPILOG = """\
-examples:
-  mbkf imu motion walk.csv --mass 72 --height 1.78 --out result
-  mbkf imu motion walk.csv --standing stand.csv --subject subject.toml --out result
-  mbkf imu motion walk.csv --standing 0:3 --posture static/motion.h5 --subject subject.toml --out result
-  mbkf imu motion leg.csv --sensor right_thigh --sensor right_shank --sensor right_foot --subject subject.toml --out leg
-
-Sensors are named after their segments (pelvis, torso, right_thigh, femur_r, left_foot ...): eight of them, seven
-without the chest, or three on a leg, which tell its knee and ankle. No magnetometer, camera or force plate is needed.
-The person stands still for a second, in the trial or in a recording of its own; boxes are strapped on flat, z away
-from the body, x up the limb (on the feet forward).
-The floor is level. Reactions of the ground need sensors on both feet.
-
-Writes the folder that `mbkf reconstruct` writes (summary.json, motion.h5, OpenSim's files) and mounts.toml.
-"""
+PRINTED = tuple(
+    f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in ("r", "l")
+)
+"""Angles whose ranges are printed."""
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.imu import add_person_options, add_reading_options, add_standing_options
-
-    parser = subparsers.add_parser(
-        "motion",
-        help="sensors on pelvis, chest and legs to motion, reactions and torques, without magnetometers",
-        description="Motion, path over the floor, ground reactions and joint torques from inertial sensors alone.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("files", metavar="FILE", nargs="+", help="inertial readings of the trial")
     add_reading_options(parser)
     add_standing_options(parser)
     add_person_options(parser)
-    parser.add_argument("--sensor", metavar="NAME", action="append", default=[], help="only these sensors")
-    parser.add_argument(
-        "--causal", action="store_true", help="no later frame corrects an earlier one, as live"
-    )
+    parser.add_argument("--causal", action="store_true", help="use no later frames, as live")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Finds the motion, writes the folder and prints the ranges of motion.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
-    from mbkf.cli.imu import person_told, posture_told, read_session, standing_told
+    """Finds the motion, writes the folder and prints the ranges of motion."""
     from mbkf.cli.progress import stages
-    from mbkf.errors import UnknownName
     from mbkf.io.atomic import check_folder
     from mbkf.io.imu.mount import write_mounts
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
@@ -64,17 +60,14 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
     from mbkf.trial.results.summary import summarise
 
-    folder, person = check_folder(args.out, RESULT_FILES), person_told(args)
-    sensors = read_session(args.files, args)
-    for name in args.sensor:
-        if name not in [one.name for one in sensors]:
-            raise UnknownName("sensor", name, [one.name for one in sensors])
-    posture = None if args.posture is None else posture_told(args.posture, HumanModel.of(person))
+    folder, person = check_folder(args.out, RESULT_FILES), person_of(args)
+    sensors = chosen(read_session(args.files, args), args.sensor)
+    posture = posture_of(args, HumanModel.of(person))
     with stages() as report:
         found = inertial_motion(
-            [one for one in sensors if not args.sensor or one.name in args.sensor],
+            sensors,
             person,
-            standing=standing_told(args),
+            standing=standing_of(args),
             posture=posture,
             trial=Path(args.files[0]).stem,
             settings=InertialMotionSettings(smooth=not args.causal),
@@ -82,17 +75,16 @@ def run(args: argparse.Namespace) -> int:
         )
     write_reconstruction(found.result, summarise(found.result), folder)
     write_mounts(found.mounts, Path(folder) / "mounts.toml")
-    _print(found)
+    _print(found.result)
     print(folder)
     return 0
 
 
-def _print(found: InertialMotion) -> None:
-    """Ranges of the angles that sensors tell of, the path, and what is to be told."""
+def _print(result: Reconstruction) -> None:
+    """Prints ranges of the measured angles, the length of the path, and warnings."""
     import numpy as np
 
-    result = found.result
-    for name in TOLD:
+    for name in PRINTED:
         if name in result.coordinate_names:
             k = result.coordinate_names.index(name)
             angle, sd = np.degrees(result.angles[:, k]), np.degrees(result.angles_sd[:, k])
@@ -101,9 +93,3 @@ def _print(found: InertialMotion) -> None:
     print(f"path of the pelvis over the floor: {path:.1f} m in {result.frames / result.rate_hz:.1f} s")
     for warning in result.warnings:
         print(f"note: {warning}")
-
-
-TOLD = tuple(
-    f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in ("r", "l")
-)
-"""Angles whose ranges are printed."""

@@ -1,4 +1,16 @@
-"""`mbkf imu orient`: orientation of inertial sensors."""
+"""Orientation from accelerometer, gyroscope and magnetometer.
+
+Orientation of every sensor by Madgwick's filter or an error-state Kalman filter. Files: CSV tables with units in their
+column names, Xsens text exports (or a folder of them), MATLAB files of the BROAD and qmt sets.
+
+Examples:
+  mbkf imu orient thigh.csv --frame ENU --out result
+  mbkf imu orient left_foot.csv right_foot.csv --units acc=g,gyr=deg/s --rate 204.8 --frame NWU --out result
+  mbkf imu orient trial.mat --frame ENU --filter madgwick --beta 0.1 --compare ekf --out result
+
+Writes orientation.json, and for each sensor NAME.csv (quaternion sensor -> world as x, y, z, w; unwrapped roll, pitch,
+yaw) and with --compare NAME_compare.png (needs matplotlib, the extra 'figures').
+"""
 
 from __future__ import annotations
 
@@ -6,69 +18,35 @@ import argparse
 import json
 from typing import Any
 
-_EPILOG = """\
-examples:
-  mbkf imu orient thigh.csv --frame ENU --out result
-  mbkf imu orient left_foot.csv right_foot.csv --units acc=g,gyr=deg/s --rate 204.8 --frame NWU --out result
-  mbkf imu orient trial.mat --frame ENU --filter madgwick --beta 0.1 --compare ekf --out result
-
-Files: CSV tables with units in their column names, Xsens text exports (or a folder of them), MATLAB files of the BROAD
-and qmt sets. Writes per sensor NAME.csv (quaternion sensor -> world as x, y, z, w; unwrapped roll, pitch, yaw), and
-with --compare NAME_compare.png; and orientation.json.
-"""
+from mbkf.cli.imu import add_reading_options, read
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.imu import add_reading_options
-
-    parser = subparsers.add_parser(
-        "orient",
-        help="accelerometer, gyroscope and magnetometer to orientation",
-        description="Orientation of every sensor by Madgwick's filter or an error-state Kalman filter.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    filters = ("madgwick", "ekf", "smooth")
     parser.add_argument("files", metavar="FILE", nargs="+", help="inertial readings")
     add_reading_options(parser)
     parser.add_argument(
         "--frame", required=True, choices=("ENU", "NED", "NWU"), help="world frame of the result"
     )
     parser.add_argument(
-        "--filter",
-        default="ekf",
-        choices=("madgwick", "ekf", "smooth"),
-        help="smooth is the offline version of ekf",
+        "--filter", default="ekf", choices=filters, help="smooth: ekf with later readings (ekf)"
     )
-    parser.add_argument(
-        "--compare", choices=("madgwick", "ekf", "smooth"), help="a second filter to draw beside it"
-    )
-    parser.add_argument(
-        "--sensor", metavar="NAME", action="append", default=[], help="only this sensor; may be repeated"
-    )
-    parser.add_argument(
-        "--beta", type=float, default=0.1, help="Madgwick's gain, rad/s (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--zeta", type=float, default=0.0, help="Madgwick's gain of the gyroscope's bias (default: 0)"
-    )
-    parser.add_argument("--no-mag", action="store_true", help="leave magnetometers out")
+    parser.add_argument("--compare", choices=filters, help="a second filter, drawn beside it")
+    parser.add_argument("--beta", type=float, default=0.1, help="Madgwick's gain, rad/s (%(default)s)")
+    parser.add_argument("--zeta", type=float, default=0.0, help="Madgwick's gain of the gyroscope's bias (0)")
+    parser.add_argument("--no-mag", action="store_true", help="ignore magnetometers")
     parser.add_argument(
         "--rest-bias",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="take a sensor that lies still not to turn at all (ekf, smooth; default: yes)",
+        help="read the gyroscope's bias while a sensor lies still (ekf, smooth; default: yes)",
     )
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Filters the sensors, writes the folder and prints the key numbers.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
-    from mbkf.cli.imu import read
+    """Filters the sensors, writes the folder and prints the key numbers."""
     from mbkf.cli.progress import stages
     from mbkf.imu.madgwick import MadgwickSettings
     from mbkf.imu.orientation import OrientSettings
@@ -86,8 +64,7 @@ def run(args: argparse.Namespace) -> int:
         MadgwickSettings(args.beta, args.zeta),
         OrientationSettings(rest_bias=args.rest_bias),
     )
-    folder = check_folder(args.out)
-    sensors = read(args.files, args)
+    folder, sensors = check_folder(args.out), read(args.files, args)
     with stages() as report:
         result = orient(
             sensors,
@@ -117,12 +94,10 @@ def run(args: argparse.Namespace) -> int:
 def _print(summary: dict[str, Any]) -> None:
     for one in summary["sensors"]:
         line = f"{one['name']}: {one['samples']} samples, {summary['method']} in {summary['frame']}"
-        if one["error_deg"] is not None:
-            e = one["error_deg"]
-            line += f"; error {e['total']:.2f} deg (inclination {e['inclination']:.2f}, heading {e['heading']:.2f})"
-        if one["error_moving_deg"] is not None:
-            e = one["error_moving_deg"]
-            line += f", in movement {e['total']:.2f} ({e['inclination']:.2f}, {e['heading']:.2f})"
+        for key, text in (("error_deg", "error"), ("error_moving_deg", "error in movement")):
+            if (e := one[key]) is not None:
+                parts = f"inclination {e['inclination']:.2f}, heading {e['heading']:.2f}"
+                line += f"; {text} {e['total']:.2f} deg ({parts})"
         if "difference_rms_deg" in one:
             line += f"; {summary['compared_with']} differs by {one['difference_rms_deg']['total']:.2f} deg"
         print(line)

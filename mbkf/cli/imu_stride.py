@@ -1,12 +1,35 @@
-"""`mbkf imu stride`: strides and paths of feet from sensors worn on them."""
+"""Stride lengths and foot paths from sensors on the feet.
+
+Measures every stride of one or two feet (length, duration, speed, height) and the path of the foot, from the
+accelerometer and gyroscope of a sensor worn on it.
+
+Methods:
+  smoother     Kalman filter with zero-velocity updates and backward smoother (default)
+  filter       the same without the smoother, from earlier readings only
+  key-points   stable windows, gravity carried between them, two integrations; its windows of 0.2 s hardly fit into
+               the rests of ordinary walking, so it is for slow or single steps
+
+A foot must rest on the ground for a moment in every stride, and should stand still for a second at the start. A capture
+with a sensor on each foot gives both feet in one frame, with step times and cadence.
+
+Examples:
+  mbkf imu stride feet.csv --out strides
+  mbkf imu stride left.csv right.csv --units acc=g,gyr=deg/s --rate 100 --out strides
+  mbkf imu stride body.csv --sensor left_foot --sensor right_foot --level --out strides
+  mbkf imu stride step.csv --method key-points --weights 0.2,0.4,0.4 --out step
+
+Writes strides.csv, trajectory.csv, summary.json and feet.png, a picture with the rests marked (needs matplotlib, the
+extra 'figures').
+"""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from mbkf.cli.imu import add_reading_options, chosen, read
 
 if TYPE_CHECKING:
     from mbkf.io.imu.readings import ImuReadings
@@ -15,48 +38,13 @@ if TYPE_CHECKING:
 PICTURE_FILE = "feet.png"
 _MOST_FEET = 2
 
-_EPILOG = """\
-methods:
-  smoother     Kalman filter with zero-velocity updates and backward smoother (default)
-  filter       the same without the smoother, from earlier readings only
-  key-points   stable windows, gravity carried between them, two integrations; its windows of 0.2 s hardly fit into
-               the rests of ordinary walking, so it is for slow or single steps
-A foot must rest on the ground for a moment in every stride, and should stand still for a second at the start. A
-capture with a sensor on each foot gives both feet in one frame, with step times and cadence.
 
-examples:
-  mbkf imu stride feet.csv --out strides
-  mbkf imu stride left.csv right.csv --units acc=g,gyr=deg/s --rate 100 --out strides
-  mbkf imu stride body.csv --sensor left_foot --sensor right_foot --level --out strides
-  mbkf imu stride step.csv --method key-points --weights 0.2,0.4,0.4 --out step
-
-writes to DIR: strides.csv, trajectory.csv, summary.json and feet.png, a picture with the rests marked
-(needs matplotlib, the extra "figures").
-"""
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Adds the command to those of `mbkf imu`."""
-    from mbkf.cli.imu import add_reading_options
-
-    parser = subparsers.add_parser(
-        "stride",
-        help="stride lengths and foot paths from sensors on the feet",
-        description="Measure every stride of one or two feet (length, duration, speed, height) and the path of the "
-        "foot, from the accelerometer and gyroscope of a sensor worn on it.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("files", metavar="FILE", nargs="+", help="readings of one or several sensors")
     add_reading_options(parser)
     parser.add_argument(
-        "--sensor",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="a foot's sensor, where the files hold others, too; may be repeated",
-    )
-    parser.add_argument(
-        "--method", choices=("smoother", "filter", "key-points"), default="smoother", help="see below"
+        "--method", choices=("smoother", "filter", "key-points"), default="smoother", help="see above"
     )
     parser.add_argument(
         "--level",
@@ -73,23 +61,17 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--window", type=int, metavar="N", help="key points: samples per window at 50 Hz (10)"
     )
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Measures the strides, writes the folder and prints a table.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
+    """Measures the strides, writes the folder and prints a table."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.trial.inertial.stride import measure_strides
     from mbkf.trial.inertial.stride_folder import write_strides
 
     check_folder(args.out)
-    settings = _settings(args)
-    readings = _feet(args)
+    settings, readings = _settings(args), _feet(args)
     with stages() as report:
         measured = measure_strides(readings, settings, progress=report)
     folder = write_strides(measured, args.out)
@@ -119,13 +101,12 @@ def _settings(args: argparse.Namespace) -> StrideSettings:
     own = {name: getattr(args, name) for name in ("threshold", "window") if getattr(args, name) is not None}
     if args.weights is not None:
         try:
-            own["weights"] = tuple(float(word) for word in args.weights.split(","))
+            spread, change, rotation = (float(word) for word in args.weights.split(","))
         except ValueError as error:
             raise InvalidInput(
                 f"--weights {args.weights}: give three numbers, as in 0.1,0.45,0.45"
             ) from error
-        if len(own["weights"]) != 3:
-            raise InvalidInput(f"--weights {args.weights}: give three numbers, as in 0.1,0.45,0.45")
+        own["weights"] = spread, change, rotation
     if own and args.method != "key-points":
         raise InvalidInput(f"--{next(iter(own))} belongs to --method key-points")
     if args.level and args.method == "key-points":
@@ -135,53 +116,45 @@ def _settings(args: argparse.Namespace) -> StrideSettings:
 
 
 def _feet(args: argparse.Namespace) -> list[ImuReadings]:
-    """The readings of one or two sensors, by name where there are more."""
-    from mbkf.cli.imu import read
-    from mbkf.errors import InvalidInput, UnknownName
+    """The readings of one or two sensors, in the order of ``--sensor``.
 
-    found = list(read(args.files, args))
-    names = [one.name for one in found]
-    for name in args.sensor:
-        if name not in names:
-            raise UnknownName("sensor", name, names, "--sensor")
-    if args.sensor:
-        found = [found[names.index(name)] for name in dict.fromkeys(args.sensor)]
+    Raises:
+        InvalidInput: The files hold more, and ``--sensor`` does not choose.
+    """
+    from mbkf.errors import InvalidInput
+
+    found = chosen(read(args.files, args), args.sensor)
     if not 1 <= len(found) <= _MOST_FEET:
         raise InvalidInput(
             f"{len(found)} sensors: {', '.join(one.name for one in found) or 'none'}; name those of one or two feet "
             "with --sensor"
         )
-    return found
+    return sorted(found, key=lambda one: args.sensor.index(one.name)) if args.sensor else found
 
 
 def _print(measured: StrideMeasurement, out: str) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
+    from mbkf.cli.tables import table, terminal
     from mbkf.trial.inertial.stride import STRAIGHT_DEG, stride_summary
 
     summary: dict[str, Any] = stride_summary(measured)
-    table = Table(title=f"{out}: {summary['method_meaning']}", title_justify="left")
-    headings: Sequence[str] = ("foot", "strides", "length m", "duration s", "speed m/s", "walked m")
-    for heading in headings:
-        table.add_column(heading, justify="left" if heading == "foot" else "right", no_wrap=heading != "foot")
+    title = f"{out}: {summary['method_meaning']}"
+    shown = table(title, "foot", "strides", "length m", "duration s", "speed m/s", "walked m")
     for name, numbers in summary["feet"].items():
         spread = [
             _spread(numbers[f"{key}_mean"], numbers[f"{key}_sd"])
             for key in ("length_m", "duration_s", "speed_m_s")
         ]
-        table.add_row(name, str(numbers["strides"]), *spread, f"{numbers['distance_m']:.2f}")
-    console = Console(highlight=False)
-    console.print(table)
-    console.print(f"mean ± spread over strides that turn by less than {STRAIGHT_DEG:g}°")
+        shown.add_row(name, str(numbers["strides"]), *spread, f"{numbers['distance_m']:.2f}")
+    terminal().print(shown)
+    print(f"mean ± spread over strides that turn by less than {STRAIGHT_DEG:g}°")
     both = summary.get("both_feet")
     if both and both["step_time_s_median"]:
-        console.print(
+        print(
             f"both feet: {both['steps']} steps, {both['cadence_steps_per_min']:.0f} per minute, "
             f"step time {both['step_time_s_median']:.2f} s"
         )
     for warning in summary["warnings"]:
-        console.print(f"[yellow]warning:[/] {warning}")
+        print(f"warning: {warning}")
 
 
 def _spread(mean: float | None, sd: float | None) -> str:

@@ -1,29 +1,38 @@
-"""`mbkf imu synth`: what inertial sensors on a moving body would have read."""
+"""Readings of virtual sensors on a reconstructed or synthetic motion.
 
-from __future__ import annotations
+Computes the readings from the motion's own velocities and accelerations.
 
-import argparse
-from pathlib import Path
-
-_EPILOG = """\
-examples:
+Examples:
   mbkf imu synth result/motion.h5 --out imus.csv
   mbkf imu synth walk7/truth.h5 --segments right_thigh,right_foot --rate 60 --seed 3 --out imus.csv
   mbkf imu synth walk7/truth.h5 --mounts mounts.toml --perfect --out imus.csv
 
 Writes angular velocity, specific force and magnetic field of every sensor with the true orientation (NWU, x of the
-motion's world as north), and beside it FILE.toml with where the sensors sit.
+motion's world as north), and FILE.toml with the sensors' places.
 """
 
+from __future__ import annotations
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    parser = subparsers.add_parser(
-        "synth",
-        help="virtual sensors on a reconstructed or synthetic motion",
-        description="Readings of virtual inertial sensors from a motion's own velocities and accelerations.",
-        epilog=_EPILOG,
-    )
+import argparse
+import math
+from pathlib import Path
+
+from mbkf.cli.options import comma_separated, natural
+
+DEGREES, SI = math.pi / 180.0, 1.0
+ERRORS = {
+    "gyro-noise": ("gyro_noise", DEGREES, "deg/s/sqrt(Hz)"),
+    "gyro-bias": ("gyro_bias_sd_rad_s", DEGREES, "deg/s"),
+    "gyro-drift": ("gyro_drift", DEGREES, "deg/s/sqrt(s)"),
+    "acc-noise": ("accelerometer_noise", SI, "m/s2/sqrt(Hz)"),
+    "acc-bias": ("accelerometer_bias_sd_mps2", SI, "m/s2"),
+    "mag-noise": ("magnetometer_noise_ut", SI, "uT"),
+}
+"""Options of the sensors' errors: name in :class:`ImuErrors`, factor to its unit, unit on the command line."""
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument(
         "motion", metavar="MOTION.h5", help="motion.h5 of 'reconstruct' or truth.h5 of 'synth'"
     )
@@ -35,23 +44,20 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--mounts", metavar="FILE.toml", help="sensors placed anywhere, instead of --segments"
     )
     parser.add_argument("--rate", type=float, metavar="HZ", help="sample rate (default: the motion's)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="other errors and placement (0)")
+    parser.add_argument("--seed", type=natural, default=0, metavar="N", help="of errors and placement (0)")
     parser.add_argument("--perfect", action="store_true", help="sensors without errors")
-    parser.add_argument("--neat", action="store_true", help="sensors put on exactly at their usual places")
-    for name, unit in (("gyro-noise", "deg/s/sqrt(Hz)"), ("gyro-bias", "deg/s"), ("gyro-drift", "deg/s/sqrt(s)"),
-                       ("acc-noise", "m/s2/sqrt(Hz)"), ("acc-bias", "m/s2"), ("mag-noise", "uT")):  # fmt: skip
+    parser.add_argument("--neat", action="store_true", help="sensors exactly at their usual places")
+    for name, (_, _, unit) in ERRORS.items():
         parser.add_argument(f"--{name}", type=float, metavar="SD", help=f"standard deviation, {unit}")
     parser.add_argument("--out", required=True, metavar="FILE.csv", help="file to write")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Makes the readings and writes them.
 
     Raises:
-        MbkfError: An input is unusable.
+        InvalidInput: --out names no CSV file.
     """
-    import math
     from dataclasses import replace
 
     from mbkf.errors import InvalidInput
@@ -65,23 +71,15 @@ def run(args: argparse.Namespace) -> int:
     out = Path(args.out)
     if out.suffix.lower() != ".csv":
         raise InvalidInput(f"--out {out}: name a .csv file")
-    if args.seed < 0:
-        raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")
     check_folder(out.parent)
-    degree = math.pi / 180.0
-    given = {
-        "gyro_noise": (args.gyro_noise, degree), "gyro_bias_sd_rad_s": (args.gyro_bias, degree),
-        "gyro_drift": (args.gyro_drift, degree), "accelerometer_noise": (args.acc_noise, 1.0),
-        "accelerometer_bias_sd_mps2": (args.acc_bias, 1.0), "magnetometer_noise_ut": (args.mag_noise, 1.0),
-    }  # fmt: skip
+    given = {name: getattr(args, name.replace("-", "_")) for name in ERRORS}
     errors = replace(
         ImuErrors.none() if args.perfect else ImuErrors(),
-        **{name: factor * value for name, (value, factor) in given.items() if value is not None},
+        **{ERRORS[name][0]: ERRORS[name][1] * sd for name, sd in given.items() if sd is not None},
     )
-    motion = read_motion(args.motion, args.subject)
     mounts, readings = synthesise_imus(
-        motion,
-        segments=EIGHT if args.segments is None else [name.strip() for name in args.segments.split(",")],
+        read_motion(args.motion, args.subject),
+        segments=EIGHT if args.segments is None else comma_separated(args.segments),
         mounts=() if args.mounts is None else read_mounts(args.mounts),
         errors=errors,
         rate_hz=args.rate,

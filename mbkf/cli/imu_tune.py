@@ -1,89 +1,74 @@
-"""`mbkf imu tune`: gains of Madgwick's filter from a still sensor or by search against a reference."""
+"""Gains beta and zeta of Madgwick's filter.
+
+A still sensor shows the gyroscope's noise and drift: beta = sqrt(3/4) noise, zeta = sqrt(3/4) drift. Those gains only
+suit a sensor that hardly moves. --search finds the gains that follow a reference best: the orientation in the file, or
+the offline Kalman filter (--against smooth).
+
+Examples:
+  mbkf imu tune resting.csv
+  mbkf imu tune trial.mat --static 0:30
+  mbkf imu tune trial.mat --search --against file --frame ENU --out gains.json
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
 import math
+from pathlib import Path
 from typing import Any
 
-_EPILOG = """\
-examples:
-  mbkf imu tune resting.csv
-  mbkf imu tune trial.mat --static 0:30
-  mbkf imu tune trial.mat --search --against file --frame ENU --out gains.json
-
-A still sensor shows the gyroscope's noise and drift: beta = sqrt(3/4) noise, zeta = sqrt(3/4) drift. Those gains only
-suit a sensor that hardly moves; --search finds the gains that follow a reference best: the orientation in the file, or
-the offline Kalman filter (--against smooth).
-"""
+from mbkf.cli.imu import add_reading_options, read
+from mbkf.cli.options import time_window
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.imu import add_reading_options
-
-    parser = subparsers.add_parser(
-        "tune",
-        help="gains beta and zeta of Madgwick's filter",
-        description="Gains of Madgwick's filter from a still stretch, or by search against a reference.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("file", metavar="FILE", help="inertial readings")
     add_reading_options(parser)
-    parser.add_argument("--sensor", metavar="NAME", action="append", default=[], help="only this sensor")
     parser.add_argument("--static", metavar="T0:T1", help="the still stretch in s (default: the longest one)")
     parser.add_argument("--search", action="store_true", help="search the gains that follow a reference best")
+    parser.add_argument("--against", choices=("file", "smooth"), default="file", help="the reference (file)")
     parser.add_argument(
-        "--against", choices=("file", "smooth"), default="file", help="the reference (default: file)"
+        "--frame", default="ENU", choices=("ENU", "NED", "NWU"), help="world of the comparison (ENU)"
     )
-    parser.add_argument(
-        "--frame", default="ENU", choices=("ENU", "NED", "NWU"), help="world of the comparison"
-    )
-    parser.add_argument("--no-mag", action="store_true", help="leave the magnetometer out")
+    parser.add_argument("--no-mag", action="store_true", help="ignore the magnetometer")
     parser.add_argument("--out", metavar="FILE.json", help="file for the numbers")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Finds the gains, prints and writes them.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
-    from mbkf.cli.imu import read
+    """Finds the gains, prints and writes them."""
     from mbkf.io.atomic import check_folder, replacing
     from mbkf.trial.inertial.orient import prepared
 
     if args.out is not None:
-        from pathlib import Path
-
         check_folder(Path(args.out).parent)
     sensors, warnings = prepared(read([args.file], args), args.sensor)
-    rows = [_searched(one, args) if args.search else _static(one, args.static) for one in sensors]
-    for row in rows:
-        print(row.pop("text"))
+    rows = []
+    for one in sensors:
+        row, text = _searched(one, args) if args.search else _static(one, args.static)
+        rows.append(row)
+        print(f"{one.name}: {text}")
     for warning in warnings:
         print(f"note: {warning}")
     if args.out is not None:
+        found = {"sensors": rows, "warnings": list(warnings)}
         with replacing(args.out) as partial:
-            partial.write_text(
-                json.dumps({"sensors": rows, "warnings": list(warnings)}, indent=2) + "\n", "utf-8"
-            )
+            partial.write_text(json.dumps(found, indent=2) + "\n", "utf-8")
     return 0
 
 
-def _static(one: Any, window: str | None) -> dict[str, Any]:
+def _static(one: Any, window: str | None) -> tuple[dict[str, Any], str]:
     from mbkf.imu.tuning import static_gains, still_stretch
 
     first, last = still_stretch(one) if window is None else _stretch(one, window)
     found = static_gains(one, first, last)
     text = (
-        f"{one.name}: still from {found.from_s:.2f} to {found.to_s:.2f} s; gyroscope noise "
-        f"{found.gyro_noise_rad_s:.2e} rad/s, drift {found.gyro_drift_rad_s2:.1e} rad/s2: beta {found.beta:.4g}, "
-        f"zeta {found.zeta:.3g} (for a sensor that hardly moves; --search finds those of a moving one)"
+        f"still from {found.from_s:.2f} to {found.to_s:.2f} s; gyroscope noise {found.gyro_noise_rad_s:.2e} rad/s, "
+        f"drift {found.gyro_drift_rad_s2:.1e} rad/s2: beta {found.beta:.4g}, zeta {found.zeta:.3g} (for a sensor "
+        "that hardly moves; --search finds those of a moving one)"
     )
-    return {
+    row = {
         "name": one.name,
         "procedure": "static",
         "beta": found.beta,
@@ -93,31 +78,30 @@ def _static(one: Any, window: str | None) -> dict[str, Any]:
         "gyro_bias_rad_s": found.gyro_bias_rad_s.tolist(),
         "from_s": found.from_s,
         "to_s": found.to_s,
-        "text": text,
     }
+    return row, text
 
 
 def _stretch(one: Any, window: str) -> tuple[int, int]:
+    """First sample of a window, and the one after its last.
+
+    Raises:
+        InvalidInput: No sample lies in it.
+    """
     import numpy as np
 
     from mbkf.errors import InvalidInput
 
-    first, colon, last = window.partition(":")
-    try:
-        t0, t1 = float(first), float(last)
-    except ValueError:
-        t0 = t1 = math.nan
-    if not (colon and t1 > t0):
-        raise InvalidInput(f"--static '{window}': write START:END in s")
-    chosen = np.flatnonzero((one.time_s >= t0) & (one.time_s <= t1))
-    if not len(chosen):
+    start, end = time_window("--static", window)
+    inside = np.flatnonzero((one.time_s >= start) & (one.time_s <= end))
+    if not len(inside):
         raise InvalidInput(
             f"--static '{window}': the recording lasts from {one.time_s[0]:.2f} to {one.time_s[-1]:.2f} s"
         )
-    return int(chosen[0]), int(chosen[-1]) + 1
+    return int(inside[0]), int(inside[-1]) + 1
 
 
-def _searched(one: Any, args: argparse.Namespace) -> dict[str, Any]:
+def _searched(one: Any, args: argparse.Namespace) -> tuple[dict[str, Any], str]:
     from mbkf.cli.progress import stages
     from mbkf.imu.orientation import OrientSettings, orientations
     from mbkf.imu.tuning import reference_of, searched_gains
@@ -138,10 +122,10 @@ def _searched(one: Any, args: argparse.Namespace) -> dict[str, Any]:
         )
     beta, zeta, error = found.settings.beta, found.settings.zeta, math.degrees(found.error.total)
     text = (
-        f"{one.name}: beta {beta:.4g}, zeta {zeta:.3g} differ least from the reference: {error:.2f} deg "
+        f"beta {beta:.4g}, zeta {zeta:.3g} differ least from the reference: {error:.2f} deg "
         f"(inclination {math.degrees(found.error.inclination):.2f}), best of {len(found.trials)} gains"
     )
-    return {
+    row = {
         "name": one.name,
         "procedure": "search",
         "against": args.against,
@@ -149,5 +133,5 @@ def _searched(one: Any, args: argparse.Namespace) -> dict[str, Any]:
         "zeta": zeta,
         "error_deg": error,
         "trials": [{"beta": b, "zeta": z, "error_deg": math.degrees(e)} for b, z, e in found.trials],
-        "text": text,
     }
+    return row, text

@@ -1,4 +1,20 @@
-"""`mbkf label`: names for the points of an unlabelled capture."""
+"""Name the points of an unlabelled capture.
+
+Names the points by the subject's marker geometry and a filter's prediction. Points may be shuffled in every frame or
+come as tracks; points that belong to no marker are dropped. Names that the capture has and the subject knows are kept
+unless they jump from frame to frame or contradict the body; without a subject or a standing trial they are ignored.
+
+Examples:
+  mbkf label raw.c3d --subject subject.toml --out trial.c3d
+  mbkf label raw.trc --subject subject.toml --out trial.trc
+  mbkf label walk7/raw.c3d --subject walk7/subject.toml --truth walk7/trial.c3d --out labelled.c3d
+  mbkf label raw.c3d --static standing.c3d --mass 71 --out trial.c3d       (scales from the labelled standing trial)
+  mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (a person who is not scaled yet)
+  mbkf label raw.c3d --mass 75 --out trial.c3d                             (and whose marker set is inferred)
+
+The printed numbers also go to FILE.json. A person scaled on the way is written to FILE.toml, for 'mbkf reconstruct
+--subject'. Warnings name labels that may be wrong: another name fits nearly as well, or the marker is not at its place.
+"""
 
 from __future__ import annotations
 
@@ -7,48 +23,22 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, axes_options, body_mass
+
 if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
     from mbkf.io.records import Capture
     from mbkf.io.subject import Subject
     from mbkf.trial.labelling.result import Labelling, LabelSummary
 
-_EPILOG = """\
-examples:
-  mbkf label raw.c3d --subject subject.toml --out trial.c3d
-  mbkf label raw.trc --subject subject.toml --out trial.trc
-  mbkf label walk7/raw.c3d --subject walk7/subject.toml --truth walk7/trial.c3d --out labelled.c3d
-  mbkf label raw.c3d --static standing.c3d --mass 71 --out trial.c3d       (scales from the labelled standing trial)
-  mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (a person not scaled before)
-  mbkf label raw.c3d --mass 75 --out trial.c3d                             (nor a marker set known: it is inferred)
 
-Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. Names that the subject
-knows are kept unless they jump from frame to frame or contradict the body; without a subject or a standing trial they
-are ignored. The numbers that are printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for
-'mbkf reconstruct --subject'. Warnings tell labels that may be wrong: another name fits nearly as well, or a marker sits
-elsewhere than it stood.
-"""
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
-
-    parser = subparsers.add_parser(
-        "label",
-        help="unlabelled points to named markers",
-        description="Name the points of a capture by the subject's marker geometry and a filter's prediction.",
-        epilog=_EPILOG,
-    )
-    parser.add_argument(
-        "raw",
-        metavar="RAW",
-        help=f"capture ({CAPTURE_FILES}) with unnamed points; names that it has are kept",
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
+    parser.add_argument("raw", metavar="RAW", help=f"capture ({CAPTURE_FILES}) with unnamed points")
     parser.add_argument(
         "--ignore-names",
         action="store_true",
-        help="the capture's names mean nothing; by default those are kept that stay on their points and fit the body",
+        help="ignore the capture's names, of which those that stay on their points and fit the body are kept otherwise",
     )
     parser.add_argument("--subject", metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
@@ -60,22 +50,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="marker protocol; without --subject and --static the person is scaled from the capture itself",
     )
     parser.add_argument(
-        "--mass", metavar="KG", type=float, help="body mass of a person to be scaled; by default as stated"
+        "--mass",
+        metavar="KG",
+        type=body_mass,
+        help="body mass of a person to scale (default: as the capture states)",
     )
-    parser.add_argument("--height", metavar="M", type=float, help="body height of a person to be scaled")
-    parser.add_argument("--truth", metavar="LABELLED.c3d", help="the same trial with labels, to compare with")
+    parser.add_argument("--height", metavar="M", type=float, help="body height of a person to scale")
+    parser.add_argument("--truth", metavar="LABELLED.c3d", help="the same trial with labels, for comparison")
     add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="FILE.c3d|FILE.trc", help="file to write")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Labels the capture, writes it with its summary and prints the numbers.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
-    from mbkf.cli.options import axes_options
+    """Labels the capture, writes it with its summary and prints the numbers."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
@@ -96,12 +83,12 @@ def run(args: argparse.Namespace) -> int:
     if args.subject is None:
         write_subject(subject, out.with_suffix(".toml"))
     print_labels(write_labels(raw, found, out, compared), out)
-    if found.doubts is not None:
-        for warning in found.doubts.warnings():
-            print(f"warning: {warning}", file=sys.stderr)
+    for warning in () if found.doubts is None else found.doubts.warnings():
+        print(f"warning: {warning}", file=sys.stderr)
     if args.subject is None:
         print(
-            f"{out.with_suffix('.toml')}: the person, markers fit to {subject.report['marker_rms_mm']:.1f} mm RMS"
+            f"{out.with_suffix('.toml')}: the scaled person, markers fit to "
+            f"{subject.report['marker_rms_mm']:.1f} mm RMS"
         )
     return 0
 
@@ -109,8 +96,7 @@ def run(args: argparse.Namespace) -> int:
 def _label(
     args: argparse.Namespace, raw: Capture, report: StageCallback
 ) -> tuple[Labelling, Subject, Capture]:
-    """The labels, the person that they were found with, and the capture in the axes of that person's."""
-    from mbkf.cli.options import axes_options
+    """The labels, the person that they were found with, and the capture in the axes of that person."""
     from mbkf.cli.scale import warn_of_markers
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import read_subject
@@ -138,19 +124,16 @@ def _label(
 
 
 def _check_person(args: argparse.Namespace) -> None:
-    """Refuses two ways to state who wears the markers."""
+    """Refuses options that contradict each other."""
     from mbkf.errors import InvalidInput
 
     if args.subject is None and args.static is None and args.protocol is None and args.truth is not None:
-        raise InvalidInput(
-            "--truth: an inferred marker set has names of its own; give --protocol or --subject too"
-        )
-    if args.subject is not None:
-        for name in ("static", "protocol", "mass", "height"):
-            if getattr(args, name) is not None:
-                raise InvalidInput(f"--{name} is for a person to be scaled; leave it away beside --subject")
-    if args.mass is not None and not args.mass > 0:
-        raise InvalidInput(f"--mass must be positive, got {args.mass:g}; give the body mass in kg")
+        raise InvalidInput("--truth: an inferred marker set has its own names; add --protocol or --subject")
+    for name in ("static", "protocol", "mass", "height") if args.subject is not None else ():
+        if getattr(args, name) is not None:
+            raise InvalidInput(
+                f"--{name} is for a person to scale, and --subject names a scaled one; give one"
+            )
 
 
 def _checked(out: Path, raw: Path) -> Path:
@@ -163,12 +146,12 @@ def _checked(out: Path, raw: Path) -> Path:
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
     if out.resolve() == raw.resolve():
-        raise InvalidInput(f"--out {out}: is the raw capture itself; name another file")
+        raise InvalidInput(f"--out {out} would overwrite the raw capture; name another file")
     return out
 
 
 def print_labels(summary: LabelSummary, out: Path) -> None:
-    """Says what was labelled, and how well where the truth is known."""
+    """Prints the counts, and the shares of right and wrong names where the truth is known."""
     print(
         f"{out}: {summary['markers']} markers in {summary['frames']} frames, "
         f"{100 * summary['assigned_fraction']:.2f} % of marker-frames assigned, "

@@ -1,7 +1,9 @@
 """The command `mbkf`: chooses the subcommand and turns every foreseen failure into one line and an exit code.
 
-A command is a module of this package that exposes ``add_parser(subparsers)``, which adds its own parser and
-sets ``run`` as default, and ``run(args) -> int``. Libraries that load slowly are imported inside ``run``.
+A command is a module of this package with ``options(parser)`` and ``run(args) -> int``; a group of commands has
+``SUBCOMMANDS`` instead, each the module ``<group>_<name>``. The module's docstring is the help: its first line stands
+in the list of commands, the text up to the examples above the options, the rest below. Slow libraries are imported
+inside ``run``.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import gc
 import importlib
 import os
 import sys
+import textwrap
 import warnings
 from collections.abc import Sequence
 from typing import NoReturn
@@ -40,16 +43,24 @@ GARBAGE_AFTER = 50_000
 what a command's libraries make while they load stays."""
 
 
+class _HelpFormatter(argparse.RawDescriptionHelpFormatter):
+    """Fills paragraphs to the terminal's width and keeps indented lines, such as examples, as they are."""
+
+    def _fill_text(self, text: str, width: int, _indent: str) -> str:
+        paragraphs = text.split("\n\n")
+        return "\n\n".join(p if "\n " in p else textwrap.fill(p, width) for p in paragraphs) + "\n"
+
+
 class OneLineParser(argparse.ArgumentParser):
-    """Parser that keeps the layout of examples in its help and reports wrong usage on a single line."""
+    """Parser that reports wrong usage on a single line."""
 
     def __init__(self, **options: object) -> None:
-        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        options.setdefault("formatter_class", _HelpFormatter)
         options.setdefault("allow_abbrev", False)
         super().__init__(**options)  # type: ignore[arg-type]
 
     def error(self, message: str) -> NoReturn:
-        """Print what is wrong and where to read more on one line of stderr, and exit with 2."""
+        """Prints the fault and the way to the help on one line of stderr, and exits with 2."""
         self.exit(EXIT_BAD_INPUT, f"{self.prog}: error: {_one_line(message)} (see {self.prog} --help)\n")
 
 
@@ -64,29 +75,39 @@ class _Version(argparse.Action):
 
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
-    """The parser of the whole command line, or of a few of its commands.
-
-    Args:
-        commands: Names out of ``COMMANDS``; only their modules are imported.
-    """
+    """The parser of the command line with the given commands; no other module is imported."""
     parser = OneLineParser(
         prog="mbkf",
         description="Joint angles, torques and ground reactions, each with its standard deviation, "
         "from motion capture.",
-        epilog="example:\n  mbkf demo\n\n`mbkf COMMAND --help` explains a command and gives an example.",
+        epilog="Example:\n  mbkf demo\n\n`mbkf COMMAND --help` explains a command and gives an example.",
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show version and kernel, and end")
-    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, title="commands")
-    for name in commands:
-        importlib.import_module(f"mbkf.cli.{name}").add_parser(subparsers)
+    parser.add_argument("--version", action=_Version, nargs=0, help="print version and kernel, and exit")
+    _add_commands(parser, "command", commands)
     return parser
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line.
+def _add_commands(parser: argparse.ArgumentParser, dest: str, names: Sequence[str], group: str = "") -> None:
+    """Adds the commands of the module ``mbkf.cli.<group><name>`` for each name."""
+    subparsers = parser.add_subparsers(dest=dest, metavar="COMMAND", required=True, title="commands")
+    for name in names:
+        module = importlib.import_module(f"mbkf.cli.{group}{name}")
+        about, marker, examples = (module.__doc__ or "").partition("\n\nExample")
+        command = subparsers.add_parser(
+            name,
+            help=about.partition("\n")[0].removesuffix("."),
+            description=about,
+            epilog=(marker + examples).strip(),
+        )
+        if hasattr(module, "SUBCOMMANDS"):
+            _add_commands(command, f"{name}_command", module.SUBCOMMANDS, f"{name}_")
+        else:
+            module.options(command)
+            command.set_defaults(run=module.run)
 
-    Args:
-        arguments: What follows ``mbkf``; taken from ``sys.argv`` when None.
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command line with the given words, or those of ``sys.argv``.
 
     Returns:
         0 on success, 2 on bad input, 130 when interrupted, 1 on a bug in mbkf.
@@ -100,7 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     args = build_parser(named).parse_args(words)
     out = getattr(args, "out", None)
     if out is not None and not out.strip():  # "" would be the folder that the command is called in
-        return _fail("--out names nothing; give the folder or file to write")
+        return _fail("--out is empty; name the folder or file to write")
     postpone()
     warnings.formatwarning = _formatted
     try:
@@ -120,8 +141,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
         return _fail(
-            f"unforeseen {type(error).__name__}: {error} "
-            f"(a bug in mbkf; {TRACEBACK_VARIABLE}=1 shows where it comes from)",
+            f"unexpected {type(error).__name__}: {error}. This is a bug in mbkf; please report it with the output "
+            f"of the same command under {TRACEBACK_VARIABLE}=1",
             EXIT_BUG,
         )
 
@@ -145,11 +166,11 @@ def _one_line(text: str) -> str:
 
 
 def _describe(error: OSError) -> str:
-    """What the operating system refused, where, and what to do."""
+    """The operating system's refusal in a sentence: file, reason, remedy."""
     if error.filename is None or error.strerror is None:
         return str(error)
     if isinstance(error, FileExistsError | NotADirectoryError):
-        return f"{error.filename}: a file stands where a folder is needed; name another folder"
+        return f"{error.filename}: a file has the name of the folder to write; name another folder"
     if isinstance(error, IsADirectoryError):
         return f"{error.filename}: is a folder; name a file"
     if isinstance(error, PermissionError):

@@ -1,23 +1,24 @@
-"""Options that several commands share, and checks of what they were given."""
+"""Options that several commands share, and types of their values: a wrong one is refused with the option's name."""
 
 from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable
 from typing import TypedDict
 
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
 
 CAPTURE_FILES = either((*CAPTURES.suffixes_so_far, "that of an installed reader"))
-"""Suffixes of the captures that can be read, for help texts, which import no other package."""
+"""Suffixes of captures that can be read, for help texts, which import no other package."""
 
 FORCE_FILES = either((*FORCES.suffixes_so_far, "that of an installed reader"))
-"""Suffixes of the files of ground reactions that can be read."""
+"""Suffixes of files of ground reactions that can be read."""
 
 
 class AxesOptions(TypedDict):
-    """How files are read: the values of ``--up``, ``--axes`` and ``--unit``, None where not given."""
+    """Values of ``--up``, ``--axes`` and ``--unit``; None where not given."""
 
     up: str | None
     axes: str | None
@@ -25,90 +26,135 @@ class AxesOptions(TypedDict):
 
 
 def axes_options(args: argparse.Namespace) -> AxesOptions:
-    """What :func:`add_axes_options` was given, as arguments of a reader."""
+    """The values of :func:`add_axes_options` as arguments of a reader."""
     return {"up": args.up, "axes": args.axes, "unit": args.unit}
 
 
 def add_axes_options(parser: argparse.ArgumentParser) -> None:
-    """``--up``, ``--axes`` and ``--unit``, for files that do not say, or say it wrongly."""
+    """Adds ``--up``, ``--axes`` and ``--unit``, for files that state them wrongly or not at all."""
     parser.add_argument(
         "--up",
         metavar="AXIS",
-        help="axis of the files that points up: x, y, z, or downwards --up=-x, --up=-y, --up=-z",
+        help="vertical axis of the files, pointing up: x, y, z; pointing down: --up=-x, --up=-y, --up=-z",
     )
     parser.add_argument(
         "--axes",
         metavar="X,Y,Z",
-        help="axes of the files that point forward, left and up, for example x,-z,y (OpenSim); x,z,y mirrors such a "
-        "file; they hold whatever the body looks like (--axes=-x,... where the first has a sign)",
+        help="axes of the files that point forward, left and up, e.g. x,-z,y (OpenSim); never corrected. A mirrored "
+        "triple such as x,z,y mirrors the capture. Begin with --axes=-x,… if the first has a sign",
     )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
 
 
 def add_lag_option(parser: argparse._ActionsContainer) -> None:
-    """``--lag``, for commands that follow a person frame by frame."""
+    """Adds ``--lag``, for commands that follow a person frame by frame."""
     parser.add_argument(
         "--lag",
-        type=float,
+        type=not_negative,
         metavar="MS",
-        help="give each frame so many ms later, with what the readings until then tell of it (try 60)",
+        help="estimate each frame MS milliseconds late, with the readings of that time (try 60)",
     )
 
 
+def lag_seconds(args: argparse.Namespace) -> float:
+    """The value of ``--lag`` in s; 0 where not given."""
+    return (args.lag or 0.0) / 1e3
+
+
 def add_spreads_option(parser: argparse._ActionsContainer) -> None:
-    """``--spreads``, for commands that tell standard deviations."""
+    """Adds ``--spreads``, for commands that state standard deviations."""
     parser.add_argument(
         "--spreads",
         default="all",
         metavar="LIST",
-        help="standard deviations to tell besides those of configuration, velocity and reactions: torques, angles, "
-        "both with a comma (all, the default), or none; a frame costs less without",
+        help="standard deviations besides those of configuration, velocity and reactions: torques, angles, both with "
+        "a comma (all, the default), or none, which saves time in every frame",
     )
 
 
 def asked_spreads(args: argparse.Namespace) -> tuple[str, ...]:
-    """What :func:`add_spreads_option` was given, by :attr:`ReconstructSettings.spreads`' names."""
+    """The value of ``--spreads`` as :attr:`ReconstructSettings.spreads` takes it."""
     from mbkf.filters.spread import ASKED
 
     asked = {"all": ASKED, "none": ()}
     return asked.get(args.spreads, tuple(args.spreads.split(",")))
 
 
-def lag_seconds(args: argparse.Namespace) -> float:
-    """What :func:`add_lag_option` was given, in s; 0 if nothing.
+def add_page_options(parser: argparse.ArgumentParser) -> None:
+    """Adds ``--port`` and ``--no-browser``, for commands that serve a page."""
+    parser.add_argument("--port", type=port, default=0, metavar="N", help="port of the page (any free one)")
+    parser.add_argument("--no-browser", action="store_true", help="print the page's address only")
+
+
+def comma_separated(text: str) -> tuple[str, ...]:
+    """The words between commas, without blanks around them."""
+    return tuple(word.strip() for word in text.split(",") if word.strip())
+
+
+def time_window(option: str, text: str) -> tuple[float, float]:
+    """Start and end, s, of ``START:END``.
 
     Raises:
-        InvalidInput: It is not a time.
-    """
-    lag_ms = 0.0 if args.lag is None else float(args.lag)
-    check_positive("--lag", lag_ms, or_zero=True)
-    return lag_ms / 1e3
-
-
-def check_positive(option: str, value: float, or_zero: bool = False) -> None:
-    """Refuses a value that is not a positive number.
-
-    Args:
-        option: Name of the option.
-        value: Its value.
-        or_zero: Whether zero is accepted, too.
-
-    Raises:
-        InvalidInput: The value is not positive, or not finite.
+        InvalidInput: The text has another form, or the end is not after the start.
     """
     from mbkf.errors import InvalidInput
 
-    if not math.isfinite(value) or value < 0.0 or (value == 0.0 and not or_zero):
-        raise InvalidInput(f"{option} {value:g}: give a positive number")
+    first, _, last = text.partition(":")
+    try:
+        window = float(first), float(last)
+    except ValueError:
+        window = math.nan, math.nan
+    if not window[0] < window[1]:
+        raise InvalidInput(f"{option} '{text}': write START:END in s, with START before END")
+    return window
 
 
-def check_share(option: str, value: float) -> None:
-    """Refuses what is not a share.
+def _number(text: str, valid: Callable[[float], bool], rule: str) -> float:
+    """A finite number that keeps a rule.
 
     Raises:
-        InvalidInput: It is not between 0 and 1.
+        ArgumentTypeError: It does not.
     """
-    from mbkf.errors import InvalidInput
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and valid(value)):
+        raise argparse.ArgumentTypeError(f"'{text}' is not {rule}")
+    return value
 
-    if not 0.0 <= value <= 1.0:
-        raise InvalidInput(f"{option} {value:g}: give a share between 0 and 1")
+
+def positive(text: str) -> float:
+    """A number above zero."""
+    return _number(text, lambda x: x > 0.0, "a positive number")
+
+
+def body_mass(text: str) -> float:
+    """A body mass in kg."""
+    return _number(text, lambda x: x > 0.0, "a positive body mass in kg")
+
+
+def not_negative(text: str) -> float:
+    """A number above zero, or zero."""
+    return _number(text, lambda x: x >= 0.0, "a number of zero or more")
+
+
+def share(text: str) -> float:
+    """A number from 0 to 1."""
+    return _number(text, lambda x: 0.0 <= x <= 1.0, "a number from 0 to 1")
+
+
+def natural(text: str) -> int:
+    """A whole number of zero or more."""
+    return int(_number(text, lambda x: x >= 0.0 and x == int(x), "a whole number of zero or more"))
+
+
+def count(text: str) -> int:
+    """A whole number of one or more."""
+    return int(_number(text, lambda x: x >= 1.0 and x == int(x), "a whole number of one or more"))
+
+
+def port(text: str) -> int:
+    """A port from 0, any free one, to 65535."""
+    rule = "a port from 0 (any free one) to 65535"
+    return int(_number(text, lambda x: 0.0 <= x <= 65535.0 and x == int(x), rule))

@@ -1,7 +1,7 @@
-"""Parts of NumPy that SciPy asks for by name and no command uses are loaded when something in them is.
+"""Loads parts of NumPy that no command uses only when something in them is accessed.
 
-``scipy.linalg`` goes through all of NumPy's names as it is imported, and with them through its Fortran compiler's
-front end, its test tools and its masked arrays: as long as it takes to import NumPy itself.
+``scipy.linalg`` goes through all of NumPy's names as it is imported, and so loads its Fortran compiler's front end, its
+test tools and its masked arrays, which takes as long as NumPy itself.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import sys
 
 NUMPY = "numpy"
 UNUSED = ("f2py", "testing", "ma", "polynomial", "ctypeslib")
-"""Modules of NumPy that load others, and that it imports when they are first asked for."""
+"""Modules of NumPy that load others, and that NumPy imports at their first use."""
 
 
 def postpone() -> None:
-    """Puts modules in their places that are loaded at the first access to something in them, if NumPy is there."""
+    """Replaces the modules by ones that load themselves at the first access, if NumPy is imported."""
     numpy = sys.modules.get(NUMPY)
     for name in UNUSED if numpy is not None else ():
         whole = f"{NUMPY}.{name}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -12,43 +12,13 @@ from mbkf.conventions import StageCallback
 if TYPE_CHECKING:
     from rich.progress import TaskID
 
-Advance = Callable[[int], None]
-"""Tells how many more items are done."""
-
-
-@contextmanager
-def progress(title: str, total: int) -> Iterator[Advance]:
-    """One bar for one piece of work.
-
-    Used as ``with progress("Filtering", frames) as advance:`` with ``advance(1)`` after each frame.
-
-    Args:
-        title: What is being done.
-        total: Number of items.
-
-    Yields:
-        A function that takes the number of items just finished.
-    """
-    with stages() as report:
-        done = 0
-
-        def advance(count: int = 1) -> None:
-            nonlocal done
-            done += count
-            report(title, done, total)
-
-        report(title, 0, total)
-        yield advance
-
 
 @contextmanager
 def stages() -> Iterator[StageCallback]:
-    """The bars of a pipeline, one per stage.
-
-    Used as ``with stages() as report:`` around a call that is given ``progress=report``.
+    """Shows a bar for each stage of the work: the yielded callback is passed on as ``progress``.
 
     Yields:
-        The callback a pipeline takes as ``progress``; a stage's bar appears when it first reports.
+        The callback; a stage's bar appears when it first reports.
     """
     if not sys.stderr.isatty():
         yield _ignore

@@ -1,53 +1,39 @@
-"""`mbkf protocol edit`: a marker set changed on a capture, in the browser."""
+"""Change a marker set on a capture, in the browser.
+
+Opens a page with the capture's markers on the body. There a marker can be moved to another segment or landmark, or left
+out. The command ends with "Done" on the page, or with Ctrl-C; only "Save" writes the file. The page is served to this
+computer alone.
+
+Examples:
+  mbkf protocol edit static.c3d --out my_markers.toml
+  mbkf protocol edit static.c3d --protocol my_markers.toml --out my_markers.toml
+"""
 
 from __future__ import annotations
 
 import argparse
 import sys
 
-_EPILOG = """\
-Opens a page with the capture's markers on the body. There a marker can be moved to another segment or landmark, or left
-out. The command ends with "Done" on the page, or with Ctrl-C; only "Save" writes the file. The page is served to this
-computer alone.
-
-examples:
-  mbkf protocol edit static.c3d --out my_markers.toml
-  mbkf protocol edit static.c3d --protocol my_markers.toml --out my_markers.toml
-"""
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_page_options, axes_options
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the group."""
-    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
-
-    parser = subparsers.add_parser(
-        "edit",
-        help="change a marker set on a capture, in the browser",
-        description="Change a marker set on a capture: the segment or landmark of each marker, and what is left out.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("capture", metavar="CAPTURE", help=f"standing trial ({CAPTURE_FILES})")
     parser.add_argument(
         "--protocol",
         metavar="NAME|FILE",
-        help="marker set to begin with; by default found from the names, or inferred",
+        help="marker set to begin with (default: found from the names, or inferred)",
     )
     parser.add_argument("--out", required=True, metavar="FILE.toml", help="file that saving writes")
     add_axes_options(parser)
-    parser.add_argument("--port", type=int, default=0, metavar="N", help="port (any that is free)")
-    parser.add_argument("--no-browser", action="store_true", help="print the page's address only")
-    parser.set_defaults(run=run)
+    add_page_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Serves the page until it is done, and tells what was saved.
-
-    Raises:
-        MbkfError: The capture or the set cannot be read, or the page cannot be served.
-    """
+    """Serves the page until it is done, and prints the counts of the saved set."""
     import webbrowser
 
-    from mbkf.cli.options import axes_options
     from mbkf.cli.progress import stages
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.io.atomic import check_folder
@@ -56,9 +42,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.trial.protocol.editing import starting_set
     from mbkf.trial.protocol.standing import stand_beside
     from mbkf.viz.protocol.edit import EditPage
-    from mbkf.viz.server import checked_port
 
-    out, port = checked_name(args.out), checked_port(args.port)
+    out = checked_name(args.out)
     check_folder(out.parent)
     capture = read_capture(args.capture, **axes_options(args))
     with stages() as report:
@@ -66,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
         standing = stand_beside(capture, protocol, report)
     if standing.trouble:
         print(f"warning: the set does not fit this capture yet: {standing.trouble}", file=sys.stderr)
-    page = EditPage(protocol, standing, out, port=port)
+    page = EditPage(protocol, standing, out, port=args.port)
     print(f'{page.url}\n"Done" on the page or Ctrl-C ends', flush=True)
     try:
         with stopped_by_signal() as stop:

@@ -1,40 +1,30 @@
-"""`mbkf protocol import`: a marker set from OpenSim's files."""
+"""Import a marker set from an OpenSim model or marker set.
+
+Reads OpenSim models (.osim, versions 2 to 4) and marker sets (MarkerSet .xml), also damaged ones, and moves their
+markers to mbkf's body. A marker set does not hold the bones: those of OpenSim's common full-body model are taken.
+Markers that OpenSim holds fixed become anatomical ones, the others technical ones, and those inside a joint computed
+points.
+
+Examples:
+  mbkf protocol import model.osim --out my_markers.toml
+  mbkf protocol import MarkerSet.xml                       (shows the set and writes nothing)
+"""
 
 from __future__ import annotations
 
 import argparse
 
-_EPILOG = """\
-Reads OpenSim models (.osim, versions 2 to 4) and marker sets (MarkerSet .xml), also damaged ones. A marker set does
-not hold the bones: those of OpenSim's common full-body model are taken. Markers that OpenSim holds fixed become
-anatomical ones, the others technical ones, and those inside a joint computed points.
 
-examples:
-  mbkf protocol import model.osim --out my_markers.toml
-  mbkf protocol import MarkerSet.xml                       (shows what it would be)
-"""
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the group."""
-    parser = subparsers.add_parser(
-        "import",
-        help="a marker set from an OpenSim model or marker set",
-        description="Take the markers of an OpenSim model or marker set to mbkf's body.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("file", metavar="FILE", help="OpenSim model (.osim) or marker set (.xml)")
-    parser.add_argument("--out", metavar="FILE.toml", help="file to write; by default nothing is written")
-    parser.set_defaults(run=run)
+    parser.add_argument("--out", metavar="FILE.toml", help="file to write (default: nothing is written)")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prints the marker set, and writes it.
-
-    Raises:
-        MbkfError: The file holds no marker that can be read, or there is no such place to write to.
-    """
-    from mbkf.cli.protocol import print_set, wide_console
+    """Prints the marker set, and writes it."""
+    from mbkf.cli.protocol import print_set
+    from mbkf.cli.tables import terminal
     from mbkf.io.atomic import check_folder
     from mbkf.model.protocol_file import checked_name, write_protocol
     from mbkf.trial.protocol.from_osim import import_osim
@@ -43,16 +33,16 @@ def run(args: argparse.Namespace) -> int:
     if out is not None:
         check_folder(out.parent)
     found = import_osim(args.file)
-    console = wide_console()
+    console = terminal()
     print_set(found.protocol, console)
     for name, move in found.moved.items():
         console.print(f"note: {name}: {move}, by its place", soft_wrap=True)
     if not found.with_skeleton:
         console.print("note: the file holds no bones; those of OpenSim's common full-body model were taken")
-    count = f"{len(found.protocol.markers)} markers, {len(found.computed)} of them computed points"
+    markers = f"{len(found.protocol.markers)} markers, {len(found.computed)} of them computed points"
     if out is None:
-        console.print(f"{args.file}: {count}; --out FILE.toml writes the set", soft_wrap=True)
+        console.print(f"{args.file}: {markers}; --out FILE.toml writes the set", soft_wrap=True)
         return 0
     write_protocol(found.protocol, out)
-    console.print(f"{out}: {count}; look at it with 'mbkf protocol show {out}'", soft_wrap=True)
+    console.print(f"{out}: {markers}; look at it with 'mbkf protocol show {out}'", soft_wrap=True)
     return 0

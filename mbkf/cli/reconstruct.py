@@ -1,4 +1,19 @@
-"""`mbkf reconstruct`: motion, torques and reactions of a trial."""
+"""Reconstruct motion, torques and reactions from markers and plates.
+
+Follows a scaled subject through a trial and solves for joint torques.
+
+Examples:
+  mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --filter torque --preset FDMC --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --imu imus.csv --imu-mounts imus.toml --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --causal --out as_live
+  mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
+
+By default all later frames correct earlier ones (smoothing). With --causal a frame uses itself and earlier frames, as
+in 'mbkf live'; with --lag MS also those of the next MS milliseconds. Every file but markers.trc states the choice.
+
+Writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactions.mot and markers.trc to the folder.
+"""
 
 from __future__ import annotations
 
@@ -7,42 +22,26 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbkf.cli.options import (
+    CAPTURE_FILES,
+    FORCE_FILES,
+    add_axes_options,
+    add_lag_option,
+    add_spreads_option,
+    asked_spreads,
+    axes_options,
+    comma_separated,
+    lag_seconds,
+)
+
 if TYPE_CHECKING:
     from mbkf.io.results_folder import Summary
     from mbkf.trial.inertial.on_body import ImuOnBody
     from mbkf.trial.preparation.settings import Hidden
 
-_EPILOG = """\
-examples:
-  mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
-  mbkf reconstruct walk.c3d --subject subject.toml --filter torque --preset FDMC --out result
-  mbkf reconstruct walk.c3d --subject subject.toml --imu imus.csv --imu-mounts imus.toml --out result
-  mbkf reconstruct walk.c3d --subject subject.toml --causal --out as_live
-  mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
 
-By default all later frames correct earlier ones (smoothing). With --causal a frame knows itself and those before it,
-as in 'mbkf live'; with --lag MS also those of the next MS milliseconds. Every file but markers.trc says which it was.
-
-writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactions.mot and markers.trc to the folder
-"""
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.options import (
-        CAPTURE_FILES,
-        FORCE_FILES,
-        add_axes_options,
-        add_lag_option,
-        add_spreads_option,
-    )
-
-    parser = subparsers.add_parser(
-        "reconstruct",
-        help="markers and plates to motion, torques and reactions",
-        description="Follow a scaled subject through a trial and solve for joint torques.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("trial", metavar="TRIAL", help=f"capture ({CAPTURE_FILES})")
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
@@ -51,20 +50,18 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--filter",
         choices=("kinematic", "torque", "dynamic"),
-        help="which filter; by default that of the preset, or dynamic",
+        help="the filter (default: that of the preset, or dynamic)",
     )
     parser.add_argument(
         "--preset",
         metavar="NAME|FILE",
-        help="settings that 'mbkf tune' found, or FD, FDMC, FD-literal, FDMC-literal for the torque filter",
+        help="settings found by 'mbkf tune', or FD, FDMC, FD-literal, FDMC-literal for the torque filter",
     )
     later = parser.add_mutually_exclusive_group()
     later.add_argument(
-        "--smooth", action="store_true", help="let all later frames correct earlier ones (the default)"
+        "--smooth", action="store_true", help="let later frames correct earlier ones (default)"
     )
-    later.add_argument(
-        "--causal", action="store_true", help="use no later frame: the answer that a live run gives"
-    )
+    later.add_argument("--causal", action="store_true", help="use no later frames, as a live run")
     add_lag_option(later)
     parser.add_argument(
         "--hide",
@@ -81,9 +78,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="inertial sensors worn in the trial, named after their segments, on the same clock; may be repeated",
     )
     parser.add_argument(
-        "--imu-mounts", metavar="FILE.toml", help="where they sit (default: found from the markers' motion)"
+        "--imu-mounts",
+        metavar="FILE.toml",
+        help="places of the sensors (default: found from the markers' motion)",
     )
-    parser.add_argument("--without-plate", metavar="N", action="append", default=[], help="withhold a plate")
+    parser.add_argument(
+        "--without-plate", metavar="N", action="append", default=[], help="withhold a plate; may be repeated"
+    )
     parser.add_argument(
         "--keep-markers",
         action="store_true",
@@ -92,48 +93,36 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--feet-only",
         action="store_true",
-        help="take it that nothing but the feet bears load: look for no seat, no hand or knee on the floor, no load in "
-        "the hands",
+        help="assume that only the feet bear load: estimate no seat, rail, knee, hand or carried load",
     )
-    _add_angle_options(parser)
-    add_spreads_option(parser)
-    add_axes_options(parser)
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
-    parser.set_defaults(run=run)
-
-
-def _add_angle_options(parser: argparse.ArgumentParser) -> None:
-    """In which axes angles are told."""
     parser.add_argument(
         "--pelvis",
         choices=("progression", "lab"),
         default="progression",
         help="axes of the pelvis's angles: along the path of a walk or run, else the mean heading of pelvis and feet "
-        "(progression, the default), or the laboratory's",
+        "(progression, the default), or the laboratory's (lab)",
     )
     parser.add_argument(
         "--angles",
         choices=("model", "isb", "pig"),
         default="model",
-        help="axes that joint angles are read in: the body's own (model, the default), the ISB's (isb), or Plug-in "
-        "Gait's (pig), for comparison with a laboratory's archive; moments stay about the body's own",
+        help="axes of joint angles: the body's own (model, the default), the ISB's (isb), or Plug-in Gait's (pig), for "
+        "comparison with a laboratory's archive; moments stay about the body's own axes",
     )
     parser.add_argument(
         "--angles-zero",
         choices=("axes", "static"),
         default="axes",
-        help="what is zero in joint angles: both segments' axes as one (axes, the default), or the posture of the "
-        "static trial that the subject was scaled with (static)",
+        help="zero of joint angles: the axes of both segments coincide (axes, the default), or the posture of the "
+        "static trial that scaled the subject (static)",
     )
+    add_spreads_option(parser)
+    add_axes_options(parser)
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Reconstructs the trial, writes the folder and prints the key numbers.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
-    from mbkf.cli.options import asked_spreads, axes_options, lag_seconds
+    """Reconstructs the trial, writes the folder and prints the key numbers."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
@@ -175,7 +164,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _imus(args: argparse.Namespace) -> ImuOnBody | None:
-    """The sensors that --imu names."""
+    """The sensors that ``--imu`` names."""
     from mbkf.errors import InvalidInput
     from mbkf.io.imu.files import read_imu
     from mbkf.io.imu.mount import read_mounts
@@ -183,7 +172,7 @@ def _imus(args: argparse.Namespace) -> ImuOnBody | None:
 
     if not args.imu:
         if args.imu_mounts is not None:
-            raise InvalidInput("--imu-mounts: name the readings with --imu, too")
+            raise InvalidInput("--imu-mounts needs the readings; name them with --imu")
         return None
     readings = tuple(one for path in args.imu for one in read_imu(path))
     return ImuOnBody(readings, () if args.imu_mounts is None else read_mounts(args.imu_mounts))
@@ -200,7 +189,7 @@ def parse_hide(text: str) -> Hidden:
 
     names, at, window = text.partition("@")
     first, colon, last = window.partition(":")
-    markers = tuple(name.strip() for name in names.split(",") if name.strip())
+    markers = comma_separated(names)
     try:
         times = float(first), float(last)
     except ValueError:
@@ -211,55 +200,49 @@ def parse_hide(text: str) -> Hidden:
 
 
 def print_summary(summary: Summary, folder: Path) -> None:
-    """Prints the numbers a person looks at first."""
-    from rich.console import Console
+    """Prints the key numbers of a result, its warnings and its folder."""
     from rich.table import Table
 
+    from mbkf.cli.tables import terminal
     from mbkf.trial.preparation.coverage import listed
 
-    console = Console(highlight=False, markup=False)
-    title = f"{summary['trial']} ({summary['filter']} filter)"
-    table = Table(title=title, title_justify="left", show_header=False)
-    table.add_column()
-    table.add_column(justify="right")
+    along = summary["progression"]
+    corrected = " after correction" if summary["filter"] != "kinematic" else ""
+    unsmoothed = ", smoothing not counted" if summary["smoothed"] else ""
+    realtime = summary["realtime_factor"]
     rows = [
         ("later frames", summary["later_frames"]),
         ("frames", f"{summary['frames']} at {summary['rate_hz']:g} Hz"),
         ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
+        ("markers ignored", listed(summary["markers_ignored"])),
         ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
-        (
-            "pelvis angles",
-            f"{summary['progression']['kind']}, {summary['progression']['heading_deg']:.0f}° from the x axis",
-        ),
+        ("pelvis angles", f"{along['kind']}, {along['heading_deg']:.0f}° from the x axis"),
         ("frames with all loads known", str(summary["valid_frames"])),
         ("frames with all loads measured", str(summary["measured_frames"])),
         (
-            "residual at the pelvis" + (" after correction" if summary["filter"] != "kinematic" else ""),
+            f"residual at the pelvis{corrected}",
             _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m"),
         ),
         (
             "step median / 99 %",
-            _pair(_ms(summary["step_seconds_median"]), _ms(summary["step_seconds_p99"]), "ms"),
+            _pair(summary["step_seconds_median"], summary["step_seconds_p99"], "ms", 1e3),
         ),
-        (
-            "times real time" + (", smoothing not counted" if summary["smoothed"] else ""),
-            "" if summary["realtime_factor"] is None else f"{summary['realtime_factor']:.1f}",
-        ),
+        (f"times real time{unsmoothed}", "–" if realtime is None else f"{realtime:.1f}"),
     ]
-    if summary["markers_ignored"]:
-        rows.insert(3, ("markers ignored", listed(summary["markers_ignored"])))
     if summary["hidden_marker_rms_mm"] is not None:
-        rows.append(
-            (
-                "hidden markers RMS / max",
-                _pair(summary["hidden_marker_rms_mm"], summary["hidden_marker_max_mm"], "mm"),
-            )
-        )
+        hidden = _pair(summary["hidden_marker_rms_mm"], summary["hidden_marker_max_mm"], "mm")
+        rows.append(("hidden markers RMS / max", hidden))
     for name, value in (summary["truth"] or {}).items():
         rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
     rows += [("checks", line) for line in _checks(summary)]
+    title = f"{summary['trial']} ({summary['filter']} filter)"
+    table = Table(title=title, title_justify="left", show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
     for name, text in rows:
-        table.add_row(name, text)
+        if text or name != "markers ignored":
+            table.add_row(name, text)
+    console = terminal()
     console.print(table)
     for warning in summary["warnings"]:
         console.print(f"note: {warning}", soft_wrap=True)
@@ -267,7 +250,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
 
 
 def _checks(summary: Summary) -> list[str]:
-    """How many checks ended how, and the names of those that are not inside what noise explains."""
+    """Counts of checks by their verdict, with the names of those that noise does not explain."""
     lines = []
     for verdict in ("inside", "doubtful", "outside", "not judged"):
         names = [str(check["name"]) for check in summary["checks"] if check["verdict"] == verdict]
@@ -277,9 +260,5 @@ def _checks(summary: Summary) -> list[str]:
     return lines
 
 
-def _ms(seconds: float | None) -> float | None:
-    return None if seconds is None else 1e3 * seconds
-
-
-def _pair(first: float | None, second: float | None, unit: str) -> str:
-    return " / ".join("–" if x is None else f"{x:.1f}" for x in (first, second)) + f" {unit}"
+def _pair(first: float | None, second: float | None, unit: str, factor: float = 1.0) -> str:
+    return " / ".join("–" if x is None else f"{factor * x:.1f}" for x in (first, second)) + f" {unit}"

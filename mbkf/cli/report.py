@@ -1,4 +1,17 @@
-"""`mbkf report`: one page about a result, or about all trials of a session together."""
+"""Write a page about a result or a session: quality, gait, angles, torques, reactions.
+
+The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait,
+angles, torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait
+cycle with means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and changes against an earlier
+session with 95 % intervals.
+
+Examples:
+  mbkf report result                         one trial: writes result/report.html
+  mbkf report result --labels labelled.json  with the numbers of 'mbkf label'
+  mbkf report results/P1/monday              a session of 'mbkf batch': writes report.html there
+  mbkf report friday --against monday --norms norms.toml --language es
+  mbkf report results/P1 --curves curves.csv
+"""
 
 from __future__ import annotations
 
@@ -9,64 +22,42 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mbkf.study.session.records import Session
 
-_EPILOG = """\
-examples:
-  mbkf report result                         one trial: writes result/report.html
-  mbkf report result --labels labelled.json  adds what 'mbkf label' wrote beside the labelled capture
-  mbkf report results/P1/monday              a session of 'mbkf batch': writes report.html there
-  mbkf report friday --against monday --norms norms.toml --language es
-  mbkf report results/P1 --curves curves.csv
 
-The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait,
-angles, torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait
-cycle with means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and what changed against an
-earlier session, with 95 % intervals.
-"""
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Adds the command to the command line."""
-    parser = subparsers.add_parser(
-        "report",
-        help="one page about a result or a session: quality, gait, angles, torques, reactions",
-        description="Write one self-contained HTML page about a result, or about a session of several.",
-        epilog=_EPILOG,
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument(
         "folders",
         metavar="DIR",
         nargs="+",
-        help="written by 'mbkf reconstruct', 'mbkf live' or 'mbkf batch'; several are one session",
+        help="written by 'mbkf reconstruct', 'mbkf live' or 'mbkf batch'; several make one session",
     )
     parser.add_argument("--out", metavar="FILE.html", help="file to write (report.html in the first DIR)")
     parser.add_argument(
         "--labels",
         metavar="FILE.json",
-        help="of one trial: written by 'mbkf label' (TRIAL.json in DIR or beside it, where there is one)",
+        help="one trial: numbers of 'mbkf label' (default: TRIAL.json in DIR or beside it, if there is one)",
     )
-    session = parser.add_argument_group("of a session")
+    session = parser.add_argument_group("for a session")
     session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
-    session.add_argument("--norms", metavar="FILE.toml", help="reference bands, by 'mbkf norms build'")
+    session.add_argument("--norms", metavar="FILE.toml", help="reference bands of 'mbkf norms build'")
     session.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
     session.add_argument("--curves", metavar="FILE", help="write every curve, too: .csv or .parquet")
     session.add_argument("--name", metavar="TEXT", help="heading of the page (the folder's name)")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Writes the report.
 
     Raises:
-        MbkfError: There is no result, or an option does not fit what is there.
-        OSError: The page cannot be written.
+        InvalidInput: An option for one trial is given for a session.
     """
     from mbkf.errors import InvalidInput
     from mbkf.io.results_folder import MOTION_FILE
 
     folders = [Path(folder) for folder in args.folders]
-    of_session = [args.against, args.norms, args.language, args.curves, args.name]
+    for_session = [args.against, args.norms, args.language, args.curves, args.name]
     one = len(folders) == 1 and ((folders[0] / MOTION_FILE).is_file() or not folders[0].is_dir())
-    if one and not any(option is not None for option in of_session):
+    if one and not any(option is not None for option in for_session):
         return _trial(args, folders[0])
     if args.labels is not None:
         raise InvalidInput("--labels is for the report of one trial; give its folder alone")

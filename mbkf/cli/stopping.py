@@ -1,4 +1,4 @@
-"""Ctrl-C, a request to terminate, or the end of the input as an orderly end; a second Ctrl-C breaks off at once."""
+"""An orderly end by Ctrl-C, SIGTERM or the end of the input; a second Ctrl-C breaks off at once."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from types import FrameType
 
 @contextmanager
 def stopped_by_signal() -> Iterator[threading.Event]:
-    """Yields an event that Ctrl-C or SIGTERM sets; afterwards both do what they did before."""
+    """Yields an event that Ctrl-C or SIGTERM sets; afterwards both have their earlier handlers."""
     stop = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield stop
@@ -33,10 +33,10 @@ def stopped_by_signal() -> Iterator[threading.Event]:
 
 
 def stop_with_input(stop: threading.Event) -> None:
-    """Sets an event when the standard input closes, in a thread: when the program that holds its other end ends."""
+    """Sets an event, from a thread, when the standard input closes: the program at its other end has ended."""
 
     def watch(number: int) -> None:
-        # Not by sys.stdin, whose lock a thread that waits would hold when Python ends.
+        # sys.stdin would not do: a waiting thread holds its lock when Python ends
         while os.read(number, 4096):
             pass
         stop.set()

@@ -1,23 +1,22 @@
-"""`mbkf synth`: a synthetic capture with exact truth, to try things on."""
+"""Make a synthetic capture with exact truth.
+
+A random person performs a motion that obeys Newton's law exactly, recorded by imperfect cameras and force plates.
+Writes trial.c3d (labelled), raw.c3d (unlabelled, with ghosts), static.c3d, subject.toml and truth.h5.
+
+Example:
+  mbkf synth --motion walk --seconds 4 --seed 7 --out walk7
+"""
 
 from __future__ import annotations
 
 import argparse
 
-from mbkf.errors import InvalidInput
+from mbkf.cli.options import natural
 from mbkf.synthesis.motions import motion_names, registered_motion
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the parser of this command."""
-    parser = subparsers.add_parser(
-        "synth",
-        help="a synthetic capture with exact truth",
-        description="A random person performs a motion that obeys Newton's law exactly and is recorded by imperfect "
-        "cameras and force plates. Writes trial.c3d (labelled), raw.c3d (unlabelled, with ghosts), static.c3d, "
-        "subject.toml and truth.h5.",
-        epilog="example:\n  mbkf synth --motion walk --seconds 4 --seed 7 --out walk7",
-    )
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     add_motion_options(parser)
     parser.add_argument("--rate", metavar="HZ", type=float, default=100.0, help="camera rate (100)")
     parser.add_argument(
@@ -34,35 +33,34 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         default=0.02,
         help="fraction of marker samples hidden (0.02)",
     )
-    parser.add_argument("--out", metavar="DIR", required=True, help="folder for the files")
-    parser.set_defaults(run=run)
+    parser.add_argument("--out", metavar="DIR", required=True, help="folder to write")
 
 
 def add_motion_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that choose the motion, shared with ``mbkf demo``."""
+    """Adds the options that choose the motion, shared with ``mbkf demo``."""
     motions = [registered_motion(name) for name in motion_names(installed=False)]
-    names, usual = zip(*((one.name, f"{one.name} {one.seconds:g}") for one in motions), strict=True)
+    first = motions[0].name
+    usual = ", ".join(f"{one.name} {one.seconds:g}" for one in motions)
     parser.add_argument(
-        "--motion",
-        metavar="NAME",
-        default=names[0],
-        help=f"the person's motion: {', '.join(names)}, or that of an installed package ({names[0]})",
+        "--motion", metavar="NAME", default=first, help=f"see --seconds, or that of an installed package ({first})"
     )
-    parser.add_argument("--seconds", metavar="S", type=float, help=f"duration ({', '.join(usual)})")
+    parser.add_argument("--seconds", metavar="S", type=float, help=f"duration; by default {usual}")
     parser.add_argument(
-        "--seed", metavar="N", type=int, default=0, help="another person, motion and noise (0)"
+        "--seed",
+        metavar="N",
+        type=natural,
+        default=0,
+        help="number of the random person, motion and noise (0)",
     )
 
 
 def run(args: argparse.Namespace) -> int:
-    """Make the capture and write its folder."""
+    """Makes the capture and writes its folder."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.synthesis.capture import CaptureSettings
     from mbkf.trial.synth import synthesise, write_folder
 
-    if args.seed < 0:
-        raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")
     check_folder(args.out)
     settings = CaptureSettings(
         markers_sd_m=args.markers_mm / 1e3,
@@ -80,9 +78,8 @@ def run(args: argparse.Namespace) -> int:
             progress=report,
         )
     paths = write_folder(subject, capture, args.out)
-    frames = capture.trial.markers.frames
     print(
-        f"{args.motion}: {frames} frames at {args.rate:g} Hz, {subject.mass_kg:.1f} kg, "
+        f"{args.motion}: {capture.trial.markers.frames} frames at {args.rate:g} Hz, {subject.mass_kg:.1f} kg, "
         f"{len(capture.trial.plates)} plates, seed {args.seed}"
     )
     for path in paths:

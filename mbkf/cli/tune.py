@@ -1,35 +1,21 @@
-"""`mbkf tune`: noise settings of a filter, found on trials and saved as a preset."""
+"""Find a filter's noise settings on trials.
 
-from __future__ import annotations
+Finds the noise settings under which the filter's innovations over trials of one subject are most probable, and saves
+them as a preset. The last trial (of a single one its second half) is held out: its likelihood before and after shows
+whether the settings hold elsewhere; if not, the preset keeps the defaults. Named presets lie in ~/.config/mbkf/presets,
+or in the folder MBKF_PRESETS.
 
-import argparse
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from mbkf.io.preset import Preset
-    from mbkf.study.tune import Tuned
-
-_EPILOG = """\
-examples:
+Examples:
   mbkf tune walk1.c3d walk2.c3d walk3.c3d --subject subject.toml --name lab
   mbkf tune walk.trc --subject subject.toml --forces grf.mot --name walk --out walk.toml
   mbkf reconstruct walk4.c3d --subject subject.toml --preset lab --out result
 
-The last trial (of a single one its second half) is held out: its likelihood before and after shows whether what was
-found holds elsewhere; if not, the preset keeps the defaults. Named presets lie in ~/.config/mbkf/presets, or where
-MBKF_PRESETS says.
+The likelihood assumes that readings err independently from frame to frame. Skin does not, so the most probable settings
+need not be the best for torques. On synthetic trials with 5 mm of moving skin tuning about halved the torque error of
+the kinematic filter; that of the dynamic filter fell by 10 to 30 % on squats and mostly rose on walks and jumps, by 10
+to 40 %. Compare residuals and torques before you trust a preset.
 
-The likelihood takes readings to err independently from frame to frame. Skin does not, so the most probable settings
-need not be the best for torques. On synthetic trials with 5 mm of moving skin tuning about halved the torque error
-of the kinematic filter; that of the dynamic filter fell by 10 to 30 % on squats and mostly rose on walks and jumps,
-by 10 to 40 %. Compare residuals and torques before you trust a preset.
-
-parameters (those with * by default):
-"""
-
-_PARAMETERS = """\
+Parameters (those with * by default):
   dynamic:    motion*   how much the body accelerates
               loads*    how fast foot loads change
               plates*   noise of the plates
@@ -39,18 +25,22 @@ _PARAMETERS = """\
   kinematic:  motion*, markers*
 """
 
+from __future__ import annotations
 
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Adds the command to the command line."""
-    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-    parser = subparsers.add_parser(
-        "tune",
-        help="find a filter's noise settings on trials",
-        description="Find the noise settings of a filter under which its innovations over trials of one subject are "
-        "most probable, and save them as a preset.",
-        epilog=_EPILOG + _PARAMETERS,
-    )
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, axes_options, comma_separated, count
+
+if TYPE_CHECKING:
+    from mbkf.io.preset import Preset
+    from mbkf.study.tune import Tuned
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options."""
     parser.add_argument("trials", metavar="TRIAL", nargs="+", help=f"captures ({CAPTURE_FILES})")
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
@@ -58,9 +48,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="FILE",
         nargs="+",
         default=[],
-        help="ground reactions of the trials that are no C3D, in their order",
+        help="ground reactions of the trials other than C3D, in their order",
     )
-    parser.add_argument("--filter", choices=("dynamic", "kinematic"), default="dynamic", help="which filter")
+    parser.add_argument(
+        "--filter", choices=("dynamic", "kinematic"), default="dynamic", help="the filter (dynamic)"
+    )
     parser.add_argument("--name", required=True, metavar="NAME", help="name of the preset")
     parser.add_argument(
         "--out", metavar="PRESET.toml", help="file to write, instead of one among the named presets"
@@ -68,26 +60,19 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--hold-out", metavar="TRIAL", action="append", default=[], help="trial that only judges; repeatable"
     )
-    parser.add_argument("--parameters", metavar="A,B", help="what to tune, see below")
-    parser.add_argument("--runs", metavar="N", type=int, default=60, help="most runs of the search (60)")
+    parser.add_argument("--parameters", metavar="A,B", help="parameters to tune, see below")
+    parser.add_argument("--runs", metavar="N", type=count, default=60, help="most runs of the search (60)")
     parser.add_argument(
         "--keep-markers",
         action="store_true",
         help="keep the subject's marker positions instead of correcting them on each trial",
     )
     add_axes_options(parser)
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Tunes, writes the preset and prints what was found.
-
-    Raises:
-        MbkfError: An input is unusable.
-    """
-    from mbkf.cli.options import axes_options
+    """Tunes, writes the preset and prints the settings."""
     from mbkf.cli.progress import stages
-    from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.io.preset import write_preset
@@ -96,15 +81,12 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.trial.preparation.presets import check_name, place_of
     from mbkf.trial.preparation.settings import ReconstructSettings
 
-    if args.runs < 1:
-        raise InvalidInput(f"--runs must be at least 1, got {args.runs}")
     out = place_of(check_name(args.name), args.out)
     check_folder(out.parent)
-    held_out = positions(args.trials, args.hold_out)
-    forces = forces_of(args.trials, args.forces)
+    held_out, forces = positions(args.trials, args.hold_out), forces_of(args.trials, args.forces)
     settings = TuneSettings(
         filter=args.filter,
-        parameters=None if args.parameters is None else _words(args.parameters),
+        parameters=None if args.parameters is None else comma_separated(args.parameters),
         hold_out=held_out,
         calls=args.runs,
         reconstruct=ReconstructSettings(filter=args.filter, correct_markers=not args.keep_markers),
@@ -123,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def positions(trials: Sequence[str], held_out: Sequence[str]) -> tuple[int, ...] | None:
-    """Which trials are held out, each named as it was given or by its file's name without folder and suffix.
+    """Numbers of the trials to hold out, each named as it was given or by its file's name without folder and suffix.
 
     Raises:
         UnknownName: It is not among the trials.
@@ -151,34 +133,26 @@ def forces_of(trials: Sequence[str], forces: Sequence[str]) -> list[str | None]:
     bare = [i for i, trial in enumerate(trials) if not CAPTURES.format_of(Path(trial)).brings_plates]
     if forces and len(forces) != len(bare):
         raise InvalidInput(
-            f"--forces: {len(bare)} of the trials are no C3D and {len(forces)} files are given; give one for each, "
-            "in their order"
+            f"--forces names {len(forces)} files, and {len(bare)} of the trials bring no plates; give one for each of "
+            "these, in their order"
         )
     return [forces[bare.index(i)] if forces and i in bare else None for i in range(len(trials))]
 
 
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(word.strip() for word in text.split(",") if word.strip())
-
-
 def _print(tuned: Tuned, preset: Preset, out: Path) -> None:
-    from rich.console import Console
-    from rich.table import Table
+    from mbkf.cli.tables import table, terminal
 
-    console = Console(highlight=False, markup=False)
-    table = Table(title=f"Settings of the {tuned.filter} filter", title_justify="left")
-    for heading in ("setting", "default", "found", "in the preset"):
-        table.add_column(heading, justify="left" if heading == "setting" else "right")
+    console = terminal()
+    shown = table(f"Settings of the {tuned.filter} filter", "setting", "default", "found", "in the preset")
     for key, found in tuned.values.items():
         numbers = (tuned.defaults[key], found, preset.values[key])
-        table.add_row(key.replace("_", " "), *(f"{x:g}" for x in numbers))
-    console.print(table)
-    shown = tuned.likelihood
+        shown.add_row(key.replace("_", " "), *(f"{x:g}" for x in numbers))
+    console.print(shown)
     for title, part, names in (
         ("tuned on", "tuned", tuned.tuned_on),
         ("held out", "held_out", tuned.held_out),
     ):
-        before, after = shown[f"{part}_before"], shown[f"{part}_after"]
+        before, after = tuned.likelihood[f"{part}_before"], tuned.likelihood[f"{part}_after"]
         console.print(
             f"{title}: {', '.join(names)}: {before:.4f} → {after:.4f} nats per reading", soft_wrap=True
         )

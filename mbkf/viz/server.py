@@ -203,17 +203,6 @@ class PageServer:
         fresh.cancel()
 
 
-def checked_port(port: int) -> int:
-    """A valid port.
-
-    Raises:
-        InvalidInput: It is not from 0 to 65535.
-    """
-    if not 0 <= port <= 65535:
-        raise InvalidInput(f"port {port}: choose one from 0 (any that is free) to 65535")
-    return port
-
-
 def _response(status: HTTPStatus, body: bytes, kind: str = "text/plain; charset=utf-8") -> Response:
     headers = Headers(
         [

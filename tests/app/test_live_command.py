@@ -4,8 +4,7 @@ import pytest
 
 from mbkf.app.live_command import live_offer, live_options, recording_folder
 from mbkf.app.workspace import Workspace
-from mbkf.cli.live import add_parser
-from mbkf.cli.main import OneLineParser
+from mbkf.cli.main import build_parser
 from mbkf.errors import InvalidInput
 from tests.studies import study
 
@@ -24,9 +23,7 @@ def workspace(lab):
 
 def parsed(words):
     """As `mbkf live` takes them."""
-    parser = OneLineParser(prog="mbkf")
-    add_parser(parser.add_subparsers())
-    return parser.parse_args(["live", *words, "--out=x"])
+    return build_parser(["live"]).parse_args(["live", *words, "--out=x"])
 
 
 def test_a_stream_of_any_name_is_one_word(workspace):

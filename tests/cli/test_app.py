@@ -26,8 +26,8 @@ def test_it_serves_until_it_is_stopped(tmp_path):
     ("words", "fragment"),
     [
         (["{file}"], "a file stands where a folder is needed"),
-        (["{folder}", "--workers", "0"], "give one or more"),
-        (["{folder}", "--port", "70000"], "port 70000"),
+        (["{folder}", "--workers", "0"], "--workers: '0' is not a whole number of one or more"),
+        (["{folder}", "--port", "70000"], "--port: '70000' is not a port"),
     ],
 )
 def test_wrong_options_are_refused(tmp_path, refused, words, fragment):

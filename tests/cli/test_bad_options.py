@@ -29,12 +29,12 @@ def test_mass_that_nobody_states(person, refuse_scale):
 def test_an_output_without_a_name_is_not_the_folder_one_is_in(command, out, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main([*command, "--out", out]) == 2
-    assert "--out names nothing" in capsys.readouterr().err and list(tmp_path.iterdir()) == []
+    assert "--out is empty" in capsys.readouterr().err and list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("lag", ["-5", "nan", "inf"])
 def test_lag_that_cannot_be(lag, person, refuse_reconstruct):
-    refuse_reconstruct([person.trial, f"--lag={lag}"], "--lag", "positive")
+    refuse_reconstruct([person.trial, f"--lag={lag}"], "--lag", "zero or more")
 
 
 @pytest.mark.parametrize(

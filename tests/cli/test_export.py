@@ -5,8 +5,7 @@ import shutil
 import numpy as np
 import pytest
 
-from mbkf.cli.export import add_parser
-from mbkf.cli.main import OneLineParser, main
+from mbkf.cli.main import build_parser, main
 from mbkf.io.results_folder import MOTION_FILE, write_reconstruction
 from mbkf.io.subject import Subject, SubjectMarker, write_subject
 from mbkf.trial.export import FORMATS, RESULT_FORMATS
@@ -14,9 +13,7 @@ from tests.recordings import walk
 
 
 def command(*words):
-    parser = OneLineParser(prog="mbkf")
-    add_parser(parser.add_subparsers())
-    return parser.parse_args(["export", *map(str, words)])
+    return build_parser(["export"]).parse_args(["export", *map(str, words)])
 
 
 def test_a_subject_becomes_a_file(tmp_path, capsys):

@@ -38,7 +38,7 @@ def run(files, out, *more):
 def test_a_recording_played_as_a_stream_leaves_a_results_folder(files, tmp_path, capsys):
     assert run(files, tmp_path, "--from", f"file:{files / 'turn.csv'}", "--speed", "0") == 0
     printed = capsys.readouterr()
-    assert "500 frames came, 0 were lost" in printed.out and "8 sensors calibrated" in printed.err
+    assert "frames: 500 received, 0 lost" in printed.out and "8 sensors calibrated" in printed.err
     assert {path.name for path in tmp_path.iterdir()} >= {
         "live.json",
         "mounts.toml",
@@ -87,7 +87,7 @@ def test_through_lab_streaming_layer_the_results_are_the_same(files, tmp_path, c
     ("words", "message"),
     [
         (["--from", "natnet"], "natnet"),
-        (["--from", "file:"], "lacks the file"),
+        (["--from", "file:"], "names no file"),
         (["--from", "file:nowhere.csv"], "no such file"),
         (["--from", "lsl", "--seconds", "-1"], "--seconds"),
         (["--from", "lsl", "--mass", "70"], "--mass and --height are for a person who is not scaled"),

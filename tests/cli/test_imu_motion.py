@@ -35,4 +35,4 @@ def test_a_person_is_asked_for(files, tmp_path, capsys):
     command = ["imu", "motion", str(files / "squat.csv"), "--out", str(tmp_path / "none")]
     assert main(command) == 2 and "--mass KG and --height M" in capsys.readouterr().err
     assert main([*command, "--subject", str(files / "subject.toml"), "--mass", "70"]) == 2
-    assert "leave them out" in capsys.readouterr().err
+    assert "give one of both" in capsys.readouterr().err

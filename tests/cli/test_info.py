@@ -1,13 +1,12 @@
 """`mbkf info` shows what a capture holds, as tables and as JSON, and passes errors on."""
 
-import argparse
 import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mbkf.cli import info
+from mbkf.cli.main import build_parser
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
@@ -37,9 +36,7 @@ def folder(tmp_path):
 
 
 def run(*words) -> int:
-    parser = argparse.ArgumentParser()
-    info.add_parser(parser.add_subparsers())
-    args = parser.parse_args(["info", *(str(word) for word in words)])
+    args = build_parser(["info"]).parse_args(["info", *(str(word) for word in words)])
     return args.run(args)
 
 

@@ -75,7 +75,7 @@ def test_a_file_gives_the_causal_answer_of_reconstruct(person, tmp_path, capsys,
     ]
     assert run(words) == 0
     shown = capsys.readouterr()
-    assert "60 frames came, 0 were lost" in shown.out
+    assert "frames: 60 received, 0 lost" in shown.out
     assert "36 markers at 100 Hz" in shown.err
     found = read_reconstruction(out)
     for name in ("q", "v", "tau", "foot_wrench", "angles", "moments", "sd_q", "predicted_m"):
@@ -93,7 +93,7 @@ def test_a_lag_is_followed_and_told_apart_from_the_latency(person, tmp_path, cap
     options = ["--subject", person.subject, "--lag", 60]
     assert run(["live", "--from", f"file:{person.trial}", *options, "--speed", 0, "--out", live]) == 0
     shown = capsys.readouterr().out
-    assert "fixed lag 60 ms" in shown and "ms besides a lag of 60.0 ms" in shown
+    assert "fixed lag 60 ms" in shown and "ms, beside a lag of 60.0 ms" in shown
     assert run(["reconstruct", person.trial, *options, "--keep-markers", "--out", offline]) == 0
     found, expected = read_reconstruction(live), read_reconstruction(offline)
     for name in ("q", "v", "tau", "foot_wrench", "angles", "moments", "predicted_m"):
@@ -192,7 +192,7 @@ def test_who_stands_still_is_scaled_as_scale_does_from_the_same_frames(visit, tm
     words = ["live", "--from", f"file:{visit}", "--mass", MASS_KG, "--speed", 0, "--out", out]
     assert run(words) == 0
     told = capsys.readouterr()
-    assert "50 frames came, 0 were lost" in told.out
+    assert "frames: 50 received, 0 lost" in told.out
     steps = (
         "waiting for file",
         "stand still for 1 s",
@@ -330,18 +330,18 @@ def test_bad_input_is_refused(person, tmp_path, refused):
     subject, out = ["--subject", person.subject], ["--out", tmp_path / "out"]
     trial = ["--from", f"file:{person.trial}"]
     refused(["live", *subject, *out], "--from is missing")
-    refused(["live", *trial, *subject, *out, "--mass", "70"], "--mass is for a person to be scaled")
+    refused(["live", *trial, *subject, *out, "--mass", "70"], "--mass is for a person to scale")
     refused(["live", *trial, *subject, *out, "--protocol", "rizzoli"], "--protocol is for a person")
-    refused(["live", *trial, *out, "--mass", "-1"], "--mass -1")
-    refused(["live", *trial, *out, "--view", "--view-port", "70000"], "port 70000")
+    refused(["live", *trial, *out, "--mass", "-1"], "--mass: '-1' is not a positive body mass in kg")
+    refused(["live", *trial, *out, "--view", "--view-port", "70000"], "--view-port: '70000' is not a port")
     refused(["live", *trial, *out, "--protocol", "none"], "unknown protocol 'none'")
     refused(["live", *trial, *subject], "--out is missing")
     refused(["live", "--from", "vicon", *subject, *out], "unknown source 'vicon'")
     refused(["live", "--from", "file:", *subject, *out], "file:TRIAL")
     refused(["live", "--from", "file:none.c3d", *subject, *out], "none.c3d")
-    refused(["live", *trial, *subject, *out, "--seconds", "0"], "--seconds 0")
-    refused(["live", *trial, *subject, *out, "--speed", "-1"], "--speed -1")
-    refused(["live", *trial, *subject, *out, "--lag", "-1"], "--lag -1")
+    refused(["live", *trial, *subject, *out, "--seconds", "0"], "--seconds: '0' is not a positive number")
+    refused(["live", *trial, *subject, *out, "--speed", "-1"], "--speed: '-1' is not")
+    refused(["live", *trial, *subject, *out, "--lag", "-1"], "--lag: '-1' is not")
     refused(["live", *trial, "--subject", "none.toml", *out], "none.toml")
     refused(["live", *trial, *subject, *out, "--preset", "none"], "unknown preset 'none'")
     refused(["live", "--recover", tmp_path / "nothing"], "no such file")
@@ -353,11 +353,11 @@ def test_bad_input_is_refused(person, tmp_path, refused):
 @pytest.mark.parametrize(
     ("options", "fragment"),
     [
-        (["--speed", "0"], "--speed 0"),
-        (["--jitter", "-1"], "--jitter -1"),
-        (["--loss", "1.5"], "--loss 1.5"),
-        (["--wait", "nan"], "--wait nan"),
-        (["--port", "70000", "--to", "natnet"], "cannot be served"),
+        (["--speed", "0"], "--speed: '0' is not a positive number"),
+        (["--jitter", "-1"], "--jitter: '-1' is not"),
+        (["--loss", "1.5"], "--loss: '1.5' is not a number from 0 to 1"),
+        (["--wait", "nan"], "--wait: 'nan' is not"),
+        (["--port", "70000", "--to", "natnet"], "--port: '70000' is not a port"),
         (["--up", "q"], "up axis"),
     ],
 )

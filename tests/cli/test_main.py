@@ -4,10 +4,11 @@ import os
 import re
 import subprocess
 import sys
-from argparse import Namespace
+from argparse import ArgumentParser, Namespace, _SubParsersAction
 
 import pytest
 
+from mbkf.cli import imu, norms, protocol
 from mbkf.cli import main as cli
 from mbkf.cli.main import COMMANDS, build_parser, main
 from mbkf.errors import FileFormatError
@@ -62,9 +63,28 @@ def test_version(capsys):
     assert usage(["--version"], capsys) == (0, f"mbkf {__version__}, {kernel_name()}\n", "")
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_each_command_says_what_to_run(command):
-    assert callable(__import__(f"mbkf.cli.{command}", fromlist=["run"]).run)
+def parsers(parser: ArgumentParser) -> list[ArgumentParser]:
+    """A parser and those of its commands."""
+    nested = [action for action in parser._actions if isinstance(action, _SubParsersAction)]
+    return [parser, *(one for action in nested for sub in action.choices.values() for one in parsers(sub))]
+
+
+def test_each_command_of_a_group_has_its_help_its_example_and_its_work():
+    ends = [parser for parser in parsers(build_parser()) if "run" in parser._defaults]
+    assert len(ends) == len(COMMANDS) - 3 + len(imu.SUBCOMMANDS + norms.SUBCOMMANDS + protocol.SUBCOMMANDS)
+    for parser in ends:
+        assert callable(parser.get_default("run"))
+        assert re.match(rf"Examples?:\n  {parser.prog}", parser.epilog), parser.prog
+
+
+def test_paragraphs_of_the_help_are_filled_and_examples_kept(monkeypatch, capsys):
+    for columns in ("60", "140"):
+        monkeypatch.setenv("COLUMNS", columns)
+        _, out, _ = usage(["batch", "--help"], capsys)
+        lines = out.splitlines()
+        assert "  mbkf batch trials.csv --out results --workers 8" in lines
+        (first,) = (line for line in lines if line.startswith("A folder with captures"))
+        assert 0.8 * int(columns) < len(first) <= int(columns)
 
 
 def test_help_loads_no_slow_library():
@@ -97,13 +117,13 @@ def outcome(monkeypatch):
     [
         (FileFormatError("a.c3d", "not a C3D file"), 2, "a.c3d: not a C3D file"),
         (PermissionError(13, "Permission denied", "out"), 2, "out: permission denied"),
-        (FileExistsError(17, "File exists", "out"), 2, "out: a file stands where a folder is needed"),
-        (NotADirectoryError(20, "Not a directory", "out/x"), 2, "out/x: a file stands"),
+        (FileExistsError(17, "File exists", "out"), 2, "out: a file has the name of the folder to write"),
+        (NotADirectoryError(20, "Not a directory", "out/x"), 2, "out/x: a file has the name"),
         (IsADirectoryError(21, "Is a directory", "out"), 2, "out: is a folder"),
         (FileNotFoundError(2, "No such file or directory", "a.c3d"), 2, "a.c3d: No such file"),
         (OSError("no room\nleft"), 2, "no room left"),
         (KeyboardInterrupt(), 130, "interrupted"),
-        (ValueError("odd"), 1, "unforeseen ValueError: odd (a bug in mbkf"),
+        (ValueError("odd"), 1, "unexpected ValueError: odd. This is a bug in mbkf"),
     ],
 )
 def test_failures_are_one_line(outcome, monkeypatch, capsys, error, code, text):

@@ -3,7 +3,7 @@
 import io
 import sys
 
-from mbkf.cli.progress import progress, stages
+from mbkf.cli.progress import stages
 
 
 class Terminal(io.StringIO):
@@ -12,22 +12,9 @@ class Terminal(io.StringIO):
 
 
 def test_silent_when_stderr_is_not_a_terminal(capsys):
-    with progress("Filtering", 3) as advance:
-        advance(1)
-        advance(2)
     with stages() as report:
         report("Scaling", 1, 2)
     assert capsys.readouterr() == ("", "")
-
-
-def test_terminal_shows_title_and_count(monkeypatch):
-    screen = Terminal()
-    monkeypatch.setattr(sys, "stderr", screen)
-    with progress("Filtering", 3) as advance:
-        advance(1)
-        advance(2)
-    assert "Filtering" in screen.getvalue()
-    assert "3/3" in screen.getvalue()
 
 
 def test_each_stage_has_its_bar_and_may_change_its_total(monkeypatch):

@@ -20,4 +20,4 @@ def test_it_plays_to_nobody_when_told_not_to_wait(person, capsys):
     ]
     name = ["--name", f"mbkf-test-{uuid.uuid4().hex[:8]}", "--loss", "1", "--jitter", "1"]
     assert main([str(word) for word in [*words, *name]]) == 0
-    assert "0 frames sent at 500 Hz as lsl, 60 left out" in capsys.readouterr().out
+    assert "0 frames sent at 500 Hz, 60 left out" in capsys.readouterr().out

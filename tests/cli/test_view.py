@@ -47,7 +47,7 @@ def test_the_page_is_served_until_interrupted(result):
     ("words", "message"),
     [
         (["{none}"], "make it with 'mbkf reconstruct'"),
-        (["{result}", "--port", "70000"], "port 70000"),
+        (["{result}", "--port", "70000"], "--port: '70000' is not a port"),
         (["{result}", "--address", "192.0.2.1", "--no-browser"], "choose another address"),
         (["{result}", "--html", "{result}"], "is a folder"),
     ],

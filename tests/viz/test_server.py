@@ -10,7 +10,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from mbkf.errors import InvalidInput
-from mbkf.viz.server import PageServer, checked_port
+from mbkf.viz.server import PageServer
 
 
 @pytest.fixture
@@ -122,13 +122,6 @@ def test_a_port_in_use_is_said(server):
     port = int(server.url.split(":")[2].strip("/"))
     with pytest.raises(InvalidInput, match=f"127.0.0.1:{port}.*choose another"):
         PageServer("", port=port)
-
-
-def test_ports():
-    assert checked_port(0) == 0
-    for port in (-1, 65536):
-        with pytest.raises(InvalidInput, match="65535"):
-            checked_port(port)
 
 
 def test_closing_ends_the_thread_and_the_sockets(rows):

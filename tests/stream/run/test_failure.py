@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.cli.live_output import told
+from mbkf.cli.following import report_outcome
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.stream.receiving.alignment import FrameAlignment
 from mbkf.stream.results.sending import SendingThread
@@ -96,7 +96,7 @@ def test_a_filter_that_fails_is_told(tmp_path, capture, subject, monkeypatch):
     assert outcome.problem is None
     assert accounted(outcome.report)
     assert outcome.report["frames_written"] == read_reconstruction(tmp_path).frames == 59
-    assert told(outcome, tmp_path) == 1
+    assert report_outcome(outcome, tmp_path) == 1
 
 
 def test_a_source_that_fails_when_it_is_closed_leaves_the_results(tmp_path, capture, subject):

@@ -32,7 +32,7 @@ def test_bands_are_written(results, tmp_path, capsys):
         (["build", "{none}", "--out", "n.toml"], "no results are here"),
         (["build", "{one}", "--out", "n.toml"], "2 persons or more"),
         (["build", "{one}"], "--out"),
-        ([], "ACTION"),
+        ([], "COMMAND"),
     ],
 )
 def test_bad_input_is_one_line(words, message, results, tmp_path, refused):
