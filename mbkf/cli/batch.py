@@ -8,10 +8,10 @@ Examples:
   mbkf batch trials.toml --out results --dask tcp://10.0.0.1:8786    (a cluster's scheduler; "local" for this computer)
   mbkf batch study --out results --shard 3/16                        (one of 16 independent jobs)
 
-A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names the person. Standing trials
-are known by their names (static, calibration, t-pose, …); ground reactions lie beside their trial under its name with
-"grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and plates do not. A list names
-them instead:
+A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names the
+person. Standing trials are known by their names (static, calibration, t-pose, …); ground reactions lie beside their
+trial under its name with "grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and
+plates do not. A list names them instead:
 
   subject,trial,static,forces,mass_kg                    [[subject]]
   P01,P01/walk1.c3d,P01/static.c3d,,71.2                 name = "P01"

@@ -42,7 +42,10 @@ def add_motion_options(parser: argparse.ArgumentParser) -> None:
     first = motions[0].name
     usual = ", ".join(f"{one.name} {one.seconds:g}" for one in motions)
     parser.add_argument(
-        "--motion", metavar="NAME", default=first, help=f"see --seconds, or that of an installed package ({first})"
+        "--motion",
+        metavar="NAME",
+        default=first,
+        help=f"see --seconds, or that of an installed package ({first})",
     )
     parser.add_argument("--seconds", metavar="S", type=float, help=f"duration; by default {usual}")
     parser.add_argument(

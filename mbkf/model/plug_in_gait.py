@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.model.angle_reading import AngleReading, JointAxes, Line
@@ -165,10 +164,14 @@ class _Leg:
         offset, tilt = (self.measured.shank_rad[n], self.measured.ankle_tilt_rad[n]) if wand else (0.0, 0.0)
         at_ankle, centre = self._chord("ankle", "shank_wand", knee, self.measured.ankle_m[n], offset, tilt)
         torsion = self.side * self.measured.torsion_rad[n]
+        from scipy.spatial.transform import Rotation  # loads slowly, and few results need it
+
         return at_ankle @ Rotation.from_euler("Z", torsion).as_matrix(), at_ankle, centre
 
     def foot(self, shank: Array, ankle: Array) -> tuple[Array, Array]:
         """Axes along the line from ankle centre to forefoot, and those that the static trial makes of them."""
+        from scipy.spatial.transform import Rotation
+
         toe = self.places["toe"]
         line = axes_from("x", toe - ankle, "y", shank[:, 1])
         known = self.measured.foot_rad[self.number]

@@ -34,3 +34,7 @@ def test_wrong_options_are_one_line(
     assert code == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
     assert not (tmp_path / "demo").exists()
+
+
+def test_an_unknown_motion_is_refused(refused, tmp_path):
+    refused(["demo", "--motion", "swim", "--out", tmp_path / "x"], "unknown motion 'swim'", "squat")

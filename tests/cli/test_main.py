@@ -33,7 +33,6 @@ def usage(words: list[str], capsys) -> tuple[int, str, str]:
         (["scale"], "--out"),
         (["info"], "FILE"),
         (["demo", "--nonsense"], "--nonsense"),
-        (["demo", "--motion", "swim"], "swim"),
         (["demo", "--seconds", "many"], "many"),
     ],
 )

@@ -139,8 +139,8 @@ def test_import_refuses_in_one_line_and_writes_nothing(content, reason, tmp_path
 
 def test_names_that_no_set_can_have_are_refused_before_any_work(tmp_path, refused, person):
     (tmp_path / "model.osim").write_text(osim_4(skeleton(), MARKERS), encoding="utf-8")
-    refused(["protocol", "import", tmp_path / "model.osim", "--out", tmp_path / "mine.xml"], "end in .toml")
-    refused(["protocol", "edit", person.static, "--out", tmp_path / "mine.txt"], "end in .toml")
+    refused(["protocol", "import", tmp_path / "model.osim", "--out", tmp_path / "mine.xml"], "ends in .toml")
+    refused(["protocol", "edit", person.static, "--out", tmp_path / "mine.txt"], "ends in .toml")
     refused(["protocol", "edit", person.static, "--out", tmp_path / "m.toml", "--port", "99999"], "99999")
     refused(["protocol", "show", "plug_in_gate"], "plug_in_gait")
     refused(["protocol", "check", tmp_path / "none.toml", person.static], "cannot be read")
