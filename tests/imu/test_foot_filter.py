@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mbkf.synthesis.cubic_steps import RATE_HZ, cubic_steps
 from scipy.spatial.transform import Rotation
 
+from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
 from mbkf.errors import InvalidInput
 from mbkf.imu.foot_filter import LEVER, SIZE, FootFilterSettings, FootState, V, _stance, follow_foot, predict
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
