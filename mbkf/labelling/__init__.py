@@ -1,1 +1,1 @@
-"""Which measured point is which marker: the first frame by geometry, then frame by frame by prediction."""
+"""Labels of measured points: the first frame by geometry, then frame by frame by prediction."""

@@ -36,13 +36,13 @@ class AssignmentSettings:
     """Gates and prior probabilities of an assignment.
 
     Attributes:
-        gate: Squared Mahalanobis distance (3 coordinates) beyond which a point is not the marker's.
-        radius_m: Distance beyond which it never is.
-        ghosts_per_m3: How many points that are no markers are expected, λ.
+        gate: Greatest squared Mahalanobis distance (3 coordinates) of a marker's point.
+        radius_m: Greatest distance of a marker's point.
+        ghosts_per_m3: Expected density of ghosts, λ.
         near_m: A point this near its marker, with every other marker and point further than ``clear_m``, is taken
-            without asking for covariances.
+            without covariances.
         clear_m: See ``near_m``.
-        known_bonus: How much cheaper a pair is that was a pair in the frame before, by the point's own track.
+        known_bonus: Reduction of a pair's cost where it was a pair in the frame before, by the point's own track.
     """
 
     gate: float = 25.0
@@ -65,11 +65,11 @@ def assign(
     Args:
         predicted_m: (M, 3) predicted markers.
         points_m: (N, 3) measured points, none of them missing, in any order.
-        covariance: Gives S, (m, 3, 3) in m², of the markers chosen by a mask (M,); asked only where points are near
+        covariance: Gives S, (m, 3, 3) in m², of the markers chosen by a mask (M,); called only where points are near
             to several markers or far from all.
         settings: Gate, radius, ghosts.
-        known: Gives the marker (N,) that each point's own track carried in the frame before, ``HIDDEN`` where none, or
-            None where no track is known; called only where pairs are in dispute.
+        known: Gives the marker (N,) of each point's own track in the frame before, ``HIDDEN`` where none; None where no
+            track is known. Called only where pairs are in dispute.
     """
     if not len(points_m) or not len(predicted_m):
         return np.full(len(predicted_m), HIDDEN, dtype=np.intp)
@@ -137,9 +137,9 @@ def marker_of_point(labels: Indices, points: int) -> Indices:
 
 
 def _all_clear(squared: Array, settings: AssignmentSettings) -> Indices | None:
-    """The answer in the usual frame, where no pair is in dispute and no hidden marker may be a free point; else None.
+    """The labels where no pair is in dispute and no hidden marker may be a free point; else None.
 
-    It is asked of every frame, and so makes do with few calls; for the few hidden markers lists are quicker.
+    It runs in every frame, so it uses few calls; for the few hidden markers lists are quicker.
     """
     markers, points = squared.shape
     found = squared.argmin(axis=1)
@@ -163,7 +163,7 @@ def _all_clear(squared: Array, settings: AssignmentSettings) -> Indices | None:
 
 @cache
 def _row_starts(rows: int, columns: int) -> Indices:
-    """(rows,) where the rows of a matrix begin in its ravelled form."""
+    """(rows,) first index of each row in the ravelled matrix."""
     return np.arange(rows) * columns
 
 

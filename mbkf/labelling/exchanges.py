@@ -1,11 +1,10 @@
 """Names that two markers of a named capture exchange for some frames, found by distances and by jumps.
 
 A laboratory's labels may be swapped between two markers, mostly after one of them was hidden. Two kinds of evidence are
-joined. The distances from a marker to its rigid neighbours tell whether it stands under its own name: with expected
-distance D and its spread s, a point at x costs Σ min((|x − x_n| − D_n)² / s_n², c) as that marker. And names that are
-exchanged from one frame to the next turn the vector δ from one marker to the other about: δ(t) · δ(t+1) < 0, which two
-markers that only move do not. The likeliest sequence of stored and exchanged frames follows by the Viterbi recursion
-(G. D. Forney, Proc. IEEE 61, 1973, 268-278).
+joined. The first are the distances from a marker to its rigid neighbours: with expected distance D and its spread s, a
+point at x costs Σ min((|x − x_n| − D_n)² / s_n², c) as that marker. The second is the vector δ from one marker to the
+other, which an exchange from one frame to the next reverses: δ(t) · δ(t+1) < 0. The most likely sequence of stored and
+exchanged frames follows by the Viterbi recursion (G. D. Forney, Proc. IEEE 61, 1973, 268-278).
 """
 
 from __future__ import annotations
@@ -24,56 +23,56 @@ if TYPE_CHECKING:
     from mbkf.labelling.assignment import Indices
 
 POSTURES = 48
-"""Postures by which it is learnt how far the distance of two markers varies."""
+"""Postures from which the spread of the distance of two markers is computed."""
 
 FREE_SD_RAD = 0.4
-"""Spread of joint rotations that the body describes no posture for."""
+"""Spread of joint rotations without a posture prior."""
 
 NEIGHBOURS = 6
-"""So many markers of the steadiest distances speak for a marker's name."""
+"""Number of markers, those of the steadiest distances, by which a name is judged."""
 
 WORST = 9.0
-"""The most that one distance costs, c: a neighbour may be astray itself."""
+"""Greatest cost of one distance, c: a neighbour may itself be misplaced."""
 
 LOOKS = 150
-"""Frames, spread over the capture, at which pairs are looked for."""
+"""Frames, spread over the capture, in which pairs are searched."""
 
 TURNED, FLIPPED = 400.0, 25.0
-"""Cost of a state that goes against a turn of δ or its absence, and of a change where δ is not known."""
+"""Cost of a state that contradicts a reversal of δ or its absence, and of a change where δ is unknown."""
 
 APART_M = 0.015
-"""Markers nearer than this to each other are not told apart."""
+"""Least distance of two markers that can be distinguished."""
 
 SUSPECT_GAIN = 5.0
-"""A pair is looked at that gains so much in some frame."""
+"""Gain in some frame from which a pair is examined."""
 
 LEAST_GAIN, SURE_GAIN = 1.0, 12.0
-"""Mean gain of a frame by which an exchange is put right: where δ turns at all of its ends, and where it does not."""
+"""Least mean gain of a frame for an exchange: where δ reverses at all of its ends, and where it does not."""
 
-LEFT, SURELY_LEFT = 0.9, 0.6
-"""An exchange that is put right leaves no more than this share of the cost; in the same two cases."""
+MOST_LEFT, SURE_MOST_LEFT = 0.9, 0.6
+"""Greatest share of the cost that an exchange leaves, in the same two cases."""
 
 BOTH_SEEN = 0.2
-"""Both markers must be seen in this share of an exchange: of one alone, with its rigid neighbours hidden as well, limbs
-that are bent further than usual look like another name."""
+"""Least share of an exchange in which both markers are seen: with one alone, whose rigid neighbours are hidden as well,
+a limb that is bent further than usual looks like another name."""
 
 KEPT_COS = 0.5
-"""Over a gap δ may turn with the body, by 120° between knees that pass each other: an exchange turns what it then was
-about, and leaves it further than this from where it was before. Nearer, no names were exchanged in the gap."""
+"""Cosine of the angle of δ across a gap above which no names were exchanged in it: the body turns δ, by up to 120°
+between knees that pass each other, and an exchange reverses it."""
 
 OBSERVED_SD_M, FEW = 0.008, 20
-"""Least spread of a distance as the capture has it, and how many frames looked at must show it."""
+"""Least spread of a distance observed in the capture, and least number of examined frames that show it."""
 
 BLOCK = 16
-"""Frames that are worked on at once."""
+"""Frames per block."""
 
 ROUNDS = 8
-"""Most rounds of exchanges that hang together."""
+"""Greatest number of rounds, for exchanges that depend on each other."""
 
 
 @dataclass(frozen=True)
 class Distances:
-    """What distances between the markers are expected.
+    """Expected distances between M markers.
 
     Attributes:
         expected_m: (M, M) expected distance.
@@ -85,18 +84,18 @@ class Distances:
 
     @property
     def neighbours(self) -> Indices:
-        """(M, k) markers to whom a marker's distance is the steadiest."""
+        """(M, k) markers with the steadiest distances from each marker."""
         spread = self.sd_m + np.diag(np.full(len(self.sd_m), np.inf))
         return np.asarray(np.argsort(spread, axis=1)[:, : min(NEIGHBOURS, len(spread) - 1)])
 
 
 @dataclass(frozen=True)
 class Exchange:
-    """Two markers and the frames in which they have each other's name.
+    """Two markers and the frames in which their names are exchanged.
 
     Attributes:
         a, b: Their indices, the smaller first.
-        frames: (T,) where their names are exchanged.
+        frames: (T,) True where their names are exchanged.
     """
 
     a: int
@@ -105,12 +104,7 @@ class Exchange:
 
 
 def body_distances(sensor: MarkerSensor, placement_m: Array) -> Distances:
-    """Distances between the markers of a body, over postures that are likely for it.
-
-    Args:
-        sensor: M markers on the body.
-        placement_m: (M,) how far each may be from its place, m.
-    """
+    """Distances between M markers of a body over likely postures, each marker with the spread (M,) of its place, m."""
     model, rng = sensor.model, np.random.default_rng(0)
     spread = np.where(model.posture_sd > 0.0, np.minimum(model.posture_sd, FREE_SD_RAD), FREE_SD_RAD)
     spread[:6] = 0.0
@@ -123,11 +117,9 @@ def body_distances(sensor: MarkerSensor, placement_m: Array) -> Distances:
 
 
 def observed_distances(positions_m: Array, distances: Distances) -> Distances:
-    """Distances as a capture has them most of the time: closer than the body's, where markers sit elsewhere on it.
+    """Median distances of a capture (T, M, 3), NaN where hidden; those given for pairs that are rarely seen together.
 
-    Args:
-        positions_m: (T, M, 3) named trajectories, NaN where hidden, exchanged in the fewer of the frames.
-        distances: What is expected of pairs that are never seen together.
+    Names may be exchanged in less than half of the frames.
     """
     looks = spread_indices(len(positions_m), LOOKS)
     apart = np.sqrt(np.maximum(_squared(positions_m[looks]), 0.0))
@@ -140,13 +132,8 @@ def observed_distances(positions_m: Array, distances: Distances) -> Distances:
     )
 
 
-def exchanges(positions_m: Array, distances: Distances) -> tuple[Exchange, ...]:
-    """Pairs of markers whose names are exchanged, and where; each pair once.
-
-    Args:
-        positions_m: (T, M, 3) named trajectories, NaN where hidden.
-        distances: What distances are expected between the M markers.
-    """
+def find_exchanges(positions_m: Array, distances: Distances) -> tuple[Exchange, ...]:
+    """Exchanges in named trajectories (T, M, 3), NaN where hidden, by the expected distances; each pair once."""
     shown, found = positions_m, dict[tuple[int, int], BoolArray]()
     if shown.shape[1] < 4 or not len(shown):
         return ()
@@ -156,7 +143,7 @@ def exchanges(positions_m: Array, distances: Distances) -> tuple[Exchange, ...]:
         chosen = _chosen(shown, expected, pairs) if len(pairs) else []
         for one in chosen:
             found[one.a, one.b] = found.get((one.a, one.b), np.zeros(len(shown), dtype=bool)) ^ one.frames
-        shown = put_right(shown, chosen)
+        shown = undo_exchanges(shown, chosen)
         if not chosen and not of_body:
             break
         if chosen:
@@ -166,13 +153,8 @@ def exchanges(positions_m: Array, distances: Distances) -> tuple[Exchange, ...]:
     return tuple(Exchange(a, b, frames) for (a, b), frames in found.items() if frames.any())
 
 
-def put_right(positions_m: Array, found: tuple[Exchange, ...] | list[Exchange]) -> Array:
-    """(T, M, 3) trajectories with exchanged names put right, in the order in which the exchanges were found.
-
-    Args:
-        positions_m: (T, M, 3) trajectories as they are named.
-        found: The exchanges.
-    """
+def undo_exchanges(positions_m: Array, found: tuple[Exchange, ...] | list[Exchange]) -> Array:
+    """(T, M, 3) named trajectories without these exchanges, which are undone in the order in which they were found."""
     right = positions_m.copy()
     for one in found:
         right[one.frames, one.a], right[one.frames, one.b] = (
@@ -183,12 +165,7 @@ def put_right(positions_m: Array, found: tuple[Exchange, ...] | list[Exchange]) 
 
 
 def misfits(positions_m: Array, distances: Distances) -> tuple[Array, Array]:
-    """(T, M) cost of every marker under its own name, and how many neighbours (T, M) it was judged by.
-
-    Args:
-        positions_m: (T, M, 3) named trajectories, NaN where hidden.
-        distances: What distances are expected between the M markers.
-    """
+    """(T, M) cost of every marker under its own name, and number of its neighbours (T, M), by positions (T, M, 3)."""
     near = distances.neighbours
     cost, count = np.zeros(positions_m.shape[:2]), np.zeros(positions_m.shape[:2])
     for marker, own in enumerate(near):
@@ -200,7 +177,7 @@ def misfits(positions_m: Array, distances: Distances) -> tuple[Array, Array]:
 
 
 def _suspects(shown_m: Array, distances: Distances, turning: BoolArray) -> Indices:
-    """(P, 2) pairs that fit better the other way round in some frame looked at, or whose δ turns about (M, M)."""
+    """(P, 2) pairs that fit better with exchanged names in some examined frame, or whose δ reverses (M, M)."""
     looks = spread_indices(len(shown_m), LOOKS)
     near, frames = distances.neighbours, shown_m[looks]
     count = shown_m.shape[1]
@@ -229,7 +206,7 @@ def _squared(frames_m: Array) -> Array:
 
 
 def _turning(shown_m: Array) -> BoolArray:
-    """(M, M) whether the vector from one marker to another turns about from any frame to the next."""
+    """(M, M) True where the vector from one marker to another reverses from any frame to the next."""
     turning = np.zeros((shown_m.shape[1], shown_m.shape[1]), dtype=bool)
     for first in range(0, len(shown_m) - 1, BLOCK):  # small blocks stay in the processor's cache
         now = shown_m[first : first + BLOCK + 1]
@@ -241,7 +218,7 @@ def _turning(shown_m: Array) -> BoolArray:
 
 
 def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchange]:
-    """The exchanges that gain most, no marker in two of them."""
+    """The exchanges of greatest gain, no marker in two of them."""
     gain, left, stored = _gains(shown_m, distances, pairs)
     delta = shown_m[:, pairs[:, 0]] - shown_m[:, pairs[:, 1]]
     turn = np.einsum("tpi,tpi->tp", delta[1:], delta[:-1])  # NaN where one is hidden
@@ -258,8 +235,8 @@ def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchan
             ends = [t for t in (first - 1, end - 1) if 0 <= t < len(turn)]
             if any(turn[t, p] >= 0.0 or _kept(delta[:, p], t) for t in ends):
                 continue
-            told = bool(ends) and all(turn[t, p] < 0.0 for t in ends)
-            least, most = (LEAST_GAIN, LEFT) if told else (SURE_GAIN, SURELY_LEFT)
+            reversed_ = bool(ends) and all(turn[t, p] < 0.0 for t in ends)
+            least, most = (LEAST_GAIN, MOST_LEFT) if reversed_ else (SURE_GAIN, SURE_MOST_LEFT)
             gained = gain[there, p].sum() >= least * looked.sum()
             kept[there] = gained and left[there, p].sum() <= most * stored[there, p].sum()
         if kept.any():
@@ -272,7 +249,7 @@ def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchan
 
 
 def _kept(delta: Array, t: int) -> bool:
-    """Whether δ (T, 3) has its direction before a gap about frames t and t + 1 still after it."""
+    """True where δ (T, 3) keeps its direction over a gap about frames t and t + 1."""
     seen = np.flatnonzero(~np.isnan(delta[:, 0]))
     after = int(np.searchsorted(seen, t, side="right"))
     if not 0 < after < len(seen):
@@ -282,7 +259,7 @@ def _kept(delta: Array, t: int) -> bool:
 
 
 def _gains(shown_m: Array, distances: Distances, pairs: Indices) -> tuple[Array, Array, Array]:
-    """(T, P) what exchanging each pair gains, what then is left, and the cost as stored; 0 where both are hidden."""
+    """(T, P) gain of exchanging each pair, cost then left, and cost as stored; 0 where both are hidden."""
     shape = (len(shown_m), len(pairs))
     stored, left = np.zeros(shape), np.zeros(shape)
     for p, (a, b) in enumerate(pairs):
@@ -299,12 +276,12 @@ def _gains(shown_m: Array, distances: Distances, pairs: Indices) -> tuple[Array,
 
 
 def _likeliest(gain: Array, turn: Array) -> BoolArray:
-    """(T, P) whether the names of each pair are exchanged, by gains (T, P) and δ(t)·δ(t+1) (T - 1, P)."""
+    """(T, P) True where the names of each pair are exchanged, by gains (T, P) and δ(t)·δ(t+1) (T - 1, P)."""
     frames, pairs = gain.shape
     stay = np.where(np.isnan(turn), 0.0, np.where(turn < 0.0, TURNED, 0.0))
     flip = np.where(np.isnan(turn), FLIPPED, np.where(turn < 0.0, 0.0, TURNED))
     cost = np.array([np.zeros(pairs), FLIPPED - gain[0]])
-    came = np.zeros((frames, 2, pairs), dtype=bool)  # whether from the other state
+    came = np.zeros((frames, 2, pairs), dtype=bool)  # True: from the other state
     for t in range(1, frames):
         kept, changed = cost + stay[t - 1], cost[::-1] + flip[t - 1]
         came[t] = changed < kept

@@ -1,9 +1,9 @@
 """Labels of a first frame without any prediction: relative positions of points, then a pose fit that must be good.
 
-The thesis sorts the markers of a standing pose by height and side. Here the subject's own marker geometry takes the
-place of such rules, so that any protocol will do: the root's markers are found by their distances, the other segments
-by the distances of their markers from each other and from the joint, and the pose fitted to these (the least squares
-of thesis eq. 4.1 with positions only) predicts the rest.
+The thesis sorts the markers of a standing pose by height and side. The subject's own marker geometry replaces such
+rules here, for any protocol: the root's markers are found by their distances, the other segments by the distances of
+their markers from each other and from the joint, and the pose fitted to these (the least squares of thesis eq. 4.1
+with positions only) predicts the rest.
 """
 
 from __future__ import annotations
@@ -14,42 +14,42 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign
-from mbkf.labelling.beam_search import PartialBody, search_bodies, search_limb
-from mbkf.labelling.placing import likeness
-from mbkf.labelling.seeds import any_attitude, upright
+from mbkf.labelling.beam import PartialBody
+from mbkf.labelling.beam_search import search_bodies, search_limb
+from mbkf.labelling.placing import log_likelihood_ratio
+from mbkf.labelling.seeds import Seeds, seeds_in_any_attitude, upright_seeds
 from mbkf.labelling.skeleton import clusters, limbs
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
 
 LEAST_SD_M = 0.010
-"""Body and person differ by this much at least."""
+"""Least spread of a marker: body and person differ."""
 
 MIN_MARKERS = 6
-"""Fewer do not place a body."""
+"""Fewer markers do not determine a pose."""
 
-STRANGE = 2.5
+OUTLYING_SDS = 2.5
 """A point further than so many standard deviations from its marker does not take part in the fit."""
 
-
-DOUBTFUL = 2.0
+DOUBTFUL_SDS = 2.0
 """A limb with a marker further off than so many standard deviations, or without one, is searched again."""
 
 LIMB_CANDIDATES = 3
-"""How many alternatives of such a limb are fitted."""
+"""Alternatives of such a limb that are fitted."""
 
 
 @dataclass(frozen=True)
 class FirstFrameSettings:
-    """When a first frame is accepted.
+    """Limits within which a first frame is accepted.
 
     Attributes:
         rms_m: Greatest RMS distance of the labelled points from the fitted body.
         least_share: Least share of the body's markers that must be found.
-        least_explained: Least share of the points, or of the body's markers where these are fewer, that must be.
-        candidates: How many bodies of the beam search are fitted.
-        rounds: How often labels and pose are brought into line.
-        radius_m: Hard radius of the assignment while the pose is not settled.
+        least_explained: Least share of the points that must be labelled, or of the markers where these are fewer.
+        candidates: Bodies of the beam search that are fitted.
+        rounds: Greatest number of rounds of alternately fitting and assigning.
+        radius_m: Radius of the assignment while the pose is rough.
     """
 
     rms_m: float = 0.025
@@ -68,13 +68,13 @@ class FirstFrame:
         points: (M,) point of every marker, ``HIDDEN`` where none.
         q: (nq,) fitted pose.
         rms_m: RMS distance of the labelled points from it.
-        worth: Twice the log-likelihood ratio of its labels and of ghosts only, posture included.
+        log_ratio: Twice the log-likelihood ratio of its labels and of ghosts only, posture included.
     """
 
     points: Indices
     q: Array
     rms_m: float
-    worth: float
+    log_ratio: float
 
     @property
     def labelled(self) -> int:
@@ -87,8 +87,8 @@ class FirstFrameSearch:
 
     Attributes:
         sensor: The markers on the subject's body.
-        sd_m: (M,) how far a marker may be from its place on the body, noise and placement together, m.
-        settings: When a labelled frame is accepted.
+        sd_m: (M,) spread of a marker about its place on the body, noise and placement together, m.
+        settings: Limits within which a labelled frame is accepted.
     """
 
     def __init__(self, sensor: MarkerSensor, sd_m: Array, settings: FirstFrameSettings | None = None) -> None:
@@ -100,28 +100,28 @@ class FirstFrameSearch:
         self._assignment = AssignmentSettings(radius_m=self.settings.radius_m, near_m=0.0)
 
     @property
-    def least(self) -> int:
-        """Fewer points than this are not looked at."""
+    def fewest_points(self) -> int:
+        """Least number of points of a frame that is searched."""
         return max(MIN_MARKERS, int(np.ceil(self.settings.least_share * len(self.sd_m))))
 
-    def standing(self, points_m: Array) -> FirstFrame | None:
+    def upright(self, points_m: Array) -> FirstFrame | None:
         """Labels of points (N, 3) of an upright body of any heading, or None where they do not fit."""
-        return self._search(points_m, upright(self._body[0], points_m))
+        return self._search(points_m, upright_seeds(self._body[0], points_m))
 
     def any_attitude(self, points_m: Array) -> FirstFrame | None:
         """The same for a body in any attitude (prone, kneeling); slower, since the root has more candidate poses."""
-        return self._search(points_m, any_attitude(self._body[0], points_m))
+        return self._search(points_m, seeds_in_any_attitude(self._body[0], points_m))
 
-    def _search(self, points_m: Array, seeds: tuple[Array, Array]) -> FirstFrame | None:
+    def _search(self, points_m: Array, seeds: Seeds) -> FirstFrame | None:
         candidates = search_bodies(self._body, points_m, seeds, self.settings.candidates)
-        fitted = [self._fitted(points_m, one.points, None) for one in candidates]
+        fitted = [self._fitted(points_m, one.labels, None) for one in candidates]
         near = [one for one in fitted if one.rms_m <= 2.0 * self.settings.rms_m] or fitted
         if not near:
             return None
-        best = self._improved(points_m, max(near, key=lambda one: one.worth))
+        best = self._improved(points_m, max(near, key=lambda one: one.log_ratio))
         return best if self.accepted(best, len(points_m)) else None
 
-    def about(self, points_m: Array, q: Array) -> FirstFrame | None:
+    def near_pose(self, points_m: Array, q: Array) -> FirstFrame | None:
         """Labels of points (N, 3) of a body that is nearly in the pose q (nq,), or None."""
         predicted = self.sensor.positions(q)
         near = np.broadcast_to(0.03**2 * np.eye(3), (len(predicted), 3, 3))
@@ -129,7 +129,7 @@ class FirstFrameSearch:
         found = self._fitted(points_m, first, q)
         return found if self.accepted(found, len(points_m)) else None
 
-    def settled(self, points_m: Array, labels: Indices) -> FirstFrame | None:
+    def refined(self, points_m: Array, labels: Indices) -> FirstFrame | None:
         """Labels of points (N, 3) from rough ones (M,), which some markers may lack, or None."""
         if np.count_nonzero(labels != HIDDEN) < MIN_MARKERS:
             return None
@@ -139,17 +139,16 @@ class FirstFrameSearch:
     def _improved(self, points_m: Array, found: FirstFrame) -> FirstFrame:
         """Labels with every doubtful limb searched again from the fitted body, from the fingers and toes inwards."""
         for limb in reversed(limbs(self._body)):
-            own = np.concatenate([self._body[number].markers for number in limb])
-            distance = np.linalg.norm(
-                self.sensor.positions(found.q) - labelled(points_m, found.points), axis=1
-            )
-            if (distance[own] <= DOUBTFUL * self.sd_m[own]).all():
+            own = np.concatenate([cluster.markers for cluster in limb])
+            shown = labelled_points(points_m, found.points)
+            distance = np.linalg.norm(self.sensor.positions(found.q) - shown, axis=1)
+            if (distance[own] <= DOUBTFUL_SDS * self.sd_m[own]).all():
                 continue
             others = [
-                self._fitted(points_m, one.points, None)
-                for one in search_limb(self._body, points_m, self._placed(found), limb, LIMB_CANDIDATES)
+                self._fitted(points_m, one.labels, None)
+                for one in search_limb(points_m, self._placed(found), limb, LIMB_CANDIDATES)
             ]
-            found = max(found, *others, key=lambda one: one.worth)
+            found = max(found, *others, key=lambda one: one.log_ratio)
         return found
 
     def _placed(self, found: FirstFrame) -> PartialBody:
@@ -158,22 +157,22 @@ class FirstFrameSearch:
         return PartialBody(rotations[joints], origins[joints], found.points, 0.0)
 
     def accepted(self, found: FirstFrame, points: int) -> bool:
-        """Whether enough markers of a frame with so many points fit well enough."""
+        """True where enough markers of a frame with so many points fit well enough."""
         could = min(points, len(found.points))
-        enough = found.labelled >= max(self.least, self.settings.least_explained * could)
+        enough = found.labelled >= max(self.fewest_points, self.settings.least_explained * could)
         return enough and found.rms_m <= self.settings.rms_m
 
     def _fitted(self, points_m: Array, labels: Indices, start: Array | None) -> FirstFrame:
-        """Pose and labels brought into line: fit, assign by the fit's covariance, and again until nothing changes."""
+        """Pose and labels: fit, assign by the fit's covariance, and again until no label changes."""
         q = start
         for _ in range(self.settings.rounds):
-            measured = labelled(points_m, labels)
+            measured = labelled_points(points_m, labels)
             if q is None:
                 q = segment_by_segment(self.sensor, measured)
             fit = self._fit(measured, q)
             distance = np.linalg.norm(self.sensor.positions(fit.q) - measured, axis=1)
-            found = FirstFrame(labels, fit.q, fit.rms_m, self.worth(measured, fit.q))
-            far = distance > STRANGE * self.sd_m
+            found = FirstFrame(labels, fit.q, fit.rms_m, self.log_ratio(measured, fit.q))
+            far = distance > OUTLYING_SDS * self.sd_m
             if far.any() and (~far).sum() >= MIN_MARKERS:
                 fit = self._fit(np.where(far[:, None], np.nan, measured), fit.q)
             again = self._assigned(points_m, fit.q, fit.covariance)
@@ -182,14 +181,14 @@ class FirstFrameSearch:
             labels, q = again, fit.q
         return found
 
-    def worth(self, markers_m: Array, q: Array) -> float:
-        """Twice the log-likelihood ratio of markers (M, 3) on a body in pose q (nq,) and of ghosts, plus the posture's.
+    def log_ratio(self, markers_m: Array, q: Array) -> float:
+        """Twice the log-likelihood ratio of markers (M, 3) on a body in pose q (nq,) and ghosts, with the pose's prior.
 
         Exchanged markers of a wrist fit as well, but turn the forearm by half a turn: its posture is unlikely.
         """
         away = self.sensor.positions(q) - markers_m
         posture = self.posture.reading(q).deviation / self.posture.sd
-        return float(np.nansum(likeness((away**2).sum(axis=1), self.sd_m)) - posture @ posture)
+        return float(np.nansum(log_likelihood_ratio((away**2).sum(axis=1), self.sd_m)) - posture @ posture)
 
     def _fit(self, measured_m: Array, start: Array) -> PoseFit:
         return fit_pose(self.sensor, self.posture, measured_m, self.sd_m, start, max_iterations=12)
@@ -205,7 +204,7 @@ class FirstFrameSearch:
         return assign(reading.positions_m, points_m, spread, self._assignment)
 
 
-def labelled(points_m: Array, labels: Indices) -> Array:
+def labelled_points(points_m: Array, labels: Indices) -> Array:
     """(M, 3) the markers' points, NaN where a marker has none."""
     if not len(points_m):
         return np.full((len(labels), 3), np.nan)

@@ -1,64 +1,45 @@
 """Poses of one segment that match its marker cluster with tracks, at several keyframes at once.
 
-This body has not been scaled: its markers sit some centimetres from where the protocol has them and its limbs are
+This body has not been scaled: its markers lie some centimetres from their places in the protocol, and its limbs are
 longer or shorter. A segment's pose therefore comes from its own tracks, with a weak residual of its joint. Wrong
-tracks are kept out because they do not move with the segment, or fit at one keyframe and not at the others.
+tracks do not move with the segment, or fit at one keyframe only, and so are kept out.
 """
 
 from __future__ import annotations
-
-from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.beam import BRANCHES, Placing, distinct_rows
 from mbkf.labelling.keyframes import Keyframes
-from mbkf.labelling.placing import MOST_POSTURE, PLACING_SD_M, likeness
+from mbkf.labelling.placing import MOST_POSTURE, PLACING_SD_M, match_log_ratios, nearest
 from mbkf.labelling.skeleton import Cluster
 from mbkf.numerics.rotations import nearest_rotations
 
 TOGETHER_M = 0.05
-"""Two tracks whose distance varies more than this are not on one segment; skin and shoulder blades do so much."""
+"""Greatest variation of the distance of two tracks on one segment, as skin and shoulder blades move."""
 
 LENGTH_M = 0.03
-"""How much the distance of two markers may differ from the protocol's."""
+"""Greatest difference of two markers' distance from the protocol's."""
 
 JOINT_REACH_M, JOINT_SD_M = 0.12, 0.04
-"""How far a joint may be, and how far it typically is, from where the chain of segments placed it."""
+"""Greatest and typical distance of a joint from its place in the chain of segments."""
 
 REACH_M = 0.09
-"""How far a track may be from its marker while the segment's pose is not settled."""
+"""Greatest distance of a track from its marker while the segment's pose is rough."""
 
 SETTLED_SDS = 3.0
-"""How many of a marker's standard deviations it may be once it is."""
+"""The same after the first round, in standard deviations of the marker."""
 
 MATCH_SD_M = 0.02
 """A marker's spread against which :data:`JOINT_SD_M` weighs the joint's residual."""
 
 ROUNDS = 3
-"""How often pose and tracks are brought into line."""
+"""Rounds of alternately finding pose and tracks."""
 
 _PAIRS, _SINGLES, _KEPT = 120, 40, 24
 _PARENT_PULL = 2e-4
-
-
-@dataclass(frozen=True)
-class Placed:
-    """A segment at K keyframes.
-
-    Attributes:
-        rotations: (K, 3, 3) its orientation.
-        origins_m: (K, 3) its joint.
-        tracks: (k,) place among the N tracks of each of its markers' own, ``HIDDEN`` where none.
-        score: Log-likelihood ratio of its matches, less the cost of the joint's gap and turn.
-    """
-
-    rotations: Array
-    origins_m: Array
-    tracks: Indices
-    score: float
 
 
 class KeyframePlacing:
@@ -66,7 +47,7 @@ class KeyframePlacing:
 
     Attributes:
         seen: The tracks.
-        together: (N, N) whether two may be on one segment.
+        together: (N, N) True where two may be on one segment.
     """
 
     def __init__(self, seen: Keyframes) -> None:
@@ -75,34 +56,33 @@ class KeyframePlacing:
         self._weight = (~np.isnan(seen.positions_m[:, :, 0])).astype(float)
         self._points = np.nan_to_num(seen.positions_m)
 
-    def placings(
-        self, cluster: Cluster, origins_m: Array, parents: Array, free: Indices, most: int
-    ) -> list[Placed]:
-        """The best ways to place a segment, best first, and last the one with no marker found.
+    def placings(self, cluster: Cluster, origins_m: Array, parents: Array, free: Indices) -> list[Placing]:
+        """The best ways to place a segment, best first; the last is without any marker.
 
         Args:
             cluster: The segment.
-            origins_m: (K, 3) where the chain has its joint.
+            origins_m: (K, 3) its joint by the chain of segments.
             parents: (K, 3, 3) orientation of the segment before.
             free: Tracks not yet taken.
-            most: How many to return at most.
         """
-        nothing = Placed(parents, origins_m, np.full(len(cluster.markers), HIDDEN, dtype=np.intp), 0.0)
+        nothing = Placing(parents, origins_m, np.full(len(cluster.markers), HIDDEN, dtype=np.intp), 0.0)
         tracks, allowed = self._first(cluster, origins_m, free)
         if not len(tracks):
             return [nothing]
+        settled_reach = SETTLED_SDS * np.hypot(cluster.sd_m, PLACING_SD_M)
         for round_ in range(ROUNDS):
             rotations, origins = self.settle(cluster.local_m, tracks, origins_m, parents)
-            reach = np.maximum(_settled_reach(cluster), REACH_M if round_ == 0 else 0.0)
+            reach = np.maximum(settled_reach, REACH_M if round_ == 0 else 0.0)
             tracks, score = self.rate(cluster, rotations, origins, free, allowed, reach)
             score = score - self._strain(cluster, rotations, origins, origins_m, parents)
-            kept = np.fromiter(_different(tracks, score, _KEPT), dtype=np.intp)
+            rows = distinct_rows(tracks, score, _KEPT + 1)
+            kept = np.array([row for row in rows if (tracks[row] != HIDDEN).any()][:_KEPT], dtype=np.intp)
             tracks, score, allowed = tracks[kept], score[kept], allowed[kept]
             rotations, origins = rotations[kept], origins[kept]
             if not len(kept):
                 break
-        ways = [Placed(*way) for way in zip(rotations, origins, tracks, score.tolist(), strict=True)]
-        return [*ways[: most - 1], nothing]
+        ways = map(Placing, rotations, origins, tracks, score.tolist())
+        return [*list(ways)[: BRANCHES - 1], nothing]
 
     def settle(
         self, local_m: Array, tracks: Indices, origins_m: Array, parents: Array | None
@@ -115,7 +95,7 @@ class KeyframePlacing:
         Args:
             local_m: (k, 3) markers in the segment's frame.
             tracks: (n, k) track of each marker, ``HIDDEN`` where none, in n alternatives.
-            origins_m: (K, 3) where the chain of segments has the joint.
+            origins_m: (K, 3) its joint by the chain of segments.
             parents: (K, 3, 3) orientation of the segment before; None for the root, which has no joint.
         """
         weight = np.where((tracks != HIDDEN)[:, None], self._weight[:, tracks].transpose(1, 0, 2), 0.0)
@@ -147,22 +127,16 @@ class KeyframePlacing:
             rotations: (n, K, 3, 3) its orientations.
             origins_m: (n, K, 3) its joint.
             free: (F,) tracks not yet taken.
-            allowed: (n, F) which of them move with those that it was placed by.
-            reach_m: (k,) how far a marker's track may be.
+            allowed: (n, F) True for those that move with the tracks by which the segment was placed.
+            reach_m: (k,) greatest distance of each marker's track.
         """
         placed = np.einsum("nkij,mj->nkmi", rotations, cluster.local_m) + origins_m[:, :, None]
         weight = self._weight[:, free]
         shown = np.maximum(weight.sum(axis=0), 1e-9)
         squared = self._squared(placed, free) / shown
         squared = np.where(allowed[:, None] & (weight.sum(axis=0) > 0), squared, np.inf)
-        nearest = squared.argmin(axis=2)
-        least = np.take_along_axis(squared, nearest[:, :, None], axis=2)[:, :, 0]
-        same = nearest[:, :, None] == nearest[:, None]
-        beaten = (same & (least[:, None] < least[:, :, None])).any(axis=2)
-        good = (least <= reach_m**2) & ~beaten
-        worth = likeness(np.where(good, least, 0.0), np.hypot(cluster.sd_m, PLACING_SD_M))
-        found = np.where(good, free[nearest], HIDDEN)
-        return found, np.where(good, np.maximum(worth, 0.0), 0.0).sum(axis=1)
+        found, least = nearest(squared, reach_m)
+        return np.where(found == HIDDEN, HIDDEN, free[found]), match_log_ratios(cluster, found, least)
 
     def _squared(self, placed_m: Array, free: Indices) -> Array:
         """(n, k, F) squared distances of markers (n, K, k, 3) from tracks, summed over the keyframes with these."""
@@ -219,19 +193,3 @@ class KeyframePlacing:
         cosine = (np.einsum("nkij,kij->nk", rotations, parents) - 1.0) / 2.0
         turn = np.arccos(np.clip(cosine, -1.0, 1.0)) / cluster.posture_sd_rad
         return np.asarray((gap + np.minimum(turn**2, MOST_POSTURE)).mean(axis=1))
-
-
-def _settled_reach(cluster: Cluster) -> Array:
-    return np.asarray(SETTLED_SDS * np.hypot(cluster.sd_m, PLACING_SD_M))
-
-
-def _different(tracks: Indices, score: Array, most: int) -> Iterator[int]:
-    """Rows with tracks of their own, best first."""
-    known = set()
-    for row in np.argsort(-score):
-        key = tracks[row].tobytes()
-        if key not in known and (tracks[row] != HIDDEN).any():
-            known.add(key)
-            yield int(row)
-            if len(known) == most:
-                return

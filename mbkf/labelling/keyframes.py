@@ -1,7 +1,7 @@
-"""Tracks at a few keyframes of a capture: tracks that move together are on one segment, in any attitude of the body.
+"""Tracks at a few keyframes of a capture, with their distances over the whole of it.
 
-Two tracks of one segment keep their distance through a whole capture; those of different segments do not, as soon as
-the body moves. No model of the body is needed, so that this helps most before the subject is scaled.
+Two tracks of one segment keep their distance; those of different segments do not, as soon as the body moves. This holds
+in any attitude and without a model of the body, so that it helps most before the subject is scaled.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from mbkf.labelling.tracks import Tracks
 from mbkf.numerics.runs import spread_indices
 
 LOOKS = 160
-"""Frames, spread over the capture, from which distances are learnt."""
+"""Frames, spread over the capture, from which distances are taken."""
 
 SHOWN = 0.8
-"""A keyframe shows at least so large a share of the tracks that the best frame shows."""
+"""Least number of tracks in a keyframe, as a share of those in the best frame."""
 
 STILL_M, TRAVEL_M = 0.05, 0.50
 """A track that moves less than the first, while half of all tracks move more than the second, is not on the body."""
 
 MIN_SHOWN = 0.15
-"""A track that is seen in a smaller share of the frames looked at takes no part."""
+"""Least share of the frames in which a track is seen."""
 
 _MIDDLE = (5.0, 95.0)
 
@@ -38,9 +38,9 @@ class Keyframes:
     Attributes:
         frames: (K,) the frames; the first is the one that the tracks were taken from.
         tracks: (N,) their numbers.
-        positions_m: (K, N, 3) where they are, NaN where not seen.
-        spread_m: (N, N) by how much the distance of two varies in the capture, 0 where they never appear together.
-        length_m: (N, N) their distance, median.
+        positions_m: (K, N, 3) their positions, NaN where not seen.
+        spread_m: (N, N) range of the distance of two in the capture, 0 where they never appear together.
+        length_m: (N, N) median of their distance.
     """
 
     frames: Indices
@@ -57,7 +57,7 @@ def choose_keyframes(points_m: Array, tracks: Tracks, frame: int, count: int) ->
         points_m: (T, C, 3) the capture's points.
         tracks: Their tracks.
         frame: The frame.
-        count: How many keyframes, at most.
+        count: Greatest number of keyframes.
 
     Returns:
         None where the frame shows fewer than three tracks that may be a body's.
@@ -85,14 +85,14 @@ def moving(positions_m: Array) -> BoolArray:
 
 
 def _quantiles(values: Array, shares: tuple[float, ...]) -> Array:
-    """Percentiles along the first axis, 0 where there is nothing."""
+    """Percentiles along the first axis, 0 where all is NaN."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
         return np.nan_to_num(np.nanpercentile(values, shares, axis=0))
 
 
 def _differing(distance_m: Array, good: BoolArray, first: int, count: int) -> Indices:
-    """Frames of (F, N, N) distances: the first, then always the good one that is least like those picked."""
+    """Frames of (F, N, N) distances: the first, then always the good one that differs most from those picked."""
     picked = [first]
     pairs = np.triu_indices(distance_m.shape[1], 1)
     flat = distance_m[:, pairs[0], pairs[1]]

@@ -1,14 +1,12 @@
-"""Whole tracks named by a body: which marker a track is near in many frames, not which is nearest in one frame."""
+"""Whole tracks named by a body: by the marker that a track is near in many frames."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.placing import likeness
+from mbkf.labelling.placing import log_likelihood_ratio
 from mbkf.labelling.tracks import Tracks
 from mbkf.numerics.runs import spread_indices
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -16,13 +14,13 @@ from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
 
 LOOKS = 60
-"""Frames, spread over the capture, at which tracks are compared with the body."""
+"""Frames, spread over the capture, in which tracks are compared with the body."""
 
-MOST_AGAINST = -15.0
+LEAST_RATIO = -15.0
 """Least log-likelihood ratio of a pair in one frame: the limb may be placed wrongly there."""
 
 MIN_MARKERS = 6
-"""A frame with fewer named tracks places no body."""
+"""Least number of named tracks that determine a pose."""
 
 
 def trajectories(points_m: Array, tracks: Tracks, owner: Indices, markers: int) -> Array:
@@ -32,7 +30,7 @@ def trajectories(points_m: Array, tracks: Tracks, owner: Indices, markers: int) 
         points_m: (T, C, 3) points of the capture.
         tracks: Their tracks.
         owner: (count,) marker of every track, ``HIDDEN`` for those of no marker.
-        markers: How many markers there are.
+        markers: Number of markers.
     """
     found = np.full((len(points_m), markers, 3), np.nan)
     whose = np.where(tracks.number == HIDDEN, HIDDEN, owner[tracks.number])
@@ -51,7 +49,7 @@ def name_tracks(
 
     Args:
         sensor: The markers on the body.
-        sd_m: (M,) how far a marker may be from its place.
+        sd_m: (M,) spread of each marker about its place.
         points_m: (T, C, 3) points of the capture.
         tracks: Their tracks.
         owner: (count,) marker of the tracks named so far.
@@ -60,13 +58,13 @@ def name_tracks(
     seen = tracks.positions(points_m, looks)
     known = trajectories(points_m, tracks, owner, len(sd_m))[looks]
     evidence = _evidence(sensor, sd_m, seen, known)
-    found = _without_conflicts(evidence, tracks.lives())
+    found = _without_conflicts(evidence, tracks.visible())
     named = np.flatnonzero(found != HIDDEN)
     return found, float(evidence[named, found[named]].sum())
 
 
 def _evidence(sensor: MarkerSensor, sd_m: Array, seen_m: Array, known_m: Array) -> Array:
-    """(count, M) evidence of all frames that a track (F, count, 3) is a marker, by known markers (F, M, 3)."""
+    """(count, M) log-likelihood ratios that a track (F, count, 3) is a marker, on a body posed by markers (F, M, 3)."""
     posture = PostureSensor(sensor.model)
     total = np.zeros((seen_m.shape[1], len(sd_m)))
     for points, measured in zip(seen_m, known_m, strict=True):
@@ -75,7 +73,7 @@ def _evidence(sensor: MarkerSensor, sd_m: Array, seen_m: Array, known_m: Array) 
         start = segment_by_segment(sensor, measured)
         placed = sensor.positions(fit_pose(sensor, posture, measured, sd_m, start, max_iterations=12).q)
         squared = ((points[:, None] - placed) ** 2).sum(axis=2)
-        total += np.nan_to_num(np.maximum(likeness(squared, sd_m), MOST_AGAINST))
+        total += np.nan_to_num(np.maximum(log_likelihood_ratio(squared, sd_m), LEAST_RATIO))
     return total
 
 
@@ -83,14 +81,9 @@ def _without_conflicts(evidence: Array, lives: BoolArray) -> Indices:
     """(count,) marker of every track, no marker on two tracks (count, T) in one frame."""
     owner = np.full(len(evidence), HIDDEN, dtype=np.intp)
     taken = np.zeros((evidence.shape[1], lives.shape[1]), dtype=bool)
-    for pair in _likeliest(evidence):
-        track, marker = divmod(pair, evidence.shape[1])
+    likeliest = np.argsort(-evidence, axis=None)[: np.count_nonzero(evidence > 0.0)]
+    for track, marker in zip(*np.unravel_index(likeliest, evidence.shape), strict=True):
         if owner[track] == HIDDEN and not (taken[marker] & lives[track]).any():
             owner[track] = marker
             taken[marker] |= lives[track]
     return owner
-
-
-def _likeliest(evidence: Array) -> Sequence[int]:
-    order = np.argsort(-evidence, axis=None)
-    return [int(pair) for pair in order[: np.count_nonzero(evidence > 0.0)]]

@@ -1,8 +1,8 @@
-"""Names of neighbouring markers: those of one segment that only the posture of the whole body distinguishes.
+"""Names of neighbouring markers on one segment, which only the posture of the whole body distinguishes.
 
 A trial may show only one of two markers a few centimetres apart. Two exchanged markers of a wrist fit the forearm as
-well, turned by half a turn. A first frame or a gap may get such names wrong; here a few frames are fitted with either
-name, and the likelier posture wins.
+well, turned by half a turn. A first frame or a gap may confuse such names; here a few frames are fitted with either
+name, and the more likely posture decides.
 """
 
 from __future__ import annotations
@@ -20,28 +20,28 @@ from mbkf.numerics.runs import spread_indices
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 
 LOOKS = 16
-"""Frames that are fitted to find names that were not worn."""
+"""Frames that are fitted to find the name of a marker that was not worn."""
 
 FEW_LOOKS = 5
 """Frames that are fitted to find exchanged names."""
 
 NEAR_M = 0.10
-"""A name is tried on a trajectory that runs no farther from its place than this."""
+"""Greatest distance of a trajectory from the place of a name that is tried on it."""
 
 GAIN = 1.0
-"""How much likelier a frame must become in the mean (twice the log) for a name to change."""
+"""Least mean gain of a frame (twice the log-likelihood ratio) by which a name is changed."""
 
 EXCHANGE_GAIN = 3.0
-"""The same for two names that change places."""
+"""The same for two exchanged names."""
 
 SMALL = 3
-"""Markers of a segment with more markers than this fit one way only."""
+"""Greatest number of a segment's markers that are tried with exchanged names; more markers fit one way only."""
 
 MOST_CHANGES = 6
 
 
 def renamed(search: FirstFrameSearch, markers_m: Array, q: Array) -> Indices:
-    """(M,) the corrected marker of the trajectory that each marker labels now.
+    """(M,) marker that the trajectory of each marker really shows.
 
     Args:
         search: The body, its markers and their spreads.
@@ -52,16 +52,16 @@ def renamed(search: FirstFrameSearch, markers_m: Array, q: Array) -> Indices:
     looks = followed[spread_indices(len(followed), LOOKS)]
     name = np.arange(markers_m.shape[1])
     shown = markers_m[looks]
-    worth, poses = _worth(search, shown, q[looks])
+    log_ratio, poses = _mean_log_ratio(search, shown, q[looks])
     for _ in range(MOST_CHANGES):
         tried = [
-            (*_worth(search, _moved(shown, old, new), poses), old, new)
+            (*_mean_log_ratio(search, _moved(shown, old, new), poses), old, new)
             for old, new in _unused_neighbours(search, shown, poses)
         ]
         best = max(tried, key=lambda one: one[0], default=None)
-        if best is None or best[0] < worth + GAIN:
+        if best is None or best[0] < log_ratio + GAIN:
             break
-        worth, poses, old, new = best
+        log_ratio, poses, old, new = best
         shown = _moved(shown, old, new)
         name[name == old] = new
     return name
@@ -70,7 +70,7 @@ def renamed(search: FirstFrameSearch, markers_m: Array, q: Array) -> Indices:
 def exchanged(
     search: FirstFrameSearch, markers_m: Array, q: Array, label: Indices, tracklets: Tracklets
 ) -> Indices:
-    """(n,) labels of the tracklets, with two markers' names exchanged while that makes the posture likelier.
+    """(n,) labels of the tracklets, with names of two markers exchanged where that makes the posture more likely.
 
     Args:
         search: The body, its markers and their spreads.
@@ -91,33 +91,33 @@ def exchanged(
                 first, end = int(spans[:, 0].min()), int(spans[:, 1].max())
                 there = first + np.flatnonzero(np.asarray(followed)[first:end])
                 looks = there[spread_indices(len(there), FEW_LOOKS)]
-                if _likelier_exchanged(search, markers_m[looks], q[looks], a, b):
+                if _exchange_is_likelier(search, markers_m[looks], q[looks], a, b):
                     label[together] = a + b - label[together]
     return label
 
 
 def _overlapping(pieces: Indices, tracklets: Tracklets) -> list[Indices]:
-    """The tracklets in groups that hang together in time, with gaps between the groups."""
+    """The tracklets in groups that overlap in time, with gaps between the groups."""
     spans = tracklets.spans[pieces]
     order = np.argsort(spans[:, 0])
     reached = np.maximum.accumulate(spans[order, 1])
     return np.split(pieces[order], 1 + np.flatnonzero(spans[order[1:], 0] >= reached[:-1]))
 
 
-def _likelier_exchanged(search: FirstFrameSearch, markers_m: Array, q: Array, a: int, b: int) -> bool:
+def _exchange_is_likelier(search: FirstFrameSearch, markers_m: Array, q: Array, a: int, b: int) -> bool:
     if not len(q):
         return False
     other = markers_m.copy()
     other[:, [a, b]] = markers_m[:, [b, a]]
-    return _freely(search, other, q) > _freely(search, markers_m, q) + EXCHANGE_GAIN
+    return _best_log_ratio(search, other, q) > _best_log_ratio(search, markers_m, q) + EXCHANGE_GAIN
 
 
-def _freely(search: FirstFrameSearch, markers_m: Array, q: Array) -> float:
-    """Mean worth of frames (n, M, 3), fitted from poses (n, nq) or from the markers alone, the better of both."""
+def _best_log_ratio(search: FirstFrameSearch, markers_m: Array, q: Array) -> float:
+    """Mean log ratio of frames (n, M, 3), fitted from poses (n, nq) or from the markers alone, the better of both."""
     total = 0.0
     for frame, *starts in zip(markers_m, q, segment_by_segment(search.sensor, markers_m), strict=True):
         fits = [_fit(search, frame, start) for start in starts]
-        total += max(search.worth(frame, fit) for fit in fits)
+        total += max(search.log_ratio(frame, fit) for fit in fits)
     return total / len(q)
 
 
@@ -132,16 +132,16 @@ def _moved(markers_m: Array, old: int, new: int) -> Array:
     return moved
 
 
-def _worth(search: FirstFrameSearch, markers_m: Array, q: Array) -> tuple[float, Array]:
-    """Mean worth of frames (n, M, 3) under these names, and the poses (n, nq) fitted to them from poses q."""
+def _mean_log_ratio(search: FirstFrameSearch, markers_m: Array, q: Array) -> tuple[float, Array]:
+    """Mean log ratio of frames (n, M, 3) under these names, and the poses (n, nq) fitted to them from poses q."""
     if not len(q):
         return 0.0, q
     poses = np.array([_fit(search, frame, pose) for frame, pose in zip(markers_m, q, strict=True)])
-    return float(np.mean([search.worth(*one) for one in zip(markers_m, poses, strict=True)])), poses
+    return float(np.mean([search.log_ratio(*one) for one in zip(markers_m, poses, strict=True)])), poses
 
 
 def _unused_neighbours(search: FirstFrameSearch, markers_m: Array, q: Array) -> list[tuple[int, int]]:
-    """Markers in use and, for each, those of its segment that are not and whose place its trajectory runs by."""
+    """Pairs of a marker in use and one of its segment that is not, whose place is near the former's trajectory."""
     sensor = search.sensor
     used = ~np.isnan(markers_m[:, :, 0]).all(axis=0)
     mean = _mean_place(search, markers_m, q)

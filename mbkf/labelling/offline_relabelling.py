@@ -1,4 +1,4 @@
-"""Offline relabelling, with the whole capture known: every tracklet gets one label, or none.
+"""Offline relabelling, with the whole capture known: every tracklet gets one label or remains without.
 
 A filter that labels frame by frame must decide at once. Afterwards the smoothed body predicts each marker in every
 frame, and a tracklet is compared with it as a whole: a marker keeps its place on the segment to a few millimetres, a
@@ -17,7 +17,7 @@ import itertools
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -32,21 +32,21 @@ class RelabellingSettings:
     """Limits within which a tracklet carries a marker's name.
 
     Attributes:
-        placement_sd_m: How far the mean of a tracklet may be from its marker's place, σ_p.
-        gate: Squared Mahalanobis distance (3 coordinates) of the mean beyond which a tracklet is not the marker's.
-        radius_m: Distance of the mean beyond which it never is, however unsure the body.
-        doubt: The squared distance beyond which it is in doubt ...
-        brief_s: ... as is any tracklet shorter than this, unless the capture is not much longer.
-        most_doubt: Where a larger share of the labels would be in doubt, none is: a capture begins, or comes back.
-        restless: Scatter that is no longer a marker's, κ, in variances of its noise over three coordinates.
+        placement_sd_m: Spread of the mean of a tracklet about its marker's place, σ_p.
+        gate: Greatest squared Mahalanobis distance (3 coordinates) of that mean.
+        radius_m: Greatest distance of that mean, however uncertain the body.
+        doubt: Squared Mahalanobis distance beyond which a tracklet is doubtful.
+        brief_s: A shorter tracklet is doubtful, unless the capture is not much longer.
+        most_doubt: Share of doubtful labels above which no label counts as doubtful: a capture begins, or comes back.
+        most_scatter: Greatest scatter of a marker, κ, in variances of its noise over three coordinates.
         correlation_s: Offsets this far apart in time are independent looks.
         ghosts_per_m3: λ.
-        kept: How much cheaper the label is that the tracklet carried so far.
-        named: How much cheaper the label is by which the capture names it; no gate then holds.
-        least_votes: Least share of a tracklet's frames that must have carried a label for it to win the vote.
+        kept: Reduction of the cost of the label that the tracklet carried so far.
+        named: Reduction of the cost of the label by which the capture names it; the gate then does not apply.
+        least_votes: Least share of a tracklet's frames with a label for which that label can win the vote.
         least_share: A marker labelled in a smaller share of the frames was not worn: a ghost took its place.
-        rare: Likewise one labelled in less than this share of the typical number of frames, if ...
-        wandering: ... its offset scatters by more than this many times its noise.
+        rare: The same for less than this share of the typical number of frames, if the offset scatters ...
+        wandering: ... by more than this many times its noise.
     """
 
     placement_sd_m: float = 0.005
@@ -55,7 +55,7 @@ class RelabellingSettings:
     doubt: float = 4.0
     brief_s: float = 0.4
     most_doubt: float = 0.4
-    restless: float = 9.0
+    most_scatter: float = 9.0
     correlation_s: float = 0.1
     ghosts_per_m3: float = 5.0
     kept: float = 6.0
@@ -90,13 +90,13 @@ def majority_labels(
 ) -> Indices:
     """(n,) label of every tracklet by the frames in which its points carried it.
 
-    A tracklet gives its label up for another one that it carried as well where more frames keep theirs in all.
+    A tracklet exchanges its label for another one that it also carried, where more frames in all then keep theirs.
 
     Args:
         label_of_point: (T, C) labels frame by frame.
         markers: Their number M.
         tracklets: The links.
-        settings: How many frames it takes.
+        settings: Least share of the frames.
     """
     votes = _votes(label_of_point, markers, tracklets)
     length = np.diff(tracklets.spans, axis=1)
@@ -104,82 +104,99 @@ def majority_labels(
     return _traded(votes, _without_overlap(votes, tracklets), tracklets)
 
 
-def relabel(
-    label_of_point: Indices,
-    positions_m: Array,
-    tracklets: Tracklets,
-    course: SmoothedMarkers,
-    noise_m: Array,
-    dt_s: float,
-    settings: RelabellingSettings,
-    known: Indices | None = None,
-) -> Indices:
-    """(n,) label of every tracklet by the cheapest assignment.
+@dataclass(frozen=True)
+class SmoothedCapture:
+    """The tracklets of a capture beside its smoothed body.
 
-    Args:
-        label_of_point: (T, C) labels so far.
+    Attributes:
         positions_m: (T, C, 3) points.
         tracklets: Their links.
-        course: The smoothed body's markers.
+        smoothed: The smoothed body's markers.
         noise_m: (M,) marker noise, NaN for markers that are not looked for.
         dt_s: Time between frames.
         settings: Limits that separate markers from ghosts.
-        known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
     """
-    cost = _costs(positions_m, tracklets, course, noise_m, dt_s, settings)
-    if known is not None:
-        length = np.diff(tracklets.spans, axis=1)
-        carried = _votes(known, len(noise_m), tracklets) > 0.5 * length
-        looks = np.broadcast_to((length - 1) * dt_s / (settings.correlation_s + dt_s), cost.shape)
-        sure = settings.named + settings.restless * looks
-        cost[carried] = np.minimum(cost[carried], 0.0) - sure[carried]
-    votes = _votes(label_of_point, len(noise_m), tracklets)
-    cost -= settings.kept * ((votes > 0.0) & (votes == votes.max(axis=1, keepdims=True)))
-    times = np.unique(tracklets.spans)
-    preference = np.zeros_like(cost)
-    for first, end in itertools.pairwise(times):
-        active = np.flatnonzero((tracklets.spans[:, 0] <= first) & (tracklets.spans[:, 1] >= end))
-        rows, columns = linear_sum_assignment(np.minimum(cost[active], 0.0))
-        chosen = cost[active[rows], columns] < 0.0
-        preference[active[rows[chosen]], columns[chosen]] += end - first
-    return _without_overlap(preference, tracklets)
 
+    positions_m: Array
+    tracklets: Tracklets
+    smoothed: SmoothedMarkers
+    noise_m: Array
+    dt_s: float
+    settings: RelabellingSettings = field(default_factory=RelabellingSettings)
 
-def doubtful(
-    label_of_point: Indices,
-    positions_m: Array,
-    tracklets: Tracklets,
-    course: SmoothedMarkers,
-    noise_m: Array,
-    dt_s: float,
-    settings: RelabellingSettings,
-) -> BoolArray:
-    """(n,) labelled tracklets that may be ghosts: brief, or far from their marker's place; limits in ``settings``.
+    def relabelled(self, label_of_point: Indices, known: Indices | None = None) -> Indices:
+        """(n,) label of every tracklet by the cheapest assignment.
 
-    A ghost takes a segment of few markers with it, so that being near is no proof.
+        Args:
+            label_of_point: (T, C) labels so far.
+            known: (T, C) marker of the points that carry a reliable name; None where none does.
+        """
+        cost, spans, markers = self._costs(), self.tracklets.spans, len(self.noise_m)
+        if known is not None:
+            length = np.diff(spans, axis=1)
+            carried = _votes(known, markers, self.tracklets) > 0.5 * length
+            looks = np.broadcast_to(
+                (length - 1) * self.dt_s / (self.settings.correlation_s + self.dt_s), cost.shape
+            )
+            sure = self.settings.named + self.settings.most_scatter * looks
+            cost[carried] = np.minimum(cost[carried], 0.0) - sure[carried]
+        votes = _votes(label_of_point, markers, self.tracklets)
+        cost -= self.settings.kept * ((votes > 0.0) & (votes == votes.max(axis=1, keepdims=True)))
+        preference = np.zeros_like(cost)
+        for first, end in itertools.pairwise(np.unique(spans)):
+            active = np.flatnonzero((spans[:, 0] <= first) & (spans[:, 1] >= end))
+            rows, columns = linear_sum_assignment(np.minimum(cost[active], 0.0))
+            chosen = cost[active[rows], columns] < 0.0
+            preference[active[rows[chosen]], columns[chosen]] += end - first
+        return _without_overlap(preference, self.tracklets)
 
-    Args:
-        label_of_point: (T, C) labels so far.
-        positions_m: (T, C, 3) points.
-        tracklets: Their links.
-        course: The smoothed body's markers.
-        noise_m: (M,) marker noise, NaN for markers that are not looked for.
-        dt_s: Time between frames.
-        settings: When a tracklet is brief, and when it is far.
-    """
-    votes = _votes(label_of_point, len(noise_m), tracklets)
-    label = np.where(votes.any(axis=1), votes.argmax(axis=1), HIDDEN)
-    shortest = min(settings.brief_s / dt_s, 0.25 * len(label_of_point))
-    far = (np.diff(tracklets.spans, axis=1)[:, 0] < shortest) & (label != HIDDEN)
-    for number, (frames, columns) in enumerate(tracklets.pieces):
-        marker = label[number]
-        if marker != HIDDEN:
-            mean = _offsets(positions_m, frames, columns, course)[:, marker].mean(axis=0)
-            variance = course.variance_m2[frames, marker].mean()
-            placed = settings.placement_sd_m**2 + noise_m[marker] ** 2 + variance
-            # Never where the body was not tracked: comparisons with NaN are false.
-            far[number] |= bool(mean @ mean > settings.doubt * placed)
-    return np.asarray(far & (_share_in_doubt(far, label != HIDDEN, tracklets) <= settings.most_doubt))
+    def doubtful(self, label_of_point: Indices) -> BoolArray:
+        """(n,) tracklets, labelled (T, C) so far, that may be ghosts: brief, or far from their marker's place.
+
+        A ghost takes a segment of few markers with it, so that being near is no proof.
+        """
+        votes = _votes(label_of_point, len(self.noise_m), self.tracklets)
+        label = np.where(votes.any(axis=1), votes.argmax(axis=1), HIDDEN)
+        shortest = min(self.settings.brief_s / self.dt_s, 0.25 * len(label_of_point))
+        far = (np.diff(self.tracklets.spans, axis=1)[:, 0] < shortest) & (label != HIDDEN)
+        for number, (frames, columns) in enumerate(self.tracklets.pieces):
+            marker = label[number]
+            if marker != HIDDEN:
+                mean = self._offsets(frames, columns)[:, marker].mean(axis=0)
+                variance = self.smoothed.variance_m2[frames, marker].mean()
+                placed = self.settings.placement_sd_m**2 + self.noise_m[marker] ** 2 + variance
+                # False where the body was not tracked: comparisons with NaN are.
+                far[number] |= bool(mean @ mean > self.settings.doubt * placed)
+        share = _share_in_doubt(far, label != HIDDEN, self.tracklets)
+        return np.asarray(far & (share <= self.settings.most_doubt))
+
+    def _costs(self) -> Array:
+        """(n, M) costs of the module's equation; infinite beyond the gate and where the body was not tracked."""
+        settings, noise = self.settings, self.noise_m
+        cost = np.full((self.tracklets.count, len(noise)), np.inf)
+        tracked = ~np.isnan(self.smoothed.variance_m2[:, 0])
+        for number, (frames, columns) in enumerate(self.tracklets.pieces):
+            known = tracked[frames]
+            if not known.any():
+                continue
+            at = frames[known]
+            local = self._offsets(at, columns[known])
+            looks = 1.0 + (len(at) - 1) * self.dt_s / (settings.correlation_s + self.dt_s)
+            unsure = self.smoothed.variance_m2[at].mean(axis=0)
+            placed = settings.placement_sd_m**2 + noise**2 + unsure
+            squared = (local.mean(axis=0) ** 2).sum(axis=1)
+            away = squared / placed
+            once = away + 3.0 * np.log(2.0 * math.pi * placed) + 2.0 * math.log(settings.ghosts_per_m3)
+            steady = noise**2 + np.minimum(unsure, noise**2)  # the body's own error changes slowly
+            pair = once + (looks - 1.0) * (local.var(axis=0).sum(axis=1) / steady - settings.most_scatter)
+            inside = (away <= settings.gate) & (squared <= settings.radius_m**2) & ~np.isnan(pair)
+            cost[number] = np.where(inside, pair, np.inf)
+        return cost
+
+    def _offsets(self, frames: Indices, columns: Indices) -> Array:
+        """(k, M, 3) offsets of a tracklet's points from the places of all markers, in their segments' frames."""
+        offset = self.positions_m[frames, columns, None] - self.smoothed.on_body_m[frames]
+        return np.einsum("tmji,tmj->tmi", self.smoothed.rotations[frames], offset)
 
 
 def _share_in_doubt(far: BoolArray, labelled: BoolArray, tracklets: Tracklets) -> Array:
@@ -192,25 +209,25 @@ def _share_in_doubt(far: BoolArray, labelled: BoolArray, tracklets: Tracklets) -
     return np.array([share[first:end].mean() for first, end in tracklets.spans])
 
 
-def worn(
-    course: SmoothedMarkers,
+def worn_markers(
+    smoothed: SmoothedMarkers,
     markers_m: Array,
     noise_m: Array,
     segments: Sequence[str],
     settings: RelabellingSettings,
 ) -> BoolArray:
-    """(M,) markers that are really there, and not made up of ghosts that passed the place of one that was not worn.
+    """(M,) True for markers that were worn; False for those made up of ghosts that passed a marker's place.
 
-    A false marker makes its segment's others restless, too, so that only the worst of each segment is named at once.
+    A false marker makes its segment's other markers scatter as well, so only the worst of each segment is False.
 
     Args:
-        course: The smoothed body's markers.
+        smoothed: The smoothed body's markers.
         markers_m: (T, M, 3) labelled trajectories, NaN where hidden.
         segments: Segment of each of the M markers.
         noise_m: (M,) marker noise.
-        settings: How rare and how restless a marker may be.
+        settings: Limits of share and scatter.
     """
-    local = course.local(markers_m)
+    local = smoothed.local(markers_m)
     share = (~np.isnan(local[:, :, 0])).mean(axis=0)
     if not share.any():
         return np.zeros(len(noise_m), dtype=bool)
@@ -272,45 +289,7 @@ def _traded(votes: Array, label: Indices, tracklets: Tracklets) -> Indices:
 
 
 def _free(marker: int, piece: int, label: Indices, tracklets: Tracklets) -> bool:
-    """Whether no other tracklet has the marker's label while this one lasts."""
+    """True where no other tracklet has the marker's label while this one lasts."""
     spans = tracklets.spans[(label == marker) & (np.arange(len(label)) != piece)]
     first, end = tracklets.spans[piece]
     return not ((spans[:, 0] < end) & (spans[:, 1] > first)).any()
-
-
-def _costs(
-    positions_m: Array,
-    tracklets: Tracklets,
-    course: SmoothedMarkers,
-    noise_m: Array,
-    dt_s: float,
-    settings: RelabellingSettings,
-) -> Array:
-    """(n, M) costs of the module's equation; infinite beyond the gate and where the body was not tracked."""
-    cost = np.full((tracklets.count, len(noise_m)), np.inf)
-    followed = ~np.isnan(course.variance_m2[:, 0])
-    for number, (frames, columns) in enumerate(tracklets.pieces):
-        known = followed[frames]
-        if not known.any():
-            continue
-        at = frames[known]
-        local = _offsets(positions_m, at, columns[known], course)
-        looks = 1.0 + (len(at) - 1) * dt_s / (settings.correlation_s + dt_s)
-        mean = local.mean(axis=0)
-        scatter = local.var(axis=0).sum(axis=1)
-        unsure = course.variance_m2[at].mean(axis=0)
-        placed = settings.placement_sd_m**2 + noise_m**2 + unsure
-        squared = (mean**2).sum(axis=1)
-        away = squared / placed
-        once = away + 3.0 * np.log(2.0 * math.pi * placed) + 2.0 * math.log(settings.ghosts_per_m3)
-        steady = noise_m**2 + np.minimum(unsure, noise_m**2)  # the body's own error changes slowly
-        pair = once + (looks - 1.0) * (scatter / steady - settings.restless)
-        inside = (away <= settings.gate) & (squared <= settings.radius_m**2) & ~np.isnan(pair)
-        cost[number] = np.where(inside, pair, np.inf)
-    return cost
-
-
-def _offsets(positions_m: Array, frames: Indices, columns: Indices, course: SmoothedMarkers) -> Array:
-    """(k, M, 3) offsets of a tracklet's points from the places of all markers, in their segments' frames."""
-    offset = positions_m[frames, columns, None] - course.on_body_m[frames]
-    return np.einsum("tmji,tmj->tmi", course.rotations[frames], offset)

@@ -3,63 +3,47 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices
+from mbkf.labelling.beam import BRANCHES, Placing, distinct_rows
 from mbkf.labelling.skeleton import Cluster
 from mbkf.numerics.rotations import nearest_rotations
 
 MATCH_M = 0.045
-"""A point further than this from where a placed segment has a marker is not that marker."""
+"""Greatest distance of a point from a placed segment's marker."""
 
 PLACING_SD_M = 0.008
-"""How far a segment placed by two points is off, besides the spread of its markers."""
+"""Error of a segment placed by two points, besides the spread of its markers."""
 
 MOST_POSTURE = 8.0
 """Greatest cost of an unusual turn of a joint: people squat and kneel."""
 
 JOINT_TOLERANCE_M = 0.045
-"""How far a joint may be from where the chain placed it."""
+"""Greatest distance of a joint from its place in the chain of segments."""
 
 LENGTH_TOLERANCE_M = 0.025
-"""How much two markers' distance may differ from that on the body."""
+"""Greatest difference of two markers' distance from that on the body."""
 
 _POSTURE_PULL = 2e-3
 _MOST = 80
 
 
-@dataclass(frozen=True)
-class Placing:
-    """One way to place a segment.
-
-    Attributes:
-        rotation: (3, 3) its orientation in the world.
-        points: (k,) the point of each of its markers, ``HIDDEN`` where none.
-        score: Log-likelihood ratio of its matches, less the cost of the joint's turn.
-    """
-
-    rotation: Array
-    points: Indices
-    score: float
-
-
 def placings(
-    cluster: Cluster, origin_m: Array, parent: Array, points_m: Array, free: Indices, most: int
+    points_m: Array, cluster: Cluster, origin_m: Array, parent: Array, free: Indices
 ) -> list[Placing]:
-    """The best ways to place a segment whose joint and parent are placed, one of them with no marker found.
+    """The best ways to place a segment whose joint and parent are placed; the last is without any marker.
 
     Args:
+        points_m: (N, 3) all points.
         cluster: The segment.
         origin_m: (3,) its joint.
         parent: (3, 3) orientation of the segment before.
-        points_m: (N, 3) all points.
         free: Points not yet taken.
-        most: How many to return at most.
     """
-    nothing = Placing(parent, np.full(len(cluster.markers), HIDDEN, dtype=np.intp), 0.0)
+    nothing = Placing(parent, origin_m, np.full(len(cluster.markers), HIDDEN, dtype=np.intp), 0.0)
     if not len(cluster.markers) or not len(free):
         return [nothing]
     arms = points_m[free] - origin_m
@@ -68,48 +52,46 @@ def placings(
         return [nothing]
     matched, squared = match(np.einsum("nij,kj->nki", rotations, cluster.local_m), arms)
     turn = np.arccos(np.clip((np.einsum("nij,ij->n", rotations, parent) - 1.0) / 2.0, -1.0, 1.0))
-    score = worths(cluster, matched, squared) - np.minimum((turn / cluster.posture_sd_rad) ** 2, MOST_POSTURE)
-    found: list[Placing] = []
-    seen = set()
-    for n in np.argsort(-score):
-        key = matched[n].tobytes()
-        if key not in seen and (matched[n] != HIDDEN).any():
-            seen.add(key)
-            own = np.where(matched[n] == HIDDEN, HIDDEN, free[matched[n]])
-            found.append(Placing(rotations[n], own, float(score[n])))
-        if len(found) == most - 1:
-            break
+    unusual = np.minimum((turn / cluster.posture_sd_rad) ** 2, MOST_POSTURE)
+    score = match_log_ratios(cluster, matched, squared) - unusual
+    rows = [n for n in distinct_rows(matched, score, BRANCHES) if (matched[n] != HIDDEN).any()]
+    labels = np.where(matched == HIDDEN, HIDDEN, free[matched])
+    found = [Placing(rotations[n], origin_m, labels[n], float(score[n])) for n in rows[: BRANCHES - 1]]
     return [*found, nothing]
 
 
 def match(placed: Array, points_m: Array) -> tuple[Indices, Array]:
-    """Nearest points of placed clusters (n, k, 3): their indices (n, k) and squared distances.
-
-    ``HIDDEN`` where none lies within reach, or where another marker of the cluster lies nearer to it.
-    """
+    """Nearest points of placed clusters (n, k, 3), as :func:`nearest`."""
     away = placed[:, :, None] - points_m
-    squared = np.einsum("nkpi,nkpi->nkp", away, away)
-    nearest = squared.argmin(axis=2)
-    least = np.take_along_axis(squared, nearest[:, :, None], axis=2)[:, :, 0]
-    same = nearest[:, :, None] == nearest[:, None]
+    return nearest(np.einsum("nkpi,nkpi->nkp", away, away), MATCH_M)
+
+
+def nearest(squared: Array, reach_m: float | Array) -> tuple[Indices, Array]:
+    """(n, k) nearest point of each marker, by squared distances (n, k, N), and these.
+
+    ``HIDDEN``, and 0, where none lies within reach (k,) or where another marker of the cluster lies nearer to it.
+    """
+    found = squared.argmin(axis=2)
+    least = np.take_along_axis(squared, found[:, :, None], axis=2)[:, :, 0]
+    same = found[:, :, None] == found[:, None]
     beaten = (same & (least[:, None] < least[:, :, None])).any(axis=2)
-    good = (least <= MATCH_M**2) & ~beaten
-    return np.where(good, nearest, HIDDEN), np.where(good, least, 0.0)
+    good = (least <= np.square(reach_m)) & ~beaten
+    return np.where(good, found, HIDDEN), np.where(good, least, 0.0)
 
 
-def worths(cluster: Cluster, matched: Indices, squared: Array) -> Array:
-    """(n,) log-likelihood ratios of alternative matches, summed over their markers, see :func:`likeness`.
+def match_log_ratios(cluster: Cluster, matched: Indices, squared: Array) -> Array:
+    """(n,) log-likelihood ratios of alternative matches, summed over their markers.
 
     Args:
         cluster: The segment.
         matched: (n, k) point of each marker, ``HIDDEN`` where none.
         squared: (n, k) squared distances of these points from the placed markers, m².
     """
-    worth = likeness(squared, np.hypot(cluster.sd_m, PLACING_SD_M))
-    return np.asarray(np.where(matched != HIDDEN, np.maximum(worth, 0.0), 0.0).sum(axis=1))
+    ratios = log_likelihood_ratio(squared, np.hypot(cluster.sd_m, PLACING_SD_M))
+    return np.asarray(np.where(matched != HIDDEN, np.maximum(ratios, 0.0), 0.0).sum(axis=1))
 
 
-def likeness(squared: Array, sd_m: Array) -> Array:
+def log_likelihood_ratio(squared: Array, sd_m: Array) -> Array:
     """(…, k) twice the log-likelihood ratio of marker and ghost for points at squared distances, with spreads (k,)."""
     ghosts = 2.0 * math.log(AssignmentSettings.ghosts_per_m3)
     return np.asarray(-squared / sd_m**2 - 3.0 * np.log(2.0 * np.pi * sd_m**2) - ghosts)
@@ -125,8 +107,7 @@ def _rotations(local_m: Array, arms: Array, parent: Array) -> Array:
     single = arms[point][:, :, None] * local_m[marker][:, None]
     one, two = np.triu_indices(len(marker), 1)
     between = np.linalg.norm(local_m[marker[one]] - local_m[marker[two]], axis=1)
-    apart = np.linalg.norm(arms[point[one]] - arms[point[two]], axis=1)
-    misfit = np.abs(between - apart)
+    misfit = np.abs(between - np.linalg.norm(arms[point[one]] - arms[point[two]], axis=1))
     fits = (marker[one] != marker[two]) & (point[one] != point[two]) & (misfit <= LENGTH_TOLERANCE_M)
     pairs = np.flatnonzero(fits)
     # Long distances determine the orientation better, and are matched less often by chance.

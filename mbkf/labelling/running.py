@@ -1,9 +1,9 @@
 """Labels from frame to frame, between a filter's prediction and its correction (thesis section 4.1.3).
 
-Besides the filter's prediction the labeller knows three things: how far each marker lay off the body when last seen
-(skin and placement, which outlive a short gap), which label each point's own track carried, and the labels without
-either. The last is computed every few frames: a memory that geometry contradicts twice in a row is wrong,
-and markers whose labels were exchanged get them back.
+Besides the filter's prediction the labeller uses the offset of each marker from the body when last seen (skin and
+placement, which outlive a short gap), and the label of each point's own track. Every few frames labels are also
+computed without this memory: where they contradict it twice in a row, the memory is wrong, and exchanged labels are
+corrected.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign, marker_of_point, pair_costs
 from mbkf.sensors.marker_prediction import MarkerPrediction
 
-MOST_STRANGE = 0.2
-"""Where a larger share of the labelled markers is far from the corrected body, the pose is wrong and not the labels."""
+MOST_CONTRADICTED = 0.2
+"""Share of the labelled markers far from the corrected body above which the pose is wrong, and not the labels."""
 
 
 @dataclass(frozen=True)
 class RunningSettings:
-    """How labels are kept from frame to frame.
+    """Memory of a labeller from frame to frame, and when it is overruled.
 
     Attributes:
         assignment: Gate, radius and the bonus of a known track.
-        memory_s: How long an offset from the body is remembered while a marker is not seen, and how long it takes to
-            learn one.
-        offset_sd_m: How far a marker moves from its remembered offset between frames while it is seen.
-        unseen_sd_m: How much further off a marker may be that was never seen since the start.
-        strange: Standard deviations by which a point may miss its remembered place on the corrected body.
-        every: Frames between two updates of the memory; the labels without memory are then computed, too.
-        doubt_margin: How much less the labels without memory must cost to count as a contradiction.
+        memory_s: Time constant in which an offset from the body is forgotten while a marker is not seen.
+        learning_s: Time constant in which it is learnt.
+        offset_sd_m: Spread of a marker about its remembered offset while it is seen.
+        unseen_sd_m: Further spread of a marker that was not seen since the start.
+        miss_sds: Greatest distance of a point from its remembered place on the corrected body, in standard deviations.
+        every: Frames between two updates of the memory; labels without memory are then computed as well.
+        doubt_margin: Least difference of cost by which labels without memory contradict those with it.
         doubts: Contradictions in a row that overrule the memory.
     """
 
@@ -43,7 +43,7 @@ class RunningSettings:
     learning_s: float = 0.05
     offset_sd_m: float = 0.004
     unseen_sd_m: float = 0.015
-    strange: float = 3.5
+    miss_sds: float = 3.5
     every: int = 4
     doubt_margin: float = 9.0
     doubts: int = 2
@@ -56,7 +56,7 @@ class RunningLabeller:
         noise_m: (M,) marker noise, m.
         placement_m: (M,) standard deviation of a marker's place on the body, m.
         settings: Gates and memory.
-        repaired: How many markers had their labels taken back from a wrong point so far.
+        repaired: Number of markers so far whose labels were taken back from a wrong point.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class RunningLabeller:
 
     @property
     def learns(self) -> bool:
-        """Whether the memory learns from the frame last labelled: the first few, then every so many."""
+        """True where the memory learns from the frame last labelled: the first few, then every so many."""
         every = self.settings.every
         return self._frames <= 2 * every or self._frames % every == 0
 
@@ -103,8 +103,8 @@ class RunningLabeller:
         Args:
             prediction: The filter's predicted markers.
             points_m: (N, 3) measured points in any order, none missing.
-            follows: Gives the point of the frame before that each continues (N,), ``HIDDEN`` where that is not known;
-                asked only where labels are in dispute.
+            follows: Gives the point of the frame before that each continues (N,), ``HIDDEN`` where unknown; called only
+                where labels are in dispute.
         """
 
         def known() -> Indices | None:
@@ -124,23 +124,23 @@ class RunningLabeller:
         return labels
 
     def contradicted(self, labels: Indices, points_m: Array, on_body_m: Array) -> BoolArray:
-        """(M,) markers whose point does not fit the pose corrected by all points: ghosts near a marker.
+        """(M,) True where a marker's point does not fit the pose corrected by all points: ghosts near a marker.
 
-        The prediction of a whole limb may be a centimetre off; the residual after the correction belongs to each marker
-        alone. Where many residuals are large, the pose is wrong, and no marker is returned.
+        The prediction of a whole limb may be a centimetre off; the residual after the correction is that of each marker
+        alone. Where many residuals are large, the pose is wrong, and all are False.
 
         Args:
             labels: (M,) the point of every marker.
             points_m: (N, 3) the frame's points.
-            on_body_m: (M, 3) markers on the body in the pose the filter came to.
+            on_body_m: (M, 3) markers on the body in the filter's corrected pose.
         """
         seen = labels != HIDDEN
         far = np.zeros(len(labels), dtype=bool)
         if seen.any():
             away = points_m[labels] - on_body_m - self._offset_m
             squared = np.einsum("ij,ij->i", away, away)
-            far = seen & (squared > self.settings.strange**2 * (self._variance + 0.5 * self.noise_m**2))
-        few = np.count_nonzero(far) <= MOST_STRANGE * np.count_nonzero(seen)
+            far = seen & (squared > self.settings.miss_sds**2 * (self._variance + 0.5 * self.noise_m**2))
+        few = np.count_nonzero(far) <= MOST_CONTRADICTED * np.count_nonzero(seen)
         return far if few else np.zeros_like(far)
 
     def remember(self, labels: Indices, points_m: Array, on_body_m: Array) -> None:
@@ -149,7 +149,7 @@ class RunningLabeller:
         Args:
             labels: (M,) the point of every marker.
             points_m: (N, 3) the frame's points.
-            on_body_m: (M, 3) markers on the body in the pose the filter came to.
+            on_body_m: (M, 3) markers on the body in the filter's corrected pose.
         """
         self._before = (labels, len(points_m))
         if not self.learns:
@@ -167,7 +167,7 @@ class RunningLabeller:
         self._variance = np.where(seen, np.maximum(fixed, 0.3 * variance), forgetting)
 
     def _doubt(self, labels: Indices, prediction: MarkerPrediction, points_m: Array) -> Indices:
-        """The labels, or those without memory where these are much likelier for the second time in a row."""
+        """The labels, or those without memory where these were much more likely several times in a row."""
 
         def covariance(chosen: BoolArray) -> Array:
             return _with_own(prediction.spread(chosen), self._forgotten[chosen])
@@ -192,8 +192,7 @@ class RunningLabeller:
         self._doubted[overruled] = 0
         self._offset_m[overruled] = 0.0
         self._variance = np.where(overruled, self._forgotten, self._variance)
-        changed_labels = np.where(affected, other, labels)
-        return np.asarray(changed_labels)
+        return np.where(affected, other, labels)
 
 
 def _with_own(spread: Array, variance: Array) -> Array:

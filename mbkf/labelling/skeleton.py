@@ -1,4 +1,4 @@
-"""The body as the first frame sees it: segments in order, each a rigid cluster of markers about its proximal joint."""
+"""The body as a tree of rigid marker clusters, each about its segment's proximal joint."""
 
 from __future__ import annotations
 
@@ -20,16 +20,20 @@ class Cluster:
 
     Attributes:
         segment: Its name.
-        parent: Place of the proximal segment in the order, -1 for the root.
+        number: Its place in the order of the segments.
+        parent: Place of the proximal segment, -1 for the root.
+        ends: True where no segment follows it.
         origin_m: (3,) its joint in the parent's frame.
         markers: (k,) its markers.
         local_m: (k, 3) their positions in its frame.
-        sd_m: (k,) how far each may be from there, m.
+        sd_m: (k,) spread of each about that position, m.
         posture_sd_rad: Typical turn of the joint from neutral.
     """
 
     segment: str
+    number: int
     parent: int
+    ends: bool
     origin_m: Array
     markers: Indices
     local_m: Array
@@ -42,19 +46,20 @@ def clusters(sensor: MarkerSensor, sd_m: Array) -> tuple[Cluster, ...]:
     model = sensor.model
     _, origins = model.placements(model.neutral())
     names = list(model.joints)
+    parents = [str(segment.parent) for segment in model.description.segments]
     found = []
-    for name, joint in model.joints.items():
-        parent = model.description.segment(name).parent
-        before = -1 if parent == "world" else names.index(parent)
+    for number, (name, joint) in enumerate(model.joints.items()):
         own = np.flatnonzero(np.array(sensor.segments) == name)
         sd = model.posture_sd[joint.v]
         # In the neutral posture all segments' frames are parallel to the world.
-        foot = np.zeros(3) if before < 0 else origins[model.joint(parent).joint_id]
+        before = np.zeros(3) if number == 0 else origins[model.joint(parents[number]).joint_id]
         found.append(
             Cluster(
                 name,
-                before,
-                origins[joint.joint_id] - foot,
+                number,
+                -1 if number == 0 else names.index(parents[number]),
+                name not in parents,
+                origins[joint.joint_id] - before,
                 own,
                 sensor.local_m[own],
                 sd_m[own],
@@ -64,14 +69,14 @@ def clusters(sensor: MarkerSensor, sd_m: Array) -> tuple[Cluster, ...]:
     return tuple(found)
 
 
-def limbs(body: tuple[Cluster, ...]) -> list[list[int]]:
-    """For every segment but the root, its number and those of all segments beyond it, as far as they carry markers."""
+def limbs(body: tuple[Cluster, ...]) -> list[list[Cluster]]:
+    """For every segment but the root, the segment and all segments beyond it, as far as they carry markers."""
     found = []
-    for first in range(1, len(body)):
-        limb = [first]
-        for number in range(first + 1, len(body)):
-            if body[number].parent in limb:
-                limb.append(number)
-        if any(len(body[number].markers) for number in limb):
-            found.append(limb)
+    for first in body[1:]:
+        limb = {first.number: first}
+        for cluster in body[first.number + 1 :]:
+            if cluster.parent in limb:
+                limb[cluster.number] = cluster
+        if any(len(cluster.markers) for cluster in limb.values()):
+            found.append(list(limb.values()))
     return found

@@ -1,7 +1,7 @@
 """Points linked over time without names: the same reflection in successive frames, by place and velocity alone.
 
-The columns of a file are not asked. A link is made where a point lies near to where another, moving on steadily, should
-be, and nothing else comes half as near; where that is in doubt the tracklet ends and a new one begins.
+Columns of the file do not count. Two points are linked where one lies near the other's place at steady velocity, and no
+other point is half as near; where this is ambiguous the tracklet ends and a new one begins.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
 
 STEADY_M = 0.025
-"""How far a point may be from where its velocity carried it."""
+"""Greatest distance of a point from its place at steady velocity."""
 
 NEW_M = 0.040
-"""The same where its velocity is not known yet and that of its neighbour is taken."""
+"""The same where its velocity is unknown and that of its neighbour is used."""
 
 SURE = 0.5
-"""A link is made where it is shorter than this share of any other to the same points."""
+"""Greatest length of a link as a share of any other link to the same points."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ class Tracklets:
         return np.where(self.number == HIDDEN, HIDDEN, label[self.number])
 
 
-def linked(positions_m: Array) -> Tracklets:
+def link_points(positions_m: Array) -> Tracklets:
     """Links the points (T, C, 3), NaN where a column is empty; their columns may be shuffled in every frame.
 
-    Velocities are learnt forwards and, for points without one yet, backwards.
+    Velocities are found forwards and, for points without one, backwards.
     """
     frames = [_shown(frame) for frame in positions_m]
     ahead = _links(frames)
@@ -113,7 +113,7 @@ def _links(frames: list[tuple[Indices, Array]]) -> list[Indices]:
 
 
 def _pairs(points_m: Array, steps_m: Array, moving: BoolArray, now_m: Array) -> tuple[Indices, Indices]:
-    """Points that are surely the same in a frame (N, 3) and the next (N', 3)."""
+    """Points of a frame (N, 3) and the next (N', 3) that are unambiguously the same."""
     if not len(points_m) or not len(now_m):
         nothing = np.zeros(0, dtype=np.intp)
         return nothing, nothing
@@ -127,7 +127,7 @@ def _pairs(points_m: Array, steps_m: Array, moving: BoolArray, now_m: Array) -> 
 
 
 def _borrowed_steps(points_m: Array, steps_m: Array, moving: BoolArray) -> Array:
-    """(N, 3) steps; a point seen for the first time is taken to move like its nearest neighbour."""
+    """(N, 3) steps; a point seen for the first time moves like its nearest neighbour."""
     if moving.all() or not moving.any():
         return steps_m
     steps = steps_m.copy()

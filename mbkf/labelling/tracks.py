@@ -1,4 +1,4 @@
-"""Which points of different frames are one physical point: from frame to frame, and through a whole capture."""
+"""Tracks of physical points: from frame to frame, and through the gaps of a whole capture."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from scipy.optimize import linear_sum_assignment
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices, squared_distances
-from mbkf.labelling.tracklets import SURE, linked
+from mbkf.labelling.tracklets import SURE, link_points
 from mbkf.numerics.runs import spread_indices
 
 GAP_S, GAP_M = 0.25, 0.030
-"""A tracklet goes on with one that begins no later than this, and no further from where it was heading."""
+"""Greatest gap in time, and greatest distance from the way it was heading, over which a tracklet is continued."""
 
 COLUMN_GAP_S, COLUMN_GAP_M = 1.0, 0.10
-"""The same where the other begins in the same column, and columns are tracks."""
+"""The same for a tracklet that begins in the same column, where columns are tracks."""
 
 COLUMNS_ARE_TRACKS = 0.9
-"""They are where so large a share of their points continue (:func:`continued`)."""
+"""Least share of continuing points (:func:`continuing_columns`) with which columns are tracks."""
 
 HEADING = 4
-"""Frames at its end by which a tracklet's velocity is judged."""
+"""Frames at a tracklet's end from which its velocity is taken."""
 
 LOOKS = 50
 """Frames by which columns are judged."""
@@ -34,33 +34,33 @@ class Tracks:
 
     Attributes:
         number: (T, C) track of the point in every column, ``HIDDEN`` where the column is empty.
-        count: How many there are.
+        count: Number of tracks.
     """
 
     number: Indices
     count: int
 
     def positions(self, points_m: Array, frames: Indices) -> Array:
-        """(F, count, 3) the tracks in some frames (F,) of a capture (T, C, 3), NaN where they show no point."""
+        """(F, count, 3) the tracks in some frames (F,) of a capture (T, C, 3), NaN where not seen."""
         found = np.full((len(frames), self.count, 3), np.nan)
         rows, columns = np.nonzero(self.number[frames] != HIDDEN)
         at = frames[rows]
         found[rows, self.number[at, columns]] = points_m[at, columns]
         return found
 
-    def lives(self) -> BoolArray:
-        """(count, T) frames in which a track is seen."""
+    def visible(self) -> BoolArray:
+        """(count, T) True where a track is seen."""
         seen = np.zeros((self.count, len(self.number)), dtype=bool)
         frames, columns = np.nonzero(self.number != HIDDEN)
         seen[self.number[frames, columns], frames] = True
         return seen
 
 
-def continued(before_m: Array, now_m: Array) -> BoolArray:
-    """(C,) columns whose point now is the same physical point as in the frame before.
+def continuing_columns(before_m: Array, now_m: Array) -> BoolArray:
+    """(C,) True for columns that hold the same physical point as in the frame before.
 
-    A column continues where its point lies nearer to its own place before than to any other point's, and the other
-    way round. Points shuffled in every frame fail this, so that nothing need be known of the file.
+    A column continues where its point lies nearer to its own place before than to any other point's, and vice versa.
+    Points shuffled in every frame fail this test.
 
     Args:
         before_m: (C, 3) the frame before, NaN where a column is empty.
@@ -77,17 +77,17 @@ def continued(before_m: Array, now_m: Array) -> BoolArray:
     return same
 
 
-def follow(points_m: Array, rate_hz: float) -> Tracks:
+def link_tracks(points_m: Array, rate_hz: float) -> Tracks:
     """Tracks through a capture whose columns may be tracks or may be shuffled in every frame.
 
     Tracklets are joined over short gaps along the way they were heading, and over longer ones within a column, where
-    nothing else comes half as near.
+    no other tracklet is half as near.
 
     Args:
         points_m: (T, C, 3) points, NaN where a column is empty.
         rate_hz: Frames per second.
     """
-    pieces = linked(points_m)
+    pieces = link_points(points_m)
     ends = [_end(points_m, frames, columns, rate_hz) for frames, columns in pieces.pieces]
     columned = columns_are_tracks(points_m)
     wait = round((COLUMN_GAP_S if columned else GAP_S) * rate_hz) + 1
@@ -115,19 +115,25 @@ def follow(points_m: Array, rate_hz: float) -> Tracks:
     return Tracks(number, count)
 
 
-def columns_are_tracks(points_m: Array) -> bool:
-    """Whether the columns of a capture (T, C, 3) hold the same physical point from frame to frame."""
+def columns_are_tracks(points_m: Array, columns: Indices | slice = slice(None), looks: int = LOOKS) -> bool:
+    """True where columns hold the same physical points from frame to frame.
+
+    Args:
+        points_m: (T, C, 3) points of the capture.
+        columns: The columns judged.
+        looks: Number of frames by which they are judged.
+    """
     same = stay = 0
-    for t in spread_indices(len(points_m), LOOKS, first=1):
-        both = ~np.isnan(points_m[t - 1 : t + 1]).any(axis=(0, 2))
+    for t in spread_indices(len(points_m), looks, first=1):
+        both = ~np.isnan(points_m[t - 1 : t + 1, columns]).any(axis=(0, 2))
         stay += int(both.sum())
-        same += int(continued(points_m[t - 1], points_m[t])[both].sum())
+        same += int(continuing_columns(points_m[t - 1], points_m[t])[columns][both].sum())
     return same >= COLUMNS_ARE_TRACKS * stay
 
 
 @dataclass(frozen=True)
 class _End:
-    """Where a tracklet ended: frame, column, place (3,) and velocity (3,)."""
+    """End of a tracklet: frame, column, place (3,) and velocity (3,)."""
 
     frame: int
     column: int
@@ -142,7 +148,7 @@ def _end(points_m: Array, frames: Indices, columns: Indices, rate_hz: float) -> 
 
 
 def _joining(ends: list[_End], points_m: Array, columns: list[int] | None, t: int, rate_hz: float) -> Array:
-    """(n, m) how far points (n, 3) of frame t are from where m tracklets were heading; infinite where too far."""
+    """(n, m) distances of points (n, 3) of frame t from the ways of m tracklets; infinite where too far."""
     cost = np.full((len(points_m), len(ends)), np.inf)
     for j, end in enumerate(ends):
         gap = (t - end.frame) / rate_hz
@@ -159,7 +165,7 @@ def _joining(ends: list[_End], points_m: Array, columns: list[int] | None, t: in
 
 
 def _sure(cost: Array) -> Indices:
-    """(n,) the column of each row in the cheapest pairing, ``HIDDEN`` where there is none or another is near, too."""
+    """(n,) the column of each row in the cheapest pairing, ``HIDDEN`` without one or where another is also near."""
     found = np.full(len(cost), HIDDEN, dtype=np.intp)
     if not cost.size:
         return found

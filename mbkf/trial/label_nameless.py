@@ -17,7 +17,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.naming import trajectories
-from mbkf.labelling.tracks import Tracks, follow
+from mbkf.labelling.tracks import Tracks, link_tracks
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.label import label
@@ -65,7 +65,7 @@ def label_nameless(
     report(STAGE, 0, 1)
     points = capture.markers.positions_m
     with single_threaded():
-        tracks = follow(points, capture.markers.rate_hz)
+        tracks = link_tracks(points, capture.markers.rate_hz)
     whole = tracks.positions(points, np.arange(len(points)))
     kept = np.flatnonzero((~np.isnan(whole[:, :, 0])).mean(axis=0) >= LEAST_SEEN)
     names = tuple(f"track {k}" for k in kept)
@@ -110,7 +110,7 @@ def _named(inferred: Protocol, tracks: Tracks, number: dict[str, int]) -> tuple[
         tracks: The tracks.
         number: Track by the name it was given.
     """
-    lives = tracks.lives()
+    lives = tracks.visible()
     groups: list[tuple[ProtocolMarker, list[int]]] = []
     seen_most = sorted(inferred.markers, key=lambda marker: -lives[number[marker.name]].sum())
     for marker in seen_most:

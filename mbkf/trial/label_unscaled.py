@@ -20,7 +20,7 @@ from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.keyframes import LOOKS, moving
 from mbkf.labelling.naming import name_tracks, trajectories
-from mbkf.labelling.tracks import Tracks, follow
+from mbkf.labelling.tracks import Tracks, link_tracks
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.runs import spread_indices
@@ -110,7 +110,7 @@ def label_unscaled(
     if mass is None:
         raise InvalidInput("the capture does not state the body mass; give --mass KG")
     with single_threaded():
-        tracks = follow(capture.markers.positions_m, capture.markers.rate_hz)
+        tracks = link_tracks(capture.markers.positions_m, capture.markers.rate_hz)
         search = _Search(capture, tracks, worn, mass, height_m)
         best = search.best(lambda done, total: report(STAGE, done, total))
         best = search.settled(best, lambda done, total: report(NAMES, done, total))
@@ -204,7 +204,7 @@ class _Search:
 
     def _nameless(self, owner: Indices) -> int:
         """How many tracks without a label are seen in half of the frames, and move where most do."""
-        lives, looks = self._tracks.lives(), spread_indices(len(self._points_m), LOOKS)
+        lives, looks = self._tracks.visible(), spread_indices(len(self._points_m), LOOKS)
         moves = moving(self._tracks.positions(self._points_m, looks))
         return int(((owner == HIDDEN) & (lives.mean(axis=1) >= 0.5) & moves).sum())
 

@@ -3,9 +3,10 @@
 import numpy as np
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.beam_search import PartialBody, search_bodies, search_limb
-from mbkf.labelling.placing import likeness, match, placings
-from mbkf.labelling.seeds import any_attitude, upright
+from mbkf.labelling.beam import PartialBody
+from mbkf.labelling.beam_search import search_bodies, search_limb
+from mbkf.labelling.placing import log_likelihood_ratio, match, placings
+from mbkf.labelling.seeds import seeds_in_any_attitude, upright_seeds
 from mbkf.labelling.skeleton import clusters, limbs
 from tests.labelling.bodies import posture, reference_sensor, unlabelled
 
@@ -32,14 +33,14 @@ def test_clusters_hold_every_marker_once_and_rebuild_the_body():
 
 
 def test_limbs_reach_to_the_ends():
-    found = {BODY[limb[0]].segment: {BODY[number].segment for number in limb} for limb in limbs(BODY)}
+    found = {limb[0].segment: {cluster.segment for cluster in limb} for limb in limbs(BODY)}
     assert found["right_thigh"] == {"right_thigh", "right_shank", "right_foot", "right_toes"}
     assert "pelvis" not in found
 
 
 def test_seeds_hold_the_true_root():
     frame, rotations, origins = scene()
-    for seeds in (upright(BODY[0], frame.points), any_attitude(BODY[0], frame.points)):
+    for seeds in (upright_seeds(BODY[0], frame.points), seeds_in_any_attitude(BODY[0], frame.points)):
         turn = np.linalg.norm(seeds[0] - rotations[0], axis=(1, 2))
         away = np.linalg.norm(seeds[1] - origins[0], axis=1)
         assert ((turn < 0.2) & (away < 0.03)).any()
@@ -47,7 +48,7 @@ def test_seeds_hold_the_true_root():
 
 def test_upright_seeds_stand():
     frame, _, _ = scene()
-    rotations, _ = upright(BODY[0], frame.points)
+    rotations, _ = upright_seeds(BODY[0], frame.points)
     assert np.allclose(rotations[:, 2, 2], 1.0)
     assert np.allclose(rotations @ rotations.transpose(0, 2, 1), np.eye(3))
 
@@ -59,10 +60,10 @@ def test_a_segment_is_placed_on_its_points():
             continue
         parent = rotations[cluster.parent]
         every = np.arange(len(frame.points))
-        ways = placings(cluster, origins[number], parent, frame.points, every, 6)
+        ways = placings(frame.points, cluster, origins[number], parent, every)
         own = frame.truth[cluster.markers]
-        assert any(np.array_equal(way.points, own) for way in ways), cluster.segment
-        assert (ways[-1].points == HIDDEN).all()
+        assert any(np.array_equal(way.labels, own) for way in ways), cluster.segment
+        assert (ways[-1].labels == HIDDEN).all()
         scores = [way.score for way in ways[:-1]]
         assert scores == sorted(scores, reverse=True)
 
@@ -74,28 +75,28 @@ def test_a_point_matches_one_marker_of_a_cluster():
     assert np.allclose(squared, [[0.005**2, 0.0]])
 
 
-def test_likeness_prefers_sure_markers_and_near_points():
+def test_the_log_likelihood_ratio_prefers_sure_markers_and_near_points():
     sd = np.array([0.005, 0.05])
-    assert likeness(np.zeros(2), sd)[0] > likeness(np.zeros(2), sd)[1]
-    assert likeness(np.full(2, 1e-4), sd)[0] < likeness(np.zeros(2), sd)[0]
+    assert log_likelihood_ratio(np.zeros(2), sd)[0] > log_likelihood_ratio(np.zeros(2), sd)[1]
+    assert log_likelihood_ratio(np.full(2, 1e-4), sd)[0] < log_likelihood_ratio(np.zeros(2), sd)[0]
 
 
 def test_the_best_body_is_the_true_one():
     frame, _, _ = scene()
-    best, *rest = search_bodies(BODY, frame.points, upright(BODY[0], frame.points), 4)
-    assert (best.points == frame.truth).mean() >= 0.9
+    best, *rest = search_bodies(BODY, frame.points, upright_seeds(BODY[0], frame.points), 4)
+    assert (best.labels == frame.truth).mean() >= 0.9
     assert all(one.score <= best.score for one in rest)
-    used = best.points[best.points != HIDDEN]
+    used = best.labels[best.labels != HIDDEN]
     assert len(used) == len(set(used.tolist()))
 
 
 def test_a_limb_grows_again_where_it_was():
     frame, rotations, origins = scene()
-    limb = next(one for one in limbs(BODY) if BODY[one[0]].segment == "left_shank")
+    limb = next(one for one in limbs(BODY) if one[0].segment == "left_shank")
     whole = PartialBody(rotations, origins, frame.truth, 0.0)
-    again = search_limb(BODY, frame.points, whole, limb, 3)
-    assert any(np.array_equal(one.points, frame.truth) for one in again)
+    again = search_limb(frame.points, whole, limb, 3)
+    assert any(np.array_equal(one.labels, frame.truth) for one in again)
 
 
 def test_nothing_grows_from_nothing():
-    assert search_bodies(BODY, np.zeros((0, 3)), upright(BODY[0], np.zeros((0, 3))), 3) == []
+    assert search_bodies(BODY, np.zeros((0, 3)), upright_seeds(BODY[0], np.zeros((0, 3))), 3) == []

@@ -5,7 +5,13 @@ import time
 import numpy as np
 import pytest
 
-from mbkf.labelling.exchanges import Distances, body_distances, exchanges, observed_distances, put_right
+from mbkf.labelling.exchanges import (
+    Distances,
+    body_distances,
+    find_exchanges,
+    observed_distances,
+    undo_exchanges,
+)
 from mbkf.model.clinical import dof_names
 from mbkf.model.protocol import load_protocol
 from tests.labelling.bodies import posture, reference_sensor
@@ -61,9 +67,9 @@ def test_distances_within_a_segment_are_exact_and_vary_by_placement_only(expecte
 @pytest.mark.parametrize("seed", range(4))
 def test_nothing_is_exchanged_in_a_clean_capture(seed, expected):
     positions = walking(seed=seed)
-    assert exchanges(positions, expected) == ()
+    assert find_exchanges(positions, expected) == ()
     positions[np.random.default_rng(seed).random(positions.shape[:2]) < 0.2] = np.nan
-    assert exchanges(positions, expected) == ()
+    assert find_exchanges(positions, expected) == ()
 
 
 @pytest.mark.parametrize("pair", [("RMT1", "RMT5"), ("RKNE", "RANK"), ("LHEE", "RHEE"), ("C7", "CLAV")])
@@ -72,10 +78,10 @@ def test_exchanged_names_are_found_in_their_frames_and_put_right(pair, runs, exp
     a, b = sorted(NAMES.index(name) for name in pair)
     positions, there = walking(), frames_of(*runs)
     changed = swapped(positions, a, b, there)
-    found = exchanges(changed, expected)
+    found = find_exchanges(changed, expected)
     assert [(one.a, one.b) for one in found] == [(a, b)]
     assert np.array_equal(found[0].frames, there)
-    assert np.array_equal(put_right(changed, found), positions)
+    assert np.array_equal(undo_exchanges(changed, found), positions)
 
 
 def test_an_exchange_after_a_gap_is_found(expected):
@@ -83,7 +89,9 @@ def test_an_exchange_after_a_gap_is_found(expected):
     positions = walking()
     positions[30:35, [a, b]] = np.nan
     changed = swapped(positions, a, b, frames_of((35, FRAMES)))
-    assert np.array_equal(put_right(changed, exchanges(changed, expected)), positions, equal_nan=True)
+    assert np.array_equal(
+        undo_exchanges(changed, find_exchanges(changed, expected)), positions, equal_nan=True
+    )
 
 
 @pytest.mark.parametrize("pair", [("RHEE", "RMT1"), ("C7", "CLAV"), ("RANK", "RKNE")])
@@ -93,7 +101,7 @@ def test_one_marker_alone_is_not_renamed(pair, expected):
     positions, there = walking(), frames_of((30, 60))
     positions[there, a] = positions[there, b]
     positions[there, b] = np.nan
-    found = exchanges(swapped(positions, a, b, frames_of((5, 15))), expected)
+    found = find_exchanges(swapped(positions, a, b, frames_of((5, 15))), expected)
     assert [(one.a, one.b) for one in found] == [(a, b)]
     assert np.array_equal(found[0].frames, frames_of((5, 15)))
 
@@ -103,14 +111,14 @@ def test_three_names_that_go_round_are_put_right(expected):
     positions = walking()
     changed = positions.copy()
     changed[20:50, three] = positions[20:50, np.roll(three, 1)]
-    assert np.array_equal(put_right(changed, exchanges(changed, expected)), positions)
+    assert np.array_equal(undo_exchanges(changed, find_exchanges(changed, expected)), positions)
 
 
 def test_markers_that_moved_since_scaling_are_not_exchanged(expected):
     positions = walking()
     rng = np.random.default_rng(1)
     off = expected.expected_m + rng.normal(0.0, 0.01, expected.expected_m.shape)
-    assert exchanges(positions, Distances(0.5 * (off + off.T), expected.sd_m)) == ()
+    assert find_exchanges(positions, Distances(0.5 * (off + off.T), expected.sd_m)) == ()
 
 
 def test_the_capture_s_own_distances_are_those_of_most_of_its_frames(expected):
@@ -125,14 +133,14 @@ def test_the_capture_s_own_distances_are_those_of_most_of_its_frames(expected):
 
 
 def test_what_shows_too_little_is_left_alone(expected):
-    assert exchanges(np.full((0, 36, 3), np.nan), expected) == ()
-    assert exchanges(np.full((5, 36, 3), np.nan), expected) == ()
+    assert find_exchanges(np.full((0, 36, 3), np.nan), expected) == ()
+    assert find_exchanges(np.full((5, 36, 3), np.nan), expected) == ()
 
 
 def test_a_thousand_frames_take_a_fraction_of_a_second(expected):
     positions = np.tile(walking(), (13, 1, 1))[:1000]
     begin = time.perf_counter()
-    exchanges(positions, expected)
+    find_exchanges(positions, expected)
     assert time.perf_counter() - begin < 1.0
 
 
@@ -153,4 +161,4 @@ def test_hips_bent_further_than_usual_between_two_gaps_are_no_exchange(hidden, e
     positions, gone = crouching(240), [NAMES.index(name) for name in hidden]
     for gap in (slice(97, 100), slice(140, 143)):
         positions[gap, gone] = np.nan
-    assert exchanges(positions, expected) == ()
+    assert find_exchanges(positions, expected) == ()

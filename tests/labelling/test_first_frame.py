@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.first_frame import FirstFrameSearch, labelled
+from mbkf.labelling.first_frame import FirstFrameSearch, labelled_points
 from tests.labelling.bodies import posture, reference_sensor, unlabelled
 
 pytestmark = pytest.mark.slow
@@ -24,7 +24,7 @@ def test_standing_anywhere_with_points_missing_and_added(seed, yaw, missing, ext
     for _ in range(3):
         q = posture(SENSOR.model, rng, 0.15, yaw)
         frame = unlabelled(SENSOR.positions(q), rng, missing, extra)
-        found = SEARCH.standing(frame.points)
+        found = SEARCH.upright(frame.points)
         if found is None:
             continue
         accepted += 1
@@ -41,7 +41,7 @@ def test_other_protocols(protocol):
     search = FirstFrameSearch(sensor, np.full(len(sensor.segments), 0.006))
     rng = np.random.default_rng(5)
     frame = unlabelled(sensor.positions(posture(sensor.model, rng, 0.15, 2.0)), rng, 1, 3)
-    found = search.standing(frame.points)
+    found = search.upright(frame.points)
     assert found is not None
     assert (found.points == frame.truth).mean() >= 0.95
 
@@ -52,7 +52,7 @@ def test_lying_down():
     flat = np.zeros(SENSOR.model.nv)
     flat[4] = np.pi / 2
     frame = unlabelled(SENSOR.positions(SENSOR.model.integrate(q, flat)), rng, 2, 2)
-    assert SEARCH.standing(frame.points) is None
+    assert SEARCH.upright(frame.points) is None
     found = SEARCH.any_attitude(frame.points)
     assert found is not None
     assert (found.points == frame.truth).mean() >= 0.95
@@ -62,19 +62,19 @@ def test_near_a_known_pose():
     rng = np.random.default_rng(4)
     q = posture(SENSOR.model, rng)
     frame = unlabelled(SENSOR.positions(q), rng, 2, 2)
-    found = SEARCH.about(frame.points, SENSOR.model.integrate(q, np.full(SENSOR.model.nv, 0.01)))
+    found = SEARCH.near_pose(frame.points, SENSOR.model.integrate(q, np.full(SENSOR.model.nv, 0.01)))
     assert found is not None
     assert np.array_equal(found.points, frame.truth)
 
 
 def test_points_of_no_body_are_not_believed():
     points = np.random.default_rng(0).uniform(-1.0, 1.0, (45, 3))
-    assert SEARCH.standing(points) is None
+    assert SEARCH.upright(points) is None
 
 
 def test_labels_of_an_empty_frame():
-    assert np.isnan(labelled(np.zeros((0, 3)), np.full(5, HIDDEN))).all()
-    assert SEARCH.standing(np.zeros((0, 3))) is None
+    assert np.isnan(labelled_points(np.zeros((0, 3)), np.full(5, HIDDEN))).all()
+    assert SEARCH.upright(np.zeros((0, 3))) is None
 
 
 def test_rough_labels_are_settled():
@@ -82,7 +82,7 @@ def test_rough_labels_are_settled():
     frame = unlabelled(SENSOR.positions(posture(SENSOR.model, rng, 0.2, 1.0)), rng, 1, 3)
     rough = frame.truth.copy()
     rough[rng.choice(len(rough), 8, replace=False)] = HIDDEN
-    found = SEARCH.settled(frame.points, rough)
+    found = SEARCH.refined(frame.points, rough)
     assert found is not None
     assert np.array_equal(found.points, frame.truth)
-    assert SEARCH.settled(frame.points, np.full(len(rough), HIDDEN)) is None
+    assert SEARCH.refined(frame.points, np.full(len(rough), HIDDEN)) is None

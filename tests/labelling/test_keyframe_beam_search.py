@@ -7,7 +7,7 @@ from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.keyframe_beam_search import search_keyframes
 from mbkf.labelling.keyframes import choose_keyframes
 from mbkf.labelling.skeleton import clusters
-from mbkf.labelling.tracks import follow
+from mbkf.labelling.tracks import link_tracks
 from mbkf.model.human import HumanModel
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.labelling.bodies import reference_sensor
@@ -32,23 +32,23 @@ def person(rng, size):
 def test_a_prone_stranger_is_found(seed, size):
     rng = np.random.default_rng(seed)
     positions, marker = shuffled(movement(person(rng, size), rng), rng)
-    tracks = follow(positions, RATE_HZ)
+    tracks = link_tracks(positions, RATE_HZ)
     seen = choose_keyframes(positions, tracks, 70, 6)
     owner = np.empty(tracks.count, dtype=int)
     owner[tracks.number[70]] = marker[70]
     best, *others = search_keyframes(BODY, seen, 3)
-    there = best.tracks != HIDDEN
-    right = owner[seen.tracks[best.tracks[there]]] == np.flatnonzero(there)
+    there = best.labels != HIDDEN
+    right = owner[seen.tracks[best.labels[there]]] == np.flatnonzero(there)
     assert right.sum() >= 0.9 * len(there)
     assert right.mean() >= 0.98
     assert all(other.score <= best.score for other in others)
-    assert len(set(best.tracks[there].tolist())) == there.sum()
+    assert len(set(best.labels[there].tolist())) == there.sum()
 
 
 def test_points_of_no_person_make_no_body():
     rng = np.random.default_rng(0)
     drift = np.cumsum(rng.normal(0.0, 0.004, (120, 20, 3)), axis=0)
     positions = rng.uniform(-1.0, 1.0, (20, 3)) + drift
-    seen = choose_keyframes(positions, follow(positions, RATE_HZ), 60, 5)
+    seen = choose_keyframes(positions, link_tracks(positions, RATE_HZ), 60, 5)
     for body in search_keyframes(BODY, seen, 3):
-        assert (body.tracks != HIDDEN).sum() < 0.4 * len(body.tracks)
+        assert (body.labels != HIDDEN).sum() < 0.4 * len(body.labels)

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from mbkf.labelling.assignment import HIDDEN
+from mbkf.labelling.beam import BRANCHES
 from mbkf.labelling.keyframe_placing import JOINT_SD_M, MATCH_SD_M, KeyframePlacing
 from mbkf.labelling.keyframes import choose_keyframes
 from mbkf.labelling.skeleton import clusters
-from mbkf.labelling.tracks import follow
+from mbkf.labelling.tracks import link_tracks
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement, poses
 
@@ -21,7 +22,7 @@ def scene():
     """Placing on a prone body's tracks; the track of every marker, and the segments' true poses at the keyframes."""
     positions = movement(SENSOR, np.random.default_rng(7), frames=FRAMES)
     q = poses(SENSOR.model, np.random.default_rng(7), frames=FRAMES)
-    tracks = follow(positions, RATE_HZ)
+    tracks = link_tracks(positions, RATE_HZ)
     seen = choose_keyframes(positions, tracks, 50, 4)
     place = np.full(tracks.count, HIDDEN)
     place[seen.tracks] = np.arange(len(seen.tracks))
@@ -43,13 +44,13 @@ def test_a_segment_finds_its_tracks_though_its_joint_is_off(scene, segment):
     cluster = BODY[number]
     off = origins[:, number] + [0.03, -0.02, 0.02]
     parents = rotations[:, cluster.parent]
-    ways = placing.placings(cluster, off, parents, np.arange(len(own)), 6)
-    assert np.array_equal(ways[0].tracks, own[cluster.markers])
-    assert (ways[-1].tracks == HIDDEN).all()
+    ways = placing.placings(cluster, off, parents, np.arange(len(own)))
+    assert np.array_equal(ways[0].labels, own[cluster.markers])
+    assert (ways[-1].labels == HIDDEN).all()
     assert ways[-1].score == 0.0
     scores = [way.score for way in ways[:-1]]
     assert scores == sorted(scores, reverse=True)
-    assert len(ways) <= 6
+    assert len(ways) <= BRANCHES
 
 
 def test_settled_poses_are_true_where_everything_fits(scene):
@@ -93,6 +94,6 @@ def test_tracks_that_do_not_move_together_are_not_on_one_segment(scene):
 def test_a_segment_without_markers_goes_with_its_parent(scene):
     placing, own, rotations, origins = scene
     number = number_of("neck")
-    (way,) = placing.placings(BODY[number], origins[:, number], rotations[:, 1], np.arange(len(own)), 6)
-    assert np.array_equal(way.rotations, rotations[:, 1])
-    assert np.array_equal(way.origins_m, origins[:, number])
+    (way,) = placing.placings(BODY[number], origins[:, number], rotations[:, 1], np.arange(len(own)))
+    assert np.array_equal(way.rotation, rotations[:, 1])
+    assert np.array_equal(way.origin_m, origins[:, number])

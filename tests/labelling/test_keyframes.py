@@ -3,7 +3,7 @@
 import numpy as np
 
 from mbkf.labelling.keyframes import TRAVEL_M, choose_keyframes, moving
-from mbkf.labelling.tracks import follow
+from mbkf.labelling.tracks import link_tracks
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement
 
@@ -15,7 +15,7 @@ def scene(seed=1, extra=0):
     positions = movement(SENSOR, rng)
     still = np.broadcast_to(rng.uniform(-2.0, 2.0, (extra, 3)), (len(positions), extra, 3))
     positions = np.concatenate([positions, still], axis=1)
-    return positions, follow(positions, RATE_HZ)
+    return positions, link_tracks(positions, RATE_HZ)
 
 
 def test_tracks_of_a_segment_keep_their_distance_and_others_do_not():
@@ -66,4 +66,4 @@ def test_nothing_is_set_aside_where_no_person_travels():
 
 def test_too_few_tracks_are_no_moments():
     positions = np.random.default_rng(0).normal(size=(1, 2, 3)) * np.ones((20, 1, 1))
-    assert choose_keyframes(positions, follow(positions, RATE_HZ), 5, 3) is None
+    assert choose_keyframes(positions, link_tracks(positions, RATE_HZ), 5, 3) is None

@@ -4,7 +4,7 @@ import numpy as np
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.naming import name_tracks, trajectories
-from mbkf.labelling.tracks import follow
+from mbkf.labelling.tracks import link_tracks
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 
@@ -20,7 +20,7 @@ def scene(seed=0, gap=None, extra=0):
     ghosts = rng.uniform(-1.0, 1.0, (extra, 3)) + np.cumsum(rng.normal(0.0, 0.005, (90, extra, 3)), axis=0)
     whole, marker = shuffled(np.concatenate([positions, ghosts], axis=1), rng)
     marker = np.where(marker < len(SD), marker, HIDDEN)
-    tracks = follow(whole, RATE_HZ)
+    tracks = link_tracks(whole, RATE_HZ)
     truth = np.full(tracks.count, HIDDEN)
     there = tracks.number != HIDDEN
     truth[tracks.number[there]] = marker[there]
@@ -52,7 +52,7 @@ def test_pieces_of_one_marker_share_its_name_and_ghosts_have_none():
 def test_no_marker_is_two_points_at_once():
     _, whole, tracks, truth = scene(3)
     twin = np.concatenate([whole, whole[:, :1] + 0.004], axis=1)
-    doubled = follow(twin, RATE_HZ)
+    doubled = link_tracks(twin, RATE_HZ)
     owner = np.full(doubled.count, HIDDEN)
     there = tracks.number != HIDDEN
     owner[doubled.number[:, :-1][there]] = truth[tracks.number[there]]

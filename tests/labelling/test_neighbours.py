@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.labelling.first_frame import FirstFrameSearch
 from mbkf.labelling.neighbours import exchanged, renamed
-from mbkf.labelling.tracklets import linked
+from mbkf.labelling.tracklets import link_points
 from mbkf.model.protocol import load_protocol
 from tests.labelling.bodies import posture, reference_sensor
 
@@ -27,7 +27,7 @@ def walk():
 def test_right_names_stay(walk):
     search, markers, q = walk
     assert renamed(search, markers, q).tolist() == list(range(len(NAMES)))
-    tracklets = linked(markers)
+    tracklets = link_points(markers)
     label = tracklets.number[0].copy()
     assert exchanged(search, markers, q, label, tracklets).tolist() == label.tolist()
 
@@ -46,7 +46,7 @@ def test_a_marker_that_was_not_worn_gives_its_name_back(walk):
 @pytest.mark.parametrize("side", ["R", "L"])
 def test_exchanged_markers_of_a_wrist_turn_the_forearm_the_other_way(walk, side):
     search, markers, q = walk
-    tracklets = linked(markers)
+    tracklets = link_points(markers)
     label = tracklets.number[0].copy()
     pair = [NAMES.index(f"{side}WRA"), NAMES.index(f"{side}WRB")]
     label[pair] = label[pair[::-1]]
@@ -58,7 +58,7 @@ def test_exchanged_markers_of_a_wrist_turn_the_forearm_the_other_way(walk, side)
 def test_a_body_that_was_never_followed_changes_nothing(walk):
     search, markers, q = walk
     lost = np.full_like(q, np.nan)
-    tracklets = linked(markers)
+    tracklets = link_points(markers)
     label = tracklets.number[0].copy()
     assert renamed(search, markers, lost).tolist() == list(range(len(NAMES)))
     assert exchanged(search, markers, lost, label, tracklets).tolist() == label.tolist()

@@ -10,13 +10,12 @@ from scipy.stats import multivariate_normal
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.offline_relabelling import (
     RelabellingSettings,
+    SmoothedCapture,
     SmoothedMarkers,
-    doubtful,
     majority_labels,
-    relabel,
-    worn,
+    worn_markers,
 )
-from mbkf.labelling.tracklets import linked
+from mbkf.labelling.tracklets import link_points
 
 SETTINGS = RelabellingSettings()
 RATE_HZ = 100.0
@@ -25,7 +24,7 @@ NOISE_M = np.full(3, 0.005)
 
 @pytest.fixture
 def scene():
-    """Three markers on a segment that turns and moves, in a hundred frames; positions (T, 3, 3) and the course."""
+    """Three markers on a segment that turns and moves, in a hundred frames; positions (T, 3, 3) and the body."""
     rng = np.random.default_rng(4)
     t = np.arange(100) / RATE_HZ
     c, s = np.cos(t), np.sin(t)
@@ -37,10 +36,13 @@ def scene():
     return on_body + rng.normal(0.0, 0.001, on_body.shape), course
 
 
+def beside(positions, tracklets, course, settings=SETTINGS):
+    return SmoothedCapture(positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, settings)
+
+
 def labels_of(positions, course, so_far):
-    tracklets = linked(positions)
-    label = relabel(so_far, positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS)
-    return tracklets.points(label)
+    tracklets = link_points(positions)
+    return tracklets.points(beside(positions, tracklets, course).relabelled(so_far))
 
 
 def test_unnamed_points_get_the_names_of_their_places(scene):
@@ -76,7 +78,7 @@ def test_frames_without_a_body_say_nothing(scene):
 
 def test_the_majority_of_frames_names_a_tracklet(scene):
     positions, _ = scene
-    tracklets = linked(positions)
+    tracklets = link_points(positions)
     votes = np.tile([0, 1, 2], (100, 1))
     votes[10:30, 0], votes[10:30, 1] = 1, 0
     votes[5:50, 2] = HIDDEN
@@ -90,7 +92,7 @@ def test_a_label_that_two_tracklets_carried_goes_to_the_one_without_another(scen
     """A marker hidden at first, whose neighbour was taken for it: the neighbour has its own name for the rest."""
     positions, _ = scene
     positions[20:40, 0] = np.nan
-    tracklets = linked(positions)
+    tracklets = link_points(positions)
     carried = np.tile([HIDDEN, 0, 2], (100, 1))
     carried[60:, 0], carried[60:, 1] = 0, 1
     found = tracklets.points(majority_labels(carried, 3, tracklets, SETTINGS))
@@ -99,7 +101,7 @@ def test_a_label_that_two_tracklets_carried_goes_to_the_one_without_another(scen
 
 def test_no_label_twice_in_a_frame(scene):
     positions, _ = scene
-    tracklets = linked(positions)
+    tracklets = link_points(positions)
     same = np.zeros((100, 3), dtype=int)
     same[40:, 1] = HIDDEN
     labels = majority_labels(same, 3, tracklets, SETTINGS)
@@ -112,36 +114,34 @@ def test_a_marker_made_up_of_ghosts_was_not_worn(scene):
     positions, course = scene
     rng = np.random.default_rng(0)
     segments = ["shank"] * 3
-    assert worn(course, positions, NOISE_M, segments, SETTINGS).all()
+    assert worn_markers(course, positions, NOISE_M, segments, SETTINGS).all()
     rare = positions.copy()
     rare[10:, 2] = np.nan
-    assert worn(course, rare, NOISE_M, segments, SETTINGS).tolist() == [True, True, False]
-    restless = positions.copy()
-    restless[30:, 2] = np.nan
-    assert worn(course, restless, NOISE_M, segments, SETTINGS).all()
-    restless[:30, 2] += rng.normal(0.0, 0.02, (30, 3))
-    assert worn(course, restless, NOISE_M, segments, SETTINGS).tolist() == [True, True, False]
-    assert not worn(course, np.full_like(positions, np.nan), NOISE_M, segments, SETTINGS).any()
+    assert worn_markers(course, rare, NOISE_M, segments, SETTINGS).tolist() == [True, True, False]
+    scattered = positions.copy()
+    scattered[30:, 2] = np.nan
+    assert worn_markers(course, scattered, NOISE_M, segments, SETTINGS).all()
+    scattered[:30, 2] += rng.normal(0.0, 0.02, (30, 3))
+    assert worn_markers(course, scattered, NOISE_M, segments, SETTINGS).tolist() == [True, True, False]
+    assert not worn_markers(course, np.full_like(positions, np.nan), NOISE_M, segments, SETTINGS).any()
 
 
 def test_a_tracklet_far_from_its_marker_is_in_doubt(scene):
     positions, course = scene
     so_far = np.tile([0, 1, 2], (100, 1))
     moved = positions + np.array([[0.0], [0.03], [0.0]])
-    tracklets = linked(moved)
-    far = doubtful(so_far, moved, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS)
+    tracklets = link_points(moved)
+    far = beside(moved, tracklets, course).doubtful(so_far)
     assert far.tolist() == [False, True, False]
     so_far[:, 1] = HIDDEN
-    assert not doubtful(so_far, moved, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS).any()
+    assert not beside(moved, tracklets, course).doubtful(so_far).any()
 
 
 def test_a_brief_tracklet_is_in_doubt(scene):
     positions, course = scene
     positions[20:90, 0] = np.nan
-    tracklets = linked(positions)
-    far = doubtful(
-        np.tile([0, 1, 2], (100, 1)), positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS
-    )
+    tracklets = link_points(positions)
+    far = beside(positions, tracklets, course).doubtful(np.tile([0, 1, 2], (100, 1)))
     assert np.array_equal(far, np.diff(tracklets.spans, axis=1)[:, 0] < 25)
     assert far.sum() == 2
 
@@ -149,9 +149,9 @@ def test_a_brief_tracklet_is_in_doubt(scene):
 def test_where_all_is_in_doubt_nothing_is(scene):
     positions, course = scene
     positions[10:15] = np.nan
-    tracklets = linked(positions)
+    tracklets = link_points(positions)
     so_far = np.tile([0, 1, 2], (100, 1))
-    assert not doubtful(so_far, positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS).any()
+    assert not beside(positions, tracklets, course).doubtful(so_far).any()
 
 
 @pytest.mark.parametrize(("ghosts", "named"), [(0.9, True), (1.1, False)])
@@ -163,6 +163,6 @@ def test_a_single_look_names_a_point_where_its_marker_is_denser_there_than_ghost
     density = multivariate_normal(np.zeros(3), place).pdf([off, 0.0, 0.0])
     first = SmoothedMarkers(*(part[:1] for part in (course.on_body_m, course.rotations, course.variance_m2)))
     settings = replace(SETTINGS, ghosts_per_m3=ghosts * density)
-    tracklets = linked(one)
-    label = relabel(np.full((1, 1), HIDDEN), one, tracklets, first, NOISE_M, 1.0 / RATE_HZ, settings)
+    tracklets = link_points(one)
+    label = beside(one, tracklets, first, settings).relabelled(np.full((1, 1), HIDDEN))
     assert (label == 0).all() == named

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.tracklets import linked
+from mbkf.labelling.tracklets import link_points
 from mbkf.synthesis.cameras import without_labels
 
 RATE_HZ = 100.0
@@ -24,7 +24,7 @@ def test_shuffled_points_are_linked_as_they_moved():
     rng = np.random.default_rng(1)
     shown = swarm(80, 12, rng)
     shuffled = without_labels(shown, rng)
-    tracklets = linked(shuffled)
+    tracklets = link_points(shuffled)
     assert tracklets.count == 12
     for frames, columns in tracklets.pieces:
         owner = [
@@ -39,7 +39,7 @@ def test_a_crossing_is_passed_by_velocity():
     t = np.arange(60) / RATE_HZ
     one = np.stack([t - 0.3, 0.0075 + 0.0 * t, 0.0 * t], axis=1)
     other = np.stack([0.3 - t, -0.0075 + 0.0 * t, 0.0 * t], axis=1)
-    tracklets = linked(np.stack([one, other], axis=1))
+    tracklets = link_points(np.stack([one, other], axis=1))
     assert tracklets.count == 2
     assert (tracklets.number == [0, 1]).all()
 
@@ -48,14 +48,14 @@ def test_a_doubtful_link_is_not_made():
     still = np.zeros((10, 2, 3))
     still[:, 1, 0] = 0.3
     still[5:, :, 0] += [0.02, -0.29]  # both land beside the place of the first
-    tracklets = linked(still)
+    tracklets = link_points(still)
     assert not set(tracklets.number[4]) & set(tracklets.number[5])
 
 
 def test_gaps_end_a_tracklet():
     shown = swarm(30, 3, np.random.default_rng(0))
     shown[10:12, 1] = np.nan
-    tracklets = linked(shown)
+    tracklets = link_points(shown)
     assert tracklets.count == 4
     assert (tracklets.number[10:12, 1] == HIDDEN).all()
     assert sorted(map(tuple, tracklets.spans)) == [(0, 10), (0, 30), (0, 30), (12, 30)]
@@ -64,11 +64,11 @@ def test_gaps_end_a_tracklet():
 def test_labels_of_tracklets_are_those_of_their_points():
     shown = swarm(5, 3, np.random.default_rng(0))
     shown[2:, 2] = np.nan
-    tracklets = linked(shown)
+    tracklets = link_points(shown)
     labels = tracklets.points(np.array([7, HIDDEN, 5]))
     assert labels[0].tolist() == [7, HIDDEN, 5]
     assert labels[3].tolist() == [7, HIDDEN, HIDDEN]
-    nothing = linked(np.full((4, 2, 3), np.nan))
+    nothing = link_points(np.full((4, 2, 3), np.nan))
     assert nothing.count == 0
     assert (nothing.points(np.zeros(0, dtype=int)) == HIDDEN).all()
 
@@ -79,7 +79,7 @@ def test_every_point_has_one_tracklet_and_every_tracklet_one_point_a_frame(seed,
     rng = np.random.default_rng(seed)
     shown = rng.uniform(-0.1, 0.1, (frames, points, 3))
     shown[rng.random((frames, points)) < 0.3] = np.nan
-    tracklets = linked(shown)
+    tracklets = link_points(shown)
     there = ~np.isnan(shown).any(axis=2)
     assert np.array_equal(tracklets.number != HIDDEN, there)
     for row in tracklets.number:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.tracks import columns_are_tracks, continued, follow
+from mbkf.labelling.tracks import columns_are_tracks, continuing_columns, link_tracks
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 
@@ -19,13 +19,13 @@ def frames(seed=0, points=30):
 
 def test_tracks_continue():
     _, before, now = frames()
-    assert continued(before, now).all()
+    assert continuing_columns(before, now).all()
 
 
 def test_empty_columns_do_not():
     _, before, now = frames()
     before[3], now[5] = np.nan, np.nan
-    same = continued(before, now)
+    same = continuing_columns(before, now)
     assert not same[[3, 5]].any()
     assert same.sum() == len(before) - 2
 
@@ -33,12 +33,12 @@ def test_empty_columns_do_not():
 def test_shuffled_columns_do_not():
     rng, before, now = frames()
     order = rng.permutation(len(now))
-    assert np.array_equal(continued(before, now[order]), order == np.arange(len(now)))
+    assert np.array_equal(continuing_columns(before, now[order]), order == np.arange(len(now)))
 
 
 def test_no_column_in_common():
     empty = np.full((4, 3), np.nan)
-    assert not continued(empty, np.zeros((4, 3))).any()
+    assert not continuing_columns(empty, np.zeros((4, 3))).any()
 
 
 def owners(tracks, marker_of_point):
@@ -57,7 +57,7 @@ def test_tracks_hold_one_marker_each_through_gaps(shuffle):
     positions[40:46, 5] = np.nan
     if shuffle:
         positions, columns = shuffled(positions, rng)
-    tracks = follow(positions, RATE_HZ)
+    tracks = link_tracks(positions, RATE_HZ)
     assert np.array_equal(tracks.number != HIDDEN, ~np.isnan(positions[:, :, 0]))
     held = owners(tracks, columns)
     assert all(len(markers) == 1 for markers in held)
@@ -70,7 +70,7 @@ def test_a_column_that_leaps_is_two_tracks():
     positions = movement(SENSOR, rng, frames=40)
     positions[15:20, 7] = np.nan
     positions[20:, 7] += [2.0, 0.0, 0.0]
-    number = follow(positions, RATE_HZ).number[:, 7]
+    number = link_tracks(positions, RATE_HZ).number[:, 7]
     assert len(set(number[:15])) == len(set(number[20:])) == 1
     assert number[0] != number[-1]
 
@@ -86,15 +86,15 @@ def test_positions_and_lives_of_tracks():
     rng = np.random.default_rng(6)
     positions = movement(SENSOR, rng, frames=20)
     positions[5:8, 2] = np.nan
-    tracks = follow(positions, RATE_HZ)
+    tracks = link_tracks(positions, RATE_HZ)
     own = tracks.number[0]
     looks = np.array([0, 6, 19])
     assert np.array_equal(tracks.positions(positions, looks)[:, own], positions[looks], equal_nan=True)
-    assert np.array_equal(tracks.lives()[own].T, ~np.isnan(positions[:, :, 0]))
+    assert np.array_equal(tracks.visible()[own].T, ~np.isnan(positions[:, :, 0]))
 
 
 def test_nothing_makes_no_tracks():
-    assert follow(np.full((5, 3, 3), np.nan), RATE_HZ).count == 0
+    assert link_tracks(np.full((5, 3, 3), np.nan), RATE_HZ).count == 0
 
 
 @pytest.mark.parametrize(("along_m", "tracks"), [(0.09, 1), (-0.05, 2)])
@@ -107,4 +107,4 @@ def test_a_point_may_come_back_anywhere_on_the_way_it_was_going_and_not_behind_i
     course[20 + gap - 1 :, 0, 0] += course[19, 0, 0] + along_m - course[20 + gap - 1, 0, 0]
     course[::2] = course[::2, ::-1]
     assert not columns_are_tracks(course)
-    assert follow(course, 100.0).count == 1 + tracks
+    assert link_tracks(course, 100.0).count == 1 + tracks

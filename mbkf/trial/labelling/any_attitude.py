@@ -13,7 +13,7 @@ from mbkf.labelling.first_frame import FirstFrame, FirstFrameSearch
 from mbkf.labelling.keyframe_beam_search import search_keyframes
 from mbkf.labelling.keyframes import choose_keyframes
 from mbkf.labelling.skeleton import clusters
-from mbkf.labelling.tracks import Tracks, follow
+from mbkf.labelling.tracks import Tracks, link_tracks
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 STAGE = "Searching any attitude"
@@ -43,8 +43,8 @@ def name_tracks_of_frame(
     bodies = [] if seen is None else search_keyframes(clusters(sensor, sd_m), seen, 1)
     if seen is None or not bodies:
         return owner, 0.0
-    there = bodies[0].tracks != HIDDEN
-    owner[seen.tracks[bodies[0].tracks[there]]] = np.flatnonzero(there)
+    there = bodies[0].labels != HIDDEN
+    owner[seen.tracks[bodies[0].labels[there]]] = np.flatnonzero(there)
     return owner, bodies[0].score
 
 
@@ -67,7 +67,7 @@ class AnyAttitude:
 
     @cached_property
     def _tracks(self) -> Tracks:
-        return follow(self._positions_m, self._rate_hz)
+        return link_tracks(self._positions_m, self._rate_hz)
 
     def at(self, frame: int) -> FirstFrame | None:
         """Labels of a frame's points, in the order of their columns, or None where none are plausible."""
@@ -78,7 +78,7 @@ class AnyAttitude:
         own = owner[self._tracks.number[frame, columns]]
         labels = np.full(len(sd), HIDDEN, dtype=np.intp)
         labels[own[own != HIDDEN]] = np.flatnonzero(own != HIDDEN)
-        return self.search.settled(points[columns], labels)
+        return self.search.refined(points[columns], labels)
 
     def starts(
         self, looks: Sequence[int], progress: Callable[[int, int], None]
@@ -98,4 +98,4 @@ class AnyAttitude:
             if len(found) == ENOUGH:
                 break
         progress(len(looks), len(looks))
-        return sorted(found, key=lambda pair: -pair[1].worth)
+        return sorted(found, key=lambda pair: -pair[1].log_ratio)

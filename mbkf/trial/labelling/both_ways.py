@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.labelling.assignment import Indices
-from mbkf.labelling.first_frame import FirstFrame, labelled
+from mbkf.labelling.first_frame import FirstFrame, labelled_points
 from mbkf.numerics.runs import spread_indices
 from mbkf.trial.labelling.body import LabelBody
 from mbkf.trial.labelling.starts import Starts, points_of
@@ -63,7 +63,7 @@ def most_likely_run(
     """
     runs: list[Run] = []
     for t, first in starts:
-        shown = labelled(points_of(markers, t), first.points)
+        shown = labelled_points(points_of(markers, t), first.points)
         if any(np.array_equal(run.markers_m[t], shown, equal_nan=True) for run in runs):
             continue
         runs.append(_both_ways(body, markers, t, first, known, progress))
@@ -75,7 +75,7 @@ def most_likely_run(
 def _log_ratio(body: LabelBody, run: Run) -> float:
     """Log-likelihood ratio of a run's labels, summed over a few frames."""
     frames = [t for t in spread_indices(len(run.q), COMPARED) if not np.isnan(run.q[t]).any()]
-    return sum(body.search.worth(run.markers_m[t], run.q[t]) for t in frames)
+    return sum(body.search.log_ratio(run.markers_m[t], run.q[t]) for t in frames)
 
 
 def _both_ways(

@@ -16,10 +16,9 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import SubjectMarker, match_names
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.exchanges import Distances, body_distances, exchanges, misfits
-from mbkf.labelling.tracklets import Tracklets, linked
-from mbkf.labelling.tracks import COLUMNS_ARE_TRACKS, continued
-from mbkf.numerics.runs import spread_indices
+from mbkf.labelling.exchanges import Distances, body_distances, find_exchanges, misfits
+from mbkf.labelling.tracklets import Tracklets, link_points
+from mbkf.labelling.tracks import columns_are_tracks
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 PLACED_SD_M = 0.015
@@ -91,7 +90,7 @@ def known_names(
     if not column:
         return nothing
     named = np.array(list(column), dtype=np.intp)
-    if not _stay(points.positions_m, named):
+    if not columns_are_tracks(points.positions_m, named, LOOKS):
         return replace(nothing, ignored="they change their points from frame to frame")
     owner = np.array(list(column.values()), dtype=np.intp)
     placed = np.array([np.hypot(np.hypot(m.noise_m, m.session_sd_m), PLACED_SD_M) for m in markers])
@@ -102,11 +101,11 @@ def known_names(
     shown[:, owner] = points.positions_m[:, named]
     claimed = np.full(points.positions_m.shape[:2], HIDDEN, dtype=np.intp)
     claimed[:, named] = np.where(np.isnan(points.positions_m[:, named, 0]), HIDDEN, owner)
-    tracklets = linked(points.positions_m)
+    tracklets = link_points(points.positions_m)
     if _contradicted(points.positions_m, claimed, tracklets, distances) > MOST_CONTRADICTED:
         return KnownNames(claimed, nothing.trusted, "most of them contradict the body")
     right = claimed.copy()
-    for one in exchanges(shown, distances):
+    for one in find_exchanges(shown, distances):
         a, b = (right == one.a) & one.frames[:, None], (right == one.b) & one.frames[:, None]
         right[a], right[b] = one.b, one.a
     return KnownNames(claimed, _trusted(points.positions_m, right, tracklets, distances))
@@ -128,16 +127,6 @@ def with_claims(labels: Indices, names: KnownNames) -> Indices:
         if names.claimed[t, c] not in found[t]:
             found[t, c] = names.claimed[t, c]
     return found
-
-
-def _stay(positions_m: Array, named: Indices) -> bool:
-    """Whether the points of named columns are from frame to frame the same ones."""
-    same = both = 0
-    for t in spread_indices(len(positions_m), LOOKS, first=1):
-        there = ~np.isnan(positions_m[t - 1 : t + 1, named]).any(axis=(0, 2))
-        both += int(there.sum())
-        same += int(continued(positions_m[t - 1], positions_m[t])[named][there].sum())
-    return same >= COLUMNS_ARE_TRACKS * both
 
 
 def _contradicted(positions_m: Array, claimed: Indices, tracklets: Tracklets, distances: Distances) -> float:

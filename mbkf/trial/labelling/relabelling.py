@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking_loop import followed
@@ -16,17 +16,16 @@ from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.neighbours import exchanged, renamed
 from mbkf.labelling.offline_relabelling import (
     RelabellingSettings,
+    SmoothedCapture,
     SmoothedMarkers,
-    doubtful,
     majority_labels,
-    relabel,
-    worn,
+    worn_markers,
 )
-from mbkf.labelling.tracklets import Tracklets, linked
+from mbkf.labelling.tracklets import link_points
 from mbkf.trial.labelling.body import LabelBody, corrected_body
 
 ROUNDS = 4
-"""Most iterations of labels and smoothed body."""
+"""Greatest number of rounds of alternately relabelling and smoothing."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +33,10 @@ class Relabelled:
     """Labels after the offline relabelling.
 
     Attributes:
-        label_of_point: (T, C) marker of every point, ``HIDDEN`` where none; markers as the body given has them.
-        changed: Samples whose label was taken away or is another now.
-        places: The smoothed body's markers by which they were judged, None where the body fitted no person.
-        body: The body with the markers shown, at the places where the capture has them.
+        label_of_point: (T, C) marker of every point, ``HIDDEN`` where none; numbered as in the given body.
+        changed: Samples whose label was removed or changed.
+        places: The smoothed body's markers by which they were judged, None where the labels fit no body.
+        body: The body with the markers shown, corrected to their places in the capture.
     """
 
     label_of_point: Indices
@@ -57,63 +56,30 @@ def relabel_offline(
     """Relabels a capture with the smoothed body, which uses all frames.
 
     Args:
-        body: The subject as scaled, on whose markers the labels count.
+        body: The subject as scaled, whose markers number the labels.
         points: The capture.
         label_of_point: (T, C) labels of its points.
         q: (T, nq) poses of the pass, NaN where the body was not tracked.
         progress: Called with frames done and frames in all.
-        known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
+        known: (T, C) marker of the points that carry a reliable name; None where none does.
     """
-    settings = RelabellingSettings()
-    tracklets = linked(points.positions_m)
-    looked = 0
-
-    def shown(labels: Indices) -> MarkerTrajectories:
-        return trajectories(points, labels, body.names)
-
-    def smoothed(labels: Indices) -> tuple[LabelBody, SmoothedMarkers] | None:
-        nonlocal looked
-        corrected = corrected_body(body, shown(labels))
-        if corrected is None:
-            return None
-        begin, all_ = looked * points.frames, (ROUNDS + 1) * points.frames
-        looked += 1
-        own = shown(labels).select(corrected.names)
-        return corrected, course(corrected, own, lambda done: progress(begin + done, all_))
-
-    label = majority_labels(label_of_point, len(body.markers), tracklets, settings)
-    named = np.unique(known[known != HIDDEN]) if known is not None else np.zeros(0, dtype=np.intp)
-    name = renamed(body.search, shown(tracklets.points(label)).positions_m, q)
-    label = _kept(named, label, np.where(label == HIDDEN, HIDDEN, name[label]))
-    other = exchanged(body.search, shown(tracklets.points(label)).positions_m, q, label, tracklets)
-    label = _kept(named, label, other)
-    labels = tracklets.points(label)
-    found = smoothed(labels)
+    relabelling = _Relabelling(body, points, known, progress)
+    labels = relabelling.by_votes(label_of_point, q)
+    found = relabelling.smoothed(labels)
     if found is not None:
-        labels, sure = _sure(points, tracklets, labels, body, *found, settings, named)
-        found = smoothed(sure)
+        labels, sure = relabelling.without_doubts(labels, *found)
+        found = relabelling.smoothed(sure)
     for _ in range(ROUNDS):
         if found is None:
             break
-        fresh = _relabelled(points, tracklets, labels, body, *found, settings, known)
-        settled = bool((fresh == labels).all())
-        labels = fresh
-        if settled:
+        before, labels = labels, relabelling.by_body(labels, *found)
+        if (labels == before).all():
             break
-        found = smoothed(labels)
+        found = relabelling.smoothed(labels)
     progress(1, 1)
-    had = label_of_point != HIDDEN
+    changed = (label_of_point != HIDDEN) & (labels != label_of_point)
     own, places = found or (None, None)
-    return Relabelled(labels, int((had & (labels != label_of_point)).sum()), places, own)
-
-
-def _kept(named: Indices, before: Indices, after: Indices) -> Indices:
-    """(n,) labels after a change that concerns no marker whose name is known."""
-    changed = before != after
-    touched = changed & (np.isin(before, named) | np.isin(after, named))
-    markers = np.union1d(before[touched], after[touched])
-    undone = changed & (np.isin(before, markers) | np.isin(after, markers))
-    return np.where(undone, before, after)
+    return Relabelled(labels, int(changed.sum()), places, own)
 
 
 def trajectories(
@@ -132,8 +98,10 @@ def trajectories(
     return replace(points, names=names, positions_m=positions)
 
 
-def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int], None]) -> SmoothedMarkers:
-    """Positions of the smoothed body's markers in every frame of labelled trajectories.
+def smoothed_markers(
+    body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int], None]
+) -> SmoothedMarkers:
+    """Places of the smoothed body's markers in every frame of labelled trajectories.
 
     Args:
         body: The body and its markers.
@@ -168,54 +136,87 @@ def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int
     return places
 
 
-def _sure(
-    points: MarkerTrajectories,
-    tracklets: Tracklets,
-    labels: Indices,
-    body: LabelBody,
-    corrected: LabelBody,
-    places: SmoothedMarkers,
-    settings: RelabellingSettings,
-    named: Indices,
-) -> tuple[Indices, Indices]:
-    """(T, C) labels of markers that were worn, and those of them that are in no doubt.
+class _Relabelling:
+    """The tracklets of a capture and the body that they are judged by."""
 
-    A ghost takes a segment of few markers with it; what is in doubt is judged on a body that it did not move.
-    """
-    own, place = _numbered(labels, body, corrected)
-    shown = trajectories(points, own, corrected.names).positions_m
-    there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
-    labels = np.where(np.isin(labels, np.union1d(place[there], named)), labels, HIDDEN)
-    dt = 1.0 / points.rate_hz
-    astray = doubtful(own, points.positions_m, tracklets, places, corrected.noise_m, dt, settings)
-    return labels, np.where(tracklets.points(astray.astype(np.intp)) == 1, HIDDEN, labels)
+    def __init__(
+        self,
+        body: LabelBody,
+        points: MarkerTrajectories,
+        known: Indices | None,
+        progress: Callable[[int, int], None],
+    ) -> None:
+        self.body, self.points, self.known, self.progress = body, points, known, progress
+        self.tracklets, self.smoothings = link_points(points.positions_m), 0
+        self.named = np.zeros(0, dtype=np.intp) if known is None else np.unique(known[known != HIDDEN])
 
+    def by_votes(self, label_of_point: Indices, q: Array) -> Indices:
+        """(T, C) labels of whole tracklets by the majority of their frames, neighbours judged by the posture."""
+        tracklets, search = self.tracklets, self.body.search
+        label = majority_labels(label_of_point, len(self.body.markers), tracklets, RelabellingSettings())
+        name = renamed(search, self._shown(tracklets.points(label)), q)
+        label = self._kept(label, np.where(label == HIDDEN, HIDDEN, name[label]))
+        other = exchanged(search, self._shown(tracklets.points(label)), q, label, tracklets)
+        return tracklets.points(self._kept(label, other))
 
-def _relabelled(
-    points: MarkerTrajectories,
-    tracklets: Tracklets,
-    labels: Indices,
-    body: LabelBody,
-    corrected: LabelBody,
-    places: SmoothedMarkers,
-    settings: RelabellingSettings,
-    known: Indices | None,
-) -> Indices:
-    """(T, C) labels as the tracklets' judgement has them."""
-    own, place = _numbered(labels, body, corrected)
-    shown = trajectories(points, own, corrected.names).positions_m
-    there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
-    names = None if known is None else _numbered(known, body, corrected)[0]
-    if names is not None:
-        there = there | np.isin(np.arange(len(there)), names)
-    noise, dt = np.where(there, corrected.noise_m, np.nan), 1.0 / points.rate_hz
-    found = relabel(own, points.positions_m, tracklets, places, noise, dt, settings, names)
-    return tracklets.points(np.where(found == HIDDEN, HIDDEN, place[found]))
+    def smoothed(self, labels: Indices) -> tuple[LabelBody, SmoothedMarkers] | None:
+        """The body corrected on labelled trajectories, and its smoothed markers; None where they fit no body."""
+        shown = trajectories(self.points, labels, self.body.names)
+        corrected = corrected_body(self.body, shown)
+        if corrected is None:
+            return None
+        begin, all_ = self.smoothings * self.points.frames, (ROUNDS + 1) * self.points.frames
+        self.smoothings += 1
+        own = shown.select(corrected.names)
+        return corrected, smoothed_markers(corrected, own, lambda done: self.progress(begin + done, all_))
 
+    def without_doubts(
+        self, labels: Indices, corrected: LabelBody, places: SmoothedMarkers
+    ) -> tuple[Indices, Indices]:
+        """(T, C) labels of markers that were worn, and those of them that are not doubtful.
 
-def _numbered(labels: Indices, body: LabelBody, corrected: LabelBody) -> tuple[Indices, Indices]:
-    """(T, C) labels counted among the corrected body's markers, and the place of each of these among all."""
-    place = np.array([body.names.index(one) for one in corrected.names], dtype=np.intp)
-    own = np.full(len(body.markers) + 1, HIDDEN, dtype=np.intp)  # the last is that of HIDDEN
-    own[place] = np.arange(len(place))
-    return own[labels], place
+        A ghost takes a segment of few markers with it; doubtful labels are judged on a body that they did not move.
+        """
+        own, place = self._numbered(labels, corrected)
+        worn = np.union1d(place[self._worn(own, corrected, places)], self.named)
+        labels = np.where(np.isin(labels, worn), labels, HIDDEN)
+        doubtful = self._beside(places, corrected.noise_m).doubtful(own)
+        return labels, np.where(self.tracklets.points(doubtful.astype(np.intp)) == 1, HIDDEN, labels)
+
+    def by_body(self, labels: Indices, corrected: LabelBody, places: SmoothedMarkers) -> Indices:
+        """(T, C) labels of whole tracklets by their places on the smoothed body."""
+        own, place = self._numbered(labels, corrected)
+        worn = self._worn(own, corrected, places)
+        names = None if self.known is None else self._numbered(self.known, corrected)[0]
+        if names is not None:
+            worn = worn | np.isin(np.arange(len(worn)), names)
+        noise = np.where(worn, corrected.noise_m, np.nan)
+        found = self._beside(places, noise).relabelled(own, names)
+        return self.tracklets.points(np.where(found == HIDDEN, HIDDEN, place[found]))
+
+    def _beside(self, places: SmoothedMarkers, noise_m: Array) -> SmoothedCapture:
+        dt_s = 1.0 / self.points.rate_hz
+        return SmoothedCapture(self.points.positions_m, self.tracklets, places, noise_m, dt_s)
+
+    def _worn(self, own: Indices, corrected: LabelBody, places: SmoothedMarkers) -> BoolArray:
+        shown = trajectories(self.points, own, corrected.names).positions_m
+        segments = corrected.sensor.segments
+        return worn_markers(places, shown, corrected.noise_m, segments, RelabellingSettings())
+
+    def _shown(self, labels: Indices) -> Array:
+        return trajectories(self.points, labels, self.body.names).positions_m
+
+    def _kept(self, before: Indices, after: Indices) -> Indices:
+        """(n,) labels after a change that concerns no marker whose name is known."""
+        changed = before != after
+        touched = changed & (np.isin(before, self.named) | np.isin(after, self.named))
+        markers = np.union1d(before[touched], after[touched])
+        undone = changed & (np.isin(before, markers) | np.isin(after, markers))
+        return np.where(undone, before, after)
+
+    def _numbered(self, labels: Indices, corrected: LabelBody) -> tuple[Indices, Indices]:
+        """(T, C) labels numbered by the corrected body's markers, and the number of each of these among all."""
+        place = np.array([self.body.names.index(one) for one in corrected.names], dtype=np.intp)
+        own = np.full(len(self.body.markers) + 1, HIDDEN, dtype=np.intp)  # the last is that of HIDDEN
+        own[place] = np.arange(len(place))
+        return own[labels], place

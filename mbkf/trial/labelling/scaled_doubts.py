@@ -17,7 +17,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.tracklets import linked
+from mbkf.labelling.tracklets import link_points
 from mbkf.trial.labelling.body import LabelBody
 from mbkf.trial.labelling.doubts import DOUBTFUL_ODDS, Doubt, Doubts
 from mbkf.trial.labelling.known_names import KnownNames
@@ -160,7 +160,7 @@ def _rivals(body: LabelBody, shown: _Found) -> tuple[list[Doubt], dict[str, floa
 
 def _nameless(points: MarkerTrajectories, labels: Indices) -> int:
     """How many tracklets of half of the capture's length or more carry no label."""
-    pieces = linked(points.positions_m).pieces
+    pieces = link_points(points.positions_m).pieces
     return sum(len(f) >= 0.5 * points.frames and bool((labels[f, c] == HIDDEN).all()) for f, c in pieces)
 
 

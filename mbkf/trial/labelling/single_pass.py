@@ -11,9 +11,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.first_frame import FirstFrame, labelled
+from mbkf.labelling.first_frame import FirstFrame, labelled_points
 from mbkf.labelling.running import RunningLabeller
-from mbkf.labelling.tracks import continued
+from mbkf.labelling.tracks import continuing_columns
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.labelling.any_attitude import AnyAttitude
 
@@ -106,7 +106,10 @@ class LabellingPass:
         t, frames, tries = start, len(self._positions_m), 0
         wait = max(1, round(RETRY_S / self._filter.dt_s))
         while t < frames:
-            if t > start and np.count_nonzero(~np.isnan(self._positions_m[t, :, 0])) < self._search.least:
+            if (
+                t > start
+                and np.count_nonzero(~np.isnan(self._positions_m[t, :, 0])) < self._search.fewest_points
+            ):
                 t += 1
                 continue
             found = first if t == start and first is not None else self.find(t, tries % SEARCH_EVERY == 0)
@@ -120,9 +123,9 @@ class LabellingPass:
     def find(self, t: int, thorough: bool) -> FirstFrame | None:
         """Labels of a frame by search, the slow one for bodies that do not stand included where ``thorough``."""
         points = self._points(t).positions_m
-        if len(points) < self._search.least:
+        if len(points) < self._search.fewest_points:
             return None
-        found = self._search.standing(points)
+        found = self._search.upright(points)
         return self._any_attitude.at(t) if found is None and thorough else found
 
     def _as_named(self, t: int, points: Points, labels: Indices) -> Indices:
@@ -147,7 +150,7 @@ class LabellingPass:
             if len(poses) > 1:
                 guess = model.integrate(guess, model.difference(poses[-2], guess))
             frame = self._points(k)
-            then = self._search.about(frame.positions_m, guess)
+            then = self._search.near_pose(frame.positions_m, guess)
             if then is None:
                 break
             self._note(k, frame, self._as_named(k, frame, then.points))
@@ -201,8 +204,8 @@ class LabellingPass:
     def _labels(self, t: int, points: Points, prediction: Prediction, lost: int) -> Indices:
         """By prediction; after a blackout by the pose first, since the prediction has grown vague."""
         begin = time.perf_counter()
-        if lost and len(points.positions_m) >= self._search.least:
-            found = self._search.about(points.positions_m, prediction.q)
+        if lost and len(points.positions_m) >= self._search.fewest_points:
+            found = self._search.near_pose(points.positions_m, prediction.q)
             if found is not None:
                 return found.points
         labels = self.labeller.label(
@@ -222,12 +225,12 @@ class LabellingPass:
         if t:
             before = self._positions_m[t - 1]
             place = np.cumsum(~np.isnan(before).any(axis=1)) - 1
-            same = continued(before, now)[columns]
+            same = continuing_columns(before, now)[columns]
             follows[same] = place[columns[same]]
         return follows
 
     def _note(self, t: int, points: Points, labels: Indices) -> None:
-        self.markers_m[t] = labelled(points.positions_m, labels)
+        self.markers_m[t] = labelled_points(points.positions_m, labels)
         seen = labels != HIDDEN
         self.label_of_point[t] = HIDDEN
         self.label_of_point[t, points.columns[labels[seen]]] = np.flatnonzero(seen)

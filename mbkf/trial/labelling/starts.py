@@ -57,7 +57,7 @@ def find_starts(
     """
     found: Starts = []
     if start is not None:
-        first = body.search.about(points_of(markers, start.frame), start.q)
+        first = body.search.near_pose(points_of(markers, start.frame), start.q)
         found = [] if first is None else [(start.frame, first)]
     elif known is not None:
         found = _named(body, markers, known)
@@ -74,15 +74,15 @@ def _searched(body: LabelBody, markers: MarkerTrajectories, report: StageCallbac
     """A few frames with their labels; else the first of all frames that can be labelled."""
     last, search = markers.frames - 1, body.search
     looks = sorted({round(share * last) for share in np.linspace(0.02, 0.98, CANDIDATES)})
-    found = [(t, search.standing(points_of(markers, t))) for t in looks]
+    found = [(t, search.upright(points_of(markers, t))) for t in looks]
     good = [(t, one) for t, one in found if one is not None]
     if 2 * len(good) < len(looks):
         any_attitude = AnyAttitude(search, markers.positions_m, markers.rate_hz)
         good += any_attitude.starts(looks, lambda n, all_: report(STAGE, n, all_))
     if good:
-        return sorted(good, key=lambda pair: -pair[1].worth)
+        return sorted(good, key=lambda pair: -pair[1].log_ratio)
     scanned = range(0, markers.frames, max(1, round(SCAN_S * markers.rate_hz)))
-    for find, frames in ((search.standing, scanned), (search.any_attitude, looks)):
+    for find, frames in ((search.upright, scanned), (search.any_attitude, looks)):
         for t in frames:
             one = find(points_of(markers, t))
             if one is not None:
@@ -100,7 +100,7 @@ def _named(body: LabelBody, markers: MarkerTrajectories, known: Indices) -> Star
         marker = known[t, ~np.isnan(markers.positions_m[t]).any(axis=1)]
         labels = np.full(len(body.markers), HIDDEN, dtype=np.intp)
         labels[marker[marker != HIDDEN]] = np.flatnonzero(marker != HIDDEN)
-        first = body.search.settled(points_of(markers, int(t)), labels)
+        first = body.search.refined(points_of(markers, int(t)), labels)
         if first is not None:
             return [(int(t), first)]
     return []

@@ -16,9 +16,9 @@ from mbkf.conventions import Array
 from mbkf.filters.estimate import Prediction
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.first_frame import FirstFrame, labelled
+from mbkf.labelling.first_frame import FirstFrame, labelled_points
 from mbkf.labelling.running import RunningSettings
-from mbkf.labelling.tracks import continued
+from mbkf.labelling.tracks import continuing_columns
 from mbkf.trial.labelling.body import LabelBody, label_body
 from mbkf.trial.labelling.single_pass import LOST_S, LOST_SHARE, RETRY_S, SEARCH_EVERY
 
@@ -123,12 +123,12 @@ class LiveLabels:
         few = np.count_nonzero(labels != HIDDEN) < max(LEAST_LABELS, LOST_SHARE * could)
         self._lost = self._lost + 1 if few else 0
         self._points_m, self._labels = points_m, labels
-        return labelled(points_m, labels)
+        return labelled_points(points_m, labels)
 
     def _predicted(self, points_m: Array, prediction: Prediction) -> Indices:
         """By the filter's prediction; after a blackout by the pose first, since the prediction has grown vague."""
-        if self._lost and len(points_m) >= self.body.search.least:
-            found = self.body.search.about(points_m, prediction.q)
+        if self._lost and len(points_m) >= self.body.search.fewest_points:
+            found = self.body.search.near_pose(points_m, prediction.q)
             if found is not None:
                 return found.points
         return self._labeller.label(prediction.markers, points_m, lambda: self._follows(points_m))
@@ -137,18 +137,18 @@ class LiveLabels:
         """(N,) the point of the frame before that stood in the same place of the list, where that is the same one."""
         follows = np.full(len(points_m), HIDDEN, dtype=np.intp)
         if len(points_m) == len(self._points_m):
-            same = continued(self._points_m, points_m)
+            same = continuing_columns(self._points_m, points_m)
             follows[same] = np.flatnonzero(same)
         return follows
 
     def _carried(self, points_m: Array, poses: list[Array]) -> FirstFrame | None:
         """Labels about the pose to which the last two lead."""
-        if len(points_m) < self.body.search.least:
+        if len(points_m) < self.body.search.fewest_points:
             return None
         model, guess = self.body.sensor.model, poses[-1]
         if len(poses) > 1:
             guess = model.integrate(guess, model.difference(poses[-2], guess))
-        return self.body.search.about(points_m, guess)
+        return self.body.search.near_pose(points_m, guess)
 
     def _awaited(self) -> list[Array]:
         """Takes a search's result, and begins the next one; frames that waited too long go on without names."""
@@ -162,11 +162,13 @@ class LiveLabels:
 
     def _begin_search(self) -> None:
         number, points = self._waiting[-1]
-        if len(points) < self.body.search.least or number < self._searched + self._retry * (self._tries > 0):
+        if len(points) < self.body.search.fewest_points or number < self._searched + self._retry * (
+            self._tries > 0
+        ):
             return
         search = self.body.search
         slowly = self._tries % SEARCH_EVERY == SEARCH_EVERY - 1
-        look = search.any_attitude if slowly else search.standing
+        look = search.any_attitude if slowly else search.upright
         self._searched, self._tries = number, self._tries + 1
         if self._beside is not None:
             self._search = self._beside.submit(look, points)
@@ -191,7 +193,7 @@ class LiveLabels:
         self._found, self._tries, self._lost = [], 0, 0
         if not usable:
             return self._unnamed(0)
-        start, found = max(usable, key=lambda one: one[1].worth)
+        start, found = max(usable, key=lambda one: one[1].log_ratio)
         self.starts.append(start)
         self._labeller.restart()
         labels = {start: found.points}
@@ -214,5 +216,5 @@ class LiveLabels:
         unlabelled = np.full(len(self.body.markers), HIDDEN, dtype=np.intp)
         due = []
         while len(self._waiting) > most:
-            due.append(labelled(self._waiting.popleft()[1], unlabelled))
+            due.append(labelled_points(self._waiting.popleft()[1], unlabelled))
         return due

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
-from mbkf.labelling.exchanges import Distances, Exchange, body_distances, exchanges, put_right
+from mbkf.labelling.exchanges import Distances, Exchange, body_distances, find_exchanges, undo_exchanges
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -33,7 +33,7 @@ def names_put_right(
         HumanModel.of(subject), [m.segment for m in own], np.array([m.position_m for m in own])
     )
     placed = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in own])
-    found = exchanges(markers.positions_m, body_distances(sensor, placed))
+    found = find_exchanges(markers.positions_m, body_distances(sensor, placed))
     return _changed(markers, found), _told(markers, found)
 
 
@@ -68,7 +68,11 @@ def trials_put_right(
             [marker.segment for marker in match.values()],
             np.array([marker.position_m for marker in match.values()]).reshape(-1, 3),
         )
-        found = exchanges(own.positions_m, _standing(static.positions_m[:, columns], sensor)) if match else ()
+        found = (
+            find_exchanges(own.positions_m, _standing(static.positions_m[:, columns], sensor))
+            if match
+            else ()
+        )
         told += _told(own, found)
         fresh = _changed(own, found)
         positions = trial.markers.positions_m.copy()
@@ -95,7 +99,7 @@ def _standing(positions_m: np.ndarray, sensor: MarkerSensor) -> Distances:
 
 
 def _changed(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> MarkerTrajectories:
-    return replace(markers, positions_m=put_right(markers.positions_m, found)) if found else markers
+    return replace(markers, positions_m=undo_exchanges(markers.positions_m, found)) if found else markers
 
 
 def _told(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> tuple[tuple[str, str, int], ...]:

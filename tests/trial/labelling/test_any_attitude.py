@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
-from mbkf.labelling.tracks import follow
+from mbkf.labelling.tracks import link_tracks
 from mbkf.trial.label import label
 from mbkf.trial.labelling.any_attitude import AnyAttitude, name_tracks_of_frame
 from mbkf.trial.labelling.body import label_body
@@ -31,7 +31,7 @@ def prone():
 
 def test_tracks_are_named(prone):
     _, body, raw, marker = prone
-    tracks = follow(raw.markers.positions_m, RATE_HZ)
+    tracks = link_tracks(raw.markers.positions_m, RATE_HZ)
     owner, score = name_tracks_of_frame(body.sensor, body.search.sd_m, raw.markers.positions_m, tracks, 30)
     named = owner[tracks.number[30]]
     assert score > 0.0
@@ -49,7 +49,7 @@ def test_starts_are_labelled_frames(prone):
         assert np.array_equal(np.argsort(marker[t]), first.points)
     assert reported[0] == (0, 2)
     assert reported[-1] == (2, 2)
-    assert found[0][1].worth >= found[-1][1].worth
+    assert found[0][1].log_ratio >= found[-1][1].log_ratio
 
 
 def test_nothing_starts_where_nobody_is(prone):

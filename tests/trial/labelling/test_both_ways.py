@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.first_frame import labelled
+from mbkf.labelling.first_frame import labelled_points
 from mbkf.labelling.running import RunningSettings
 from mbkf.trial.labelling.body import label_body
 from mbkf.trial.labelling.both_ways import most_likely_run
@@ -34,7 +34,9 @@ def test_both_directions_are_labelled_and_the_likelier_start_wins(walk):
     wrong = (FROM, replace(first, points=swapped))
     reported = []
     run = most_likely_run(body, markers, [wrong, start], None, lambda *done: reported.append(done))
-    np.testing.assert_array_equal(run.markers_m[FROM], labelled(points_of(markers, FROM), first.points))
+    np.testing.assert_array_equal(
+        run.markers_m[FROM], labelled_points(points_of(markers, FROM), first.points)
+    )
     truth = walker().trial.markers
     own = truth.positions_m[:FRAMES][:, [truth.names.index(name) for name in body.names]]
     seen = ~np.isnan(run.markers_m[..., 0])

@@ -9,7 +9,7 @@ from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.labelling.body import label_body
-from mbkf.trial.labelling.relabelling import course, relabel_offline, trajectories
+from mbkf.trial.labelling.relabelling import relabel_offline, smoothed_markers, trajectories
 from tests.walker import walker
 
 pytestmark = pytest.mark.slow
@@ -67,7 +67,7 @@ def test_course_has_the_markers_where_they_are(walk):
     body, points, labels, _ = walk
     own = trajectories(points, labels, body.names)
     with single_threaded():
-        places = course(body, own, lambda _: None)
+        places = smoothed_markers(body, own, lambda _: None)
     away = np.linalg.norm(places.on_body_m - own.positions_m, axis=2)
     assert np.sqrt(np.nanmean(away**2)) < 0.012
     local = places.local(own.positions_m)

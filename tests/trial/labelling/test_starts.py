@@ -49,7 +49,7 @@ def test_frames_are_searched_where_the_known_pose_does_not_fit(walk):
     starts = find_starts(body, markers, Start(1, elsewhere), None, report)
     assert starts
     assert all(right(body, markers, first, frame) > 0.95 for frame, first in starts)
-    ratios = [first.worth for _, first in starts]
+    ratios = [first.log_ratio for _, first in starts]
     assert ratios == sorted(ratios, reverse=True)
 
 
