@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mbkf.synthesis.cubic_steps import RATE_HZ, cubic_steps
 from scipy.spatial.transform import Rotation
 
 from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
