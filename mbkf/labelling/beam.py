@@ -111,7 +111,13 @@ def best_bodies(bodies: list[PartialBody], most: int) -> list[PartialBody]:
 
 
 def distinct_rows(labels: Indices, score: Array, most: int) -> list[int]:
-    """Rows of labels (n, k), best score (n,) first, each labelling once and at most ``most`` of them."""
+    """The best rows, best first, each labelling once.
+
+    Args:
+        labels: (n, k) labels.
+        score: (n,) scores.
+        most: Greatest number of rows.
+    """
     found: dict[bytes, int] = {}
     for row in np.argsort(-score).tolist():
         found.setdefault(labels[row].tobytes(), row)
