@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mbkf.synthesis.cubic_steps import RATE_HZ, cubic_steps
 from scipy.spatial.transform import Rotation
 
 from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
