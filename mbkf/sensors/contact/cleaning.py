@@ -1,4 +1,4 @@
-"""Plates without readings that no plate under this person gives: refused, bridged where short, else not measured.
+"""Plates cleaned of impossible readings: short gaps are bridged, longer ones are not measured.
 
 A gap of up to :data:`BRIDGED_S` is bridged by straight lines. In a longer one the plate was not recorded (NaN): the
 filters then estimate the reaction of a foot that stands there, as of any foot without a plate.
@@ -24,23 +24,23 @@ BRIDGED_S = 0.025
 such a line misses by 0.06 body weights at most."""
 
 MOST_PASSES = 5
-"""What is refused may show what was hidden behind it; more than two passes were never needed."""
+"""A refused sample may uncover another; more than two passes were never needed."""
 
-TOLD_STRETCHES = 3
-"""So many stretches of one kind are told with their times."""
+NAMED_STRETCHES = 3
+"""Number of stretches of one kind that are named with their times."""
 
 WORDS = {
-    Fault.NOT_A_NUMBER: "missing or no numbers",
-    Fault.FORCE: "beyond any force of this body",
+    Fault.NOT_A_NUMBER: "missing or not numbers",
+    Fault.FORCE: "with a force beyond 20 body weights",
     Fault.PULL: "pulling the body down",
-    Fault.SHEAR: "shear beyond any friction",
+    Fault.SHEAR: "with shear beyond any friction",
     Fault.MOMENT: "pressing far outside the plate",
-    Fault.SPIKE: "a spike that no foot makes",
-    Fault.DROPOUT: "zeros under a standing foot",
+    Fault.SPIKE: "in a spike faster than any foot's",
+    Fault.DROPOUT: "zero under a standing foot",
     Fault.SATURATED: "cut off at the converter's limit",
     Fault.STUCK: "stuck at one reading",
-    Fault.GAIN: "of a plate whose forces would throw the body; are its unit and gain right?",
-    Fault.SIGN: "of a plate that pulls where it should push; is its sign wrong?",
+    Fault.GAIN: "with forces that would throw the body; check unit and gain",
+    Fault.SIGN: "pulling where they should push; check the sign",
 }
 
 
@@ -54,7 +54,7 @@ def cleaned(
         mass_kg: The person's mass.
 
     Returns:
-        The plates, those without a fault as they were given; and what was refused, in words.
+        The plates, those without a fault as they were given; and the remarks.
     """
     found = [
         _cleaned(plate, float(reach), mass_kg) for plate, reach in zip(plates, reaches(plates), strict=True)
@@ -63,12 +63,12 @@ def cleaned(
 
 
 def longest_bridge(rate_hz: float) -> int:
-    """Samples in the longest gap that is bridged."""
+    """Number of samples in the longest gap that is bridged."""
     return round(BRIDGED_S * rate_hz)
 
 
 def bridgeable(bad: BoolArray, rate_hz: float) -> BoolArray:
-    """(S,) those of the bad samples (S,) that lie in a gap short enough, with a good sample on either side."""
+    """(S,) bad samples (S,) in a short gap with a good sample on either side."""
     short = np.zeros(len(bad), dtype=bool)
     for first, after in runs(bad):
         inside = first > 0 and after < len(bad)
@@ -105,12 +105,12 @@ def _remark(plate: PlateReadings, faults: Faults) -> str:
     parts = []
     for kind in np.unique(faults[bad]).tolist():
         stretches = [_when(plate, *run) for run in runs(faults == kind)]
-        times = ", ".join(stretches[:TOLD_STRETCHES]) + (" …" if len(stretches) > TOLD_STRETCHES else "")
+        times = ", ".join(stretches[:NAMED_STRETCHES]) + (" …" if len(stretches) > NAMED_STRETCHES else "")
         parts.append(f"{int((faults == kind).sum())} {WORDS[Fault(kind)]} ({times})")
     short = int(bridgeable(bad, plate.rate_hz).sum())
     lost_s = (int(bad.sum()) - short) / plate.rate_hz
     ends = [f"{short} are bridged"] if short else []
-    ends += [f"for {lost_s:.3g} s the plate does not count"] if lost_s else []
+    ends += [f"for {lost_s:.3g} s the plate is taken as not recorded"] if lost_s else []
     samples = f"{int(bad.sum())} of {len(bad)} samples"
     return (
         f"plate '{plate.name}': {samples} are impossible and refused: {'; '.join(parts)}; {', '.join(ends)}"
@@ -118,6 +118,6 @@ def _remark(plate: PlateReadings, faults: Faults) -> str:
 
 
 def _when(plate: PlateReadings, first: int, after: int) -> str:
-    """When a stretch of samples was, in words."""
+    """Time of a stretch of samples, in words."""
     begin_s, end_s = (plate.start_time_s + sample / plate.rate_hz for sample in (first, after - 1))
     return f"at {begin_s:.3f} s" if after - first == 1 else f"{begin_s:.3f} to {end_s:.3f} s"

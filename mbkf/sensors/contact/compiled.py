@@ -1,7 +1,7 @@
-"""The causal contact decision by the compiled kernel, where it was built: the rules are those of :mod:`.causal`.
+"""The causal contact decision by the compiled kernel, where it was built: that of :mod:`.causal`, much faster.
 
-Compiled code assigns plates and finds feet that stand elsewhere. How two feet stand together, which is asked in double
-support without plates of their own, is left to :mod:`.stances`.
+Compiled code assigns plates and finds feet that stand elsewhere. The stance of two feet that share a plate, or stand
+where no plate reads, is left to :mod:`.stances`.
 """
 
 from __future__ import annotations
@@ -18,47 +18,28 @@ from mbkf.kernel.contact import (
     FeetConstants,
     Stand,
 )
-from mbkf.kernel.contact_functions import ContactLimits
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
-from mbkf.sensors.contact import rules
 from mbkf.sensors.contact.floor import fall_frames, frames_of
 from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact, PackedMemory
+from mbkf.sensors.contact.rules import BELT_WINDOW_S, LIMITS, STILL_FLOOR_S
 from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.contact.stances import free_stance, shared_between
 
 _CONTACTS = tuple((Contact((bits & 3) - 1), Contact((bits >> 2) - 1)) for bits in range(KINDS + 1))
-"""What right and left foot stand on, by the bits that say so."""
-
-_LIMITS = ContactLimits(
-    reach_m=rules.REACH_M,
-    keep_m=rules.KEEP_M,
-    belt_from_m_s=rules.BELT_FROM_M_S,
-    lower_m=rules.LOWER_M,
-    stand_height_m=rules.STANDING.height_m,
-    stand_speed_m_s=rules.STANDING.speed_m_s,
-    stand_after_s=rules.STAND_AFTER_S,
-    alone_height_m=rules.STANDING_ALONE.height_m,
-    alone_speed_m_s=rules.STANDING_ALONE.speed_m_s,
-    leave_slack=rules.LEAVE_SLACK,
-    floor_share=rules.FLOOR_SHARE,
-    level_m=rules.LEVEL_M,
-    parted_m_s=rules.PARTED_M_S,
-    faces_down=rules.FACES_DOWN,
-    fall_m_s2=rules.FALL_M_S2,
-)
+"""Contact of right and left foot by the bits of a decision's flags."""
 
 
 class CompiledContact:
     """The decision of :class:`mbkf.sensors.contact.causal.ContactDetector` in compiled code."""
 
     def __init__(self, tree: CompiledTree, model: Body, plates: Array, dt_s: float) -> None:
-        """Makes it.
+        """Hands the constants over.
 
         Args:
             tree: The body's equations.
             model: The body.
-            plates: (K, 23) of each plate: whether its outline is known, least load N, height m, and its outline
+            plates: (K, 23) of each plate: 1 for a known outline, least load N, height m, and its outline
                 (:meth:`mbkf.sensors.contact.plates.PlateAreas.outlines`).
             dt_s: Time between frames.
         """
@@ -68,22 +49,22 @@ class CompiledContact:
             points_m=points_m,
             foot_joints=[model.joint(segment).joint_id for segment in model.roles.feet],
             root_joint=model.root.joint_id,
-            window=frames_of(rules.BELT_WINDOW_S, dt_s),
-            still=frames_of(rules.STILL_FLOOR_S, dt_s),
+            window=frames_of(BELT_WINDOW_S, dt_s),
+            still=frames_of(STILL_FLOOR_S, dt_s),
             fall=fall_frames(dt_s),
             dt_s=dt_s,
         )
-        self._feet = CompiledFeet(tree, feet, _LIMITS, plates)
+        self._feet = CompiledFeet(tree, feet, LIMITS, plates)
         self._surfaces_m = plates[:, 2].tolist()
         self._plates, self._window = len(plates), feet.window
 
     @classmethod
     def where_built(cls, model: Body, plates: Array, dt_s: float) -> CompiledContact | None:
-        """One, or None where there is no compiled kernel that knows the body's joints.
+        """A compiled decision as from the constructor; None without a compiled kernel that knows the body's joints.
 
         Args:
             model: The body.
-            plates: (K, 23) as it takes them.
+            plates: (K, 23) as in the constructor.
             dt_s: Time between frames.
         """
         tree = model.tree
@@ -96,35 +77,29 @@ class CompiledContact:
         plate_wrench: Array,
         supported: bool,
     ) -> ContactDecision:
-        """What the feet stand on in one frame, as :meth:`mbkf.sensors.contact.causal.ContactDetector.decide`.
+        """Contact of both feet in one frame: :meth:`mbkf.sensors.contact.causal.ContactDetector.decide`.
 
         Args:
             memory: From the frame before.
             motion: Predicted (nq,) configuration, (nv,) velocity and acceleration.
             plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
-            supported: Whether another part than the feet bears.
+            supported: True where another part than the feet carries load.
         """
         before = memory if isinstance(memory, PackedMemory) else memory.packed(self._window)
         stand = self._feet.stand(motion, plate_wrench, supported, before.numbers)
         flags, kept = stand.flags, PackedMemory(stand.after, self._plates, self._window)
         decision = (_CONTACTS[flags & KINDS], stand.wrench, stand.middles_m, flags & STRAY > 0, kept)
         if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR | MOVING_OR_NEAR | BELOW):
-            return self._rarer(decision, stand, plate_wrench)
+            return self._completed(decision, stand, plate_wrench)
         return ContactDecision(*decision)
 
-    def _rarer(
+    def _completed(
         self,
         decision: tuple[tuple[Contact, Contact], Array, Array, bool, PackedMemory],
         stand: Stand,
         plate_wrench: Array,
     ) -> ContactDecision:
-        """With what is not told of every frame.
-
-        Args:
-            decision: What is.
-            stand: As compiled code tells it.
-            plate_wrench: (K, 6) what the plates read.
-        """
+        """The decision with its further fields, which few frames have."""
         flags, kept, shared, free = stand.flags, decision[4], None, None
         if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR):
             soles, pelvis_m = stand.soles_m.tolist(), stand.pelvis_m.tolist()

@@ -1,16 +1,16 @@
-"""Faults of a plate over a whole trial: what no sample shows alone, but the samples around it do.
+"""Faults of a plate over a whole trial, which a sample shows beside those around it.
 
 =========  ========================================================================================================
-spike      leaves by a jump that no foot makes, and is back where it was within :data:`SPIKE_S`
+spike      leaves by a jump faster than any foot's, and returns within :data:`SPIKE_S`
 dropout    exact zeros that a loaded plate falls to, and rises from, within one sample
 saturated  a channel stays at its largest value of the trial, as a converter's limit cuts a peak off
 stuck      a loaded plate repeats the very same six numbers
 sign       a plate that pulls where it should push
-gain       a plate that bears what no body does for so long that it would be thrown
+gain       a plate whose force lasts so long that it would throw the body
 =========  ========================================================================================================
 
-Impacts are real: the vertical force under a running foot rises by 100 to 300 body weights per second. So a jump alone
-is no fault, however steep: it counts only where a sample or two later it is undone.
+Impacts are real: the vertical force under a running foot rises by 100 to 300 body weights per second. A jump, however
+steep, is a fault only if it is undone a sample or two later.
 """
 
 from __future__ import annotations
@@ -22,49 +22,49 @@ from mbkf.numerics.runs import runs
 from mbkf.sensors.contact.possible import MOST_WEIGHTS, Fault, Faults, impossible
 
 JUMP_WEIGHTS, JUMP_RATE = 0.5, 1000.0
-"""A change from one sample to the next beyond 0.5 body weights and 1000 of them per second is no foot's."""
+"""Largest change of a foot's force from one sample to the next, in body weights and in body weights per second."""
 
 JUMP_LEVER_M = 2.0
-"""A moment's change is a force's at a lever of no more than this."""
+"""Largest lever at which a changing force changes a moment."""
 
 SPIKE_S = 0.025
-"""A spike is over after this; what stays longer is a change of the load."""
+"""Longest spike; a longer jump is a change of the load."""
 
 DROP_WEIGHTS, DROP_RATE = 0.25, 60.0
-"""A load that vanishes within one sample, in body weights and body weights per second. A foot leaves the floor with
+"""Least load that vanishes within one sample, in body weights and body weights per second. A foot leaves the floor with
 some 20 to 40 of them per second; software zeroes a plate below 10 to 50 N."""
 
 FLAT_SAMPLES, FLAT_S = 5, 0.005
-"""A peak in which so many samples are equal is cut off: instruments have noise. A channel that never changes is not."""
+"""Least number of equal samples, and duration, of a peak that is cut off: instruments have noise."""
 
 FLAT_WEIGHTS, FLAT_LEVER_M = 0.2, 0.2
-"""Least force at which a channel is cut off, and lever of the least moment; lower, equal samples are a zeroed plate."""
+"""Least force of a cut-off peak, in body weights, and lever of the least moment; below, the plate was zeroed."""
 
 STUCK_SAMPLES, STUCK_S = 20, 0.1
-"""All six channels of a plate under a person are not the same for so long; unless they are so from the first sample
-to the last, as a made example has them."""
+"""Least number of equal samples, and duration, of a plate that is stuck in all six channels. One that never changes, as
+in a constructed example, is not stuck."""
 
 STUCK_WEIGHTS = 0.05
-"""Least force of a plate that is said to be stuck; an unloaded one may read the same all the time."""
+"""Least force of a stuck plate, body weights; an unloaded one may read the same all the time."""
 
 SIGN_S = 0.05
-"""A plate that pulls by more than it can for this long, and on the whole more than it pushes, has the wrong sign."""
+"""A plate has the wrong sign if it pulls impossibly for this long, and on the whole more than it pushes."""
 
 BORNE_WEIGHTS, THROWN_M_S = 8.0, 15.0
-"""A force beyond what a body can bear with all that it may carry throws it: no contact adds more to its speed than
-this, which is that of a fall from 11 m."""
+"""A force beyond this many body weights accelerates the body; no contact adds more than this speed, that of a fall from
+11 m."""
 
 NO_FAULT = np.int8(Fault.NONE)
 
 
 def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) -> Faults:
-    """What is wrong with each sample of a trial.
+    """Fault of each sample of a trial.
 
     Args:
         wrench: (S, 6) force N and moment N m about the plate's origin, world axes.
         rate_hz: Sample rate.
         weight_n: The person's weight.
-        reach_m: Farthest that a foot can press from the origin.
+        reach_m: :func:`mbkf.sensors.contact.possible.reaches` of the plate.
 
     Returns:
         (S,) one :class:`Fault` per sample.
@@ -86,7 +86,7 @@ def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) ->
 
 
 def bridged(wrench: Array, bad: BoolArray) -> Array:
-    """Readings (S, 6) with straight lines over the samples that are bad (S,), level at either end; zero if all are."""
+    """Readings (S, 6) with straight lines over bad samples (S,), constant at either end; zero if all are bad."""
     if not bad.any():
         return wrench
     good, filled = np.flatnonzero(~bad), wrench.copy()
@@ -97,7 +97,7 @@ def bridged(wrench: Array, bad: BoolArray) -> Array:
 
 
 def _pulls(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> bool:
-    """Whether a plate pulls for some time, and more than it pushes."""
+    """True if a plate pulls for some time, and more than it pushes."""
     pulling = faults == Fault.PULL
     if pulling.sum() < max(1.0, SIGN_S * rate_hz):
         return False
@@ -107,7 +107,7 @@ def _pulls(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> bo
 
 
 def _throws(wrench: Array, rate_hz: float, weight_n: float) -> bool:
-    """Whether some contact's force, less what a body bears, would throw it: ∫ (F_z − 8 W) dt > 15 m/s · W/g."""
+    """True if a contact's force would throw the body: ∫ (F_z − 8 W) dt > 15 m/s · W/g."""
     vertical = np.clip(np.nan_to_num(wrench[:, 2]), 0.0, MOST_WEIGHTS * weight_n) / weight_n
     contacts = runs(vertical > STUCK_WEIGHTS)
     least = THROWN_M_S / GRAVITY_M_S2 * rate_hz
@@ -120,7 +120,7 @@ def _equal_runs(same: BoolArray, least: int) -> list[tuple[int, int]]:
 
 
 def _never_changes(known: Array) -> bool:
-    """Whether known values (n, …) are all the same, as only a made example's are."""
+    """True if known values (n, …) are all the same, as in a constructed example."""
     return bool((known[1:] == known[:-1]).all())
 
 
@@ -163,13 +163,7 @@ def _dropouts(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) ->
 
 
 def _spikes(wrench: Array, rate_hz: float, weight_n: float) -> BoolArray:
-    """Samples between a jump and the first one after it that is back; a jump that is not undone stays.
-
-    Args:
-        wrench: (S, 6) finite readings.
-        rate_hz: Sample rate.
-        weight_n: The person's weight.
-    """
+    """(S,) samples between a jump of finite readings (S, 6) and its return; a jump without return is no spike."""
     spikes = np.zeros(len(wrench), dtype=bool)
     jump_n = (JUMP_WEIGHTS + JUMP_RATE / rate_hz) * weight_n
     scaled = wrench / (jump_n * np.repeat([1.0, JUMP_LEVER_M], 3))

@@ -1,11 +1,11 @@
-"""Which readings of a plate are possible at all for a person of a known mass, judged by each sample alone.
+"""Possible readings of a plate under a person of known mass, judged sample by sample.
 
 With the vertical force F_z, the shear F_h and the moments M about the plate's origin, of a person who weighs W:
 
     F_z ≤ 20 W,   F_z ≥ −0.3 W,   |F_h| ≤ 3 (F_z + 0.4 W),   |M_h| ≤ r (F_z + 0.4 W),   |M_z| ≤ 3 r (F_z + 0.4 W)
 
-r is the farthest that a foot can press from the origin. Each limit is a convex set, so that the straight line between
-two possible readings is possible, too. No later sample is needed: a live stream refuses what a whole trial does.
+r is the largest distance from the origin at which a foot can press. Each limit is a convex set, so that the straight
+line between two possible readings is possible, too. A live stream refuses the same samples as a whole trial.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from mbkf.kernel.contact_functions import PossibleLoads
 from mbkf.kernel.loading import library
 
 MOST_WEIGHTS = 20.0
-"""Largest vertical force, body weights. The hardest contact that is known, the step of a triple jump, reaches 15.2
-(Perttunen et al. 2000); sprinting 4 to 5, landing from a height up to some 11."""
+"""Largest vertical force, body weights. The hardest known contact, the step of a triple jump, reaches 15.2 (Perttunen
+et al. 2000); sprinting 4 to 5, landing from a height up to some 11."""
 
 PULL_WEIGHTS = 0.3
 """A plate cannot pull; it may ring after a landing, and show the remainder of its offset."""
@@ -32,18 +32,18 @@ FRICTION = 3.0
 """Largest shear over vertical force: twice that of rubber on rubber, for spikes and starting blocks."""
 
 SLACK_WEIGHTS = 0.4
-"""Vertical force that is added before shear and moments are compared with it: at touch-down shear comes early, and a
-hardly loaded plate reads noise."""
+"""Body weights added to the vertical force that limits shear and moments: at touch-down shear comes early, and a hardly
+loaded plate reads noise."""
 
 BEYOND_M = 0.5
-"""A centre of pressure so far outside a plate is not that of a foot on it."""
+"""Largest distance of a foot's centre of pressure outside its plate."""
 
 ANYWHERE_M = 20.0
-"""The same for a set of forces without an outline, which may be a whole walkway."""
+"""Largest distance from the origin on a plate without an outline, which may be a whole walkway."""
 
 
 class Fault(IntEnum):
-    """What is wrong with a sample of a plate; 0 for nothing."""
+    """Fault of a plate's sample; 0 for a good one."""
 
     NONE = 0
     NOT_A_NUMBER = 1
@@ -64,7 +64,7 @@ Faults = NDArray[np.int8]
 
 
 def reaches(plates: Sequence[PlateReadings]) -> Array:
-    """(K,) farthest that a foot can press from each plate's origin, m."""
+    """(K,) largest distance from each plate's origin at which a foot can press, m."""
     found = [ANYWHERE_M] * len(plates)
     for k, plate in enumerate(plates):
         if plate.corners_m is not None:
@@ -78,10 +78,10 @@ def impossible(wrench: Array, weight_n: float, reach_m: float | Array) -> Faults
     Args:
         wrench: (..., 6) force N and moment N m about the plate's origin, world axes.
         weight_n: The person's weight.
-        reach_m: Farthest that a foot can press from the origin; a number, or one per plate that broadcasts.
+        reach_m: :func:`reaches`; a number, or one per plate that broadcasts.
 
     Returns:
-        (...) the first of the limits that each sample breaks, :attr:`Fault.NONE` where it keeps all.
+        (...) the first limit that each sample breaks, or :attr:`Fault.NONE`.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         vertical = wrench[..., 2]
@@ -101,12 +101,12 @@ def impossible(wrench: Array, weight_n: float, reach_m: float | Array) -> Faults
 
 
 def all_possible(readings: Array, weight_n: float, reach_m: Array) -> bool:
-    """Whether no reading breaks a limit of :func:`impossible`.
+    """True if no reading breaks a limit of :func:`impossible`.
 
     Args:
         readings: (..., K, 6) force N and moment N m about the plates' origins, world axes.
         weight_n: The person's weight.
-        reach_m: (K,) farthest that a foot can press from the origin of each plate.
+        reach_m: (K,) :func:`reaches`.
     """
     kernel = library()
     if kernel is None:
@@ -118,7 +118,7 @@ def all_possible(readings: Array, weight_n: float, reach_m: Array) -> bool:
 
 
 def without_impossible(wrench: Array, plates: Sequence[PlateReadings], weight_n: float) -> Array:
-    """Readings of a frame with NaN for plates that read what is not possible.
+    """Readings of a frame with NaN for plates whose reading is impossible.
 
     Args:
         wrench: (K, 6) force N and moment N m about the world's origin.

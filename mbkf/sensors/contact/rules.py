@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.kernel.contact_functions import ContactLimits
 
 RIGHT, LEFT, BOTH, NEITHER = 0, 1, 2, -1
 """Foot to which a plate belongs."""
@@ -186,3 +187,23 @@ def falls(acceleration_m_s2: float | Array) -> bool | BoolArray:
 def lower_feet(heights_m: Sequence[float]) -> list[int]:
     """The lower foot of two by the heights of their soles, or both where they are level."""
     return [f for f in (RIGHT, LEFT) if heights_m[f] <= min(heights_m) + LOWER_M]
+
+
+LIMITS = ContactLimits(
+    reach_m=REACH_M,
+    keep_m=KEEP_M,
+    belt_from_m_s=BELT_FROM_M_S,
+    lower_m=LOWER_M,
+    stand_height_m=STANDING.height_m,
+    stand_speed_m_s=STANDING.speed_m_s,
+    stand_after_s=STAND_AFTER_S,
+    alone_height_m=STANDING_ALONE.height_m,
+    alone_speed_m_s=STANDING_ALONE.speed_m_s,
+    leave_slack=LEAVE_SLACK,
+    floor_share=FLOOR_SHARE,
+    level_m=LEVEL_M,
+    parted_m_s=PARTED_M_S,
+    faces_down=FACES_DOWN,
+    fall_m_s2=FALL_M_S2,
+)
+"""Limits of the causal decision as the kernel takes them, by name."""

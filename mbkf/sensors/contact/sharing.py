@@ -1,4 +1,4 @@
-"""Two feet on one plate: how they share what it reads, and how well that is known.
+"""Two feet on one plate: each foot's share of its reading, with a standard deviation.
 
 The plate reads the sum W of both wrenches about any point. In double support the foot ahead is loaded towards its heel
 and the foot behind towards its toes; side by side both are loaded in the middle. With the expected centres of pressure
@@ -8,10 +8,10 @@ c_r, c_l and the plate's own p, the right foot carries the share
 
 of the vertical force F, known to √(s² + (1 − s)²) σ_c F / |c_r − c_l| with the spread σ_c of the centres along the line
 between them. While the load passes from foot to foot, both centres roll forward by the same way, ρ (s − 1) and ρ s for
-a right foot that is ahead, which leaves p = s c_r + (1 − s) c_l and so the share. What p lies beside the line moves
+a right foot that is ahead, which leaves p = s c_r + (1 − s) c_l and so the share. The offset of p from the line moves
 both of them. The force on each foot points to the pelvis, as in walking it passes near the centre of mass (Maus et al.,
-Nature Communications 1:70, 2010); what is left of the measured shear is shared by the roots of the shares: a foot that
-hardly bears takes none, and otherwise both take nearly the same.
+Nature Communications 1:70, 2010); the rest of the measured shear is shared by the roots of the shares, so that a hardly
+loaded foot takes none of it.
 
 The constants below are set on two walks (biomechZoo HC032A, gaitalytics) and hold on four others (HC044A, Rajagopal's,
 Rehazenter's, gait2354) and on a person who stands on two plates (Millard's): see ``python -m benchmarks contact``.
@@ -31,11 +31,11 @@ from mbkf.sensors.contact.plates import pressed_at
 from mbkf.sensors.contact.soles import Sole
 
 MIDDLE, FORWARD = 0.525, 0.275
-"""Where a foot is loaded along its sole, from heel 0 to toe end 1, beside the other foot, and how far from there when
-the feet are a step apart: the foot ahead at the end of double support, the foot behind at its beginning."""
+"""Place along the sole, from heel 0 to toe end 1, at which a foot beside the other is loaded, and its shift when the
+feet are a step apart: the foot ahead at the end of double support, the foot behind at its beginning."""
 
 ROLL = 0.2
-"""How far, in sole lengths, the centres roll forward during double support when the feet are a step apart."""
+"""Way, in sole lengths, that the centres roll forward during double support when the feet are a step apart."""
 
 STEP_M = 0.3
 """Distance ahead from which feet are a step apart."""
@@ -48,17 +48,17 @@ LEVER_M = 0.02
 """Spread of a foot's centre of pressure about the expected one, in the moments."""
 
 LEAST_APART_M = 0.05
-"""Feet are not taken to be nearer to each other than this."""
+"""Least distance between the feet."""
 
 LEAST_RISE_M = 0.1
-"""The pelvis is taken to be at least this far above a centre of pressure: near the floor, as of a person who lies down
-or of a track that is lost, it does not tell where forces point."""
+"""Least height of the pelvis over a centre of pressure: lower, as for a person who lies down or a lost track, it gives
+no direction of forces."""
 
 SHEAR_SHARE, TWIST_M = 0.03, 0.01
 """Spread of a foot's shear force and of its free moment's arm, as shares of the plate's vertical force."""
 
 LEAST_SHARE = 0.05
-"""Share of the plate's force that a foot is taken to carry at least where spreads are counted."""
+"""Least share of the plate's force by which the spreads of a foot are computed."""
 
 
 PUSH_SHARE, PUSH_RISE_M = 0.8, 0.0125
@@ -110,7 +110,7 @@ def push_share(sole: Sole, lowest_ball_m: float, stood_s: float) -> float | None
     Args:
         sole: Heel, ball and toe end of its sole.
         lowest_ball_m: Least height of its ball while it has stood.
-        stood_s: For how long it has.
+        stood_s: Duration for which it has stood.
     """
     heel, ball, _ = sole
     if heel[2] - ball[2] < HEEL_OFF_M or stood_s < PUSH_AFTER_S:
@@ -119,7 +119,7 @@ def push_share(sole: Sole, lowest_ball_m: float, stood_s: float) -> float | None
 
 
 def shear_to_pelvis(pelvis_m: Array, centres_m: Array) -> Array:
-    """(k, 2) horizontal force per vertical force that points from centres of pressure (k, 3) to the pelvis (3,)."""
+    """(k, 2) horizontal over vertical force that points from centres of pressure (k, 3) to the pelvis (3,)."""
     arms = pelvis_m - centres_m
     return np.asarray(arms[:, :2] / np.maximum(arms[:, 2:], LEAST_RISE_M))
 
@@ -130,7 +130,7 @@ def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: 
     Args:
         total: (6,) force N and moment N m about the world's origin, with a vertical force other than zero.
         soles: Heel, ball and toe end of right and left sole.
-        pelvis_m: (3,) where the forces point.
+        pelvis_m: (3,) point to which the forces point.
         surface_m: Height of the plate's surface.
     """
     force = float(total[2])
@@ -157,7 +157,7 @@ def _spread(share: float, force_n: float, line_m: Array, forward: Array) -> Arra
     """(6,) spread of the right foot's wrench about its centre of pressure.
 
     Args:
-        share: Part of the vertical force that it carries.
+        share: Its share of the vertical force.
         force_n: The vertical force of both feet.
         line_m: (2,) from the left foot's expected centre to the right one's.
         forward: (2,) heading of the feet.
@@ -171,7 +171,7 @@ def _spread(share: float, force_n: float, line_m: Array, forward: Array) -> Arra
 
 
 def expected_stance(soles: Sequence[Sole], surface_m: float) -> Stance:
-    """Where right and left foot are loaded on a surface, by which of them is ahead.
+    """Expected centres of pressure of right and left foot on a surface, from their places along the heading.
 
     Args:
         soles: Heel, ball and toe end of both soles.

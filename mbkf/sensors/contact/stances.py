@@ -1,4 +1,4 @@
-"""How two feet stand together: on one plate, which reads their sum, or on floor that no plate reads."""
+"""Stances of two feet together: on one plate, which reads their sum, or on floor that no plate reads."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def shared_between(
     foot_of_plate: Sequence[int],
     surfaces_m: Sequence[float],
 ) -> SharedLoad:
-    """How the feet share what they stand on together: all that the plates under either of them read.
+    """Load of all plates under the feet, shared between them.
 
     Args:
         soles: Heel, ball and toe end of right and left sole.
         pelvis_m: The pelvis, x, y, z.
         plate_wrench: (K, 6) force N and moment N m about the world's origin.
-        foot_of_plate: (K,) 0 right, 1 left, 2 both, -1 none; one of them is both.
+        foot_of_plate: (K,) foot of each plate; one of them is both.
         surfaces_m: (K,) heights of the plates.
     """
     under = [k for k, owner in enumerate(foot_of_plate) if owner >= 0]
@@ -40,13 +40,13 @@ def free_stance(
     lowest_ball_m: Sequence[float],
     touching_s: Sequence[float],
 ) -> FreeStance:
-    """How both feet stand on floor that no plate reads.
+    """Stance of both feet on floor that no plate reads.
 
     Args:
         soles: Heel, ball and toe end of right and left sole.
         pelvis_m: The pelvis, x, y, z.
         lowest_ball_m: Least height of each ball while the foot has stood.
-        touching_s: For how long each has.
+        touching_s: Duration for which each foot has stood.
     """
     surface = min(point[2] for sole in soles for point in sole)
     right, left = (push_share(soles[f], lowest_ball_m[f], touching_s[f]) for f in (0, 1))

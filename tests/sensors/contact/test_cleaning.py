@@ -134,5 +134,7 @@ def test_all_kinds_of_one_plate_are_told_in_one_line(corners):
     (found, _), remarks = cleaned([plate(wrench, corners=corners), plate()], MASS_KG)
     assert len(remarks) == 1
     assert "plate 'a': 5 of 1200 samples" in remarks[0]
-    assert all(words in remarks[0] for words in ("1 beyond", "1 missing", "3 ", "0.800 s", "5 are bridged"))
+    assert all(
+        words in remarks[0] for words in ("1 with a force", "1 missing", "3 ", "0.800 s", "5 are bridged")
+    )
     assert np.isfinite(readings(found)).all()

@@ -1,6 +1,7 @@
 """Compiled contact decisions are those that are stated in Python, frame after frame, with their memories."""
 
 from dataclasses import fields
+from functools import lru_cache
 from unittest.mock import patch
 
 import numpy as np
@@ -9,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.conventions import GRAVITY_M_S2
+from mbkf.kernel.contact_functions import ContactLimits
 from mbkf.kernel.loading import library
+from mbkf.sensors.contact import compiled, rules
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.compiled import CompiledContact
 from mbkf.sensors.contact.records import Contact
@@ -108,16 +111,19 @@ def test_a_belt_is_found_alike():
 @pytest.mark.parametrize("share, held", [(0.38, True), (0.42, False)])
 def test_a_body_is_held_up_alike(share, held):
     """Predicted to fall, its feet too fast to stand, its pelvis falls with less or more than the limit of 0.4 g."""
+    met = assert_decided_alike(reference_model(), (), DT, falling_body(share))
+    assert (Contact.UNMEASURED in {kind for one in met for kind in one.contacts}) == held
+
+
+def falling_body(share):
+    """Frames of a body above no plate whose pelvis falls with a share of gravity, feet too fast to stand."""
     model = reference_model()
     q, v, a = standing(model), np.zeros(model.nv), np.zeros(model.nv)
     v[2], a[2] = -5.0, -GRAVITY_M_S2
-    frames = []
     for t in range(20):
         lower = q.copy()
         lower[2] -= 0.5 * share * GRAVITY_M_S2 * (t * DT) ** 2
-        frames.append((lower, v, a, np.zeros((0, 6)), False))
-    met = assert_decided_alike(model, (), DT, frames)
-    assert (Contact.UNMEASURED in {kind for one in met for kind in one.contacts}) == held
+        yield lower, v, a, np.zeros((0, 6)), False
 
 
 @given(st.integers(0, 10**6))
@@ -158,6 +164,52 @@ def _anyhow(rng, model, q, dt_s, plates):
         supported ^= rng.random() < 0.1
         yield q, v, a, loads, supported
         q = model.integrate(q, dt_s * v)
+
+
+def decided(model, plates, frames):
+    """Decisions of the kernel over frames, with their memories."""
+    detector = ContactDetector(model, plates, DT)
+    memory, found = detector.begin(), []
+    for q, v, a, loads, supported in frames:
+        one = detector.decide(memory, q, v, a, loads, supported)
+        memory = one.memory
+        found.append((one.contacts, one.floor_m_s, one.near, memory.numbers.tobytes()))
+    return found
+
+
+@lru_cache(None)
+def scenes():
+    """Bodies, plates and frames in which every limit of the causal decision matters."""
+    walk, found = trial("walk"), []
+    loads = walk.motion.foot_wrench
+    one, none = loads[:, :1], loads[:, :0]
+    shared = loads.sum(axis=1, keepdims=True)
+    for readings, plates in (
+        (loads, walk.plates),
+        (one, walk.plates[:1]),
+        (shared, (plate(0.0, 0.0, (6.0, 6.0)),)),
+        (none, ()),
+    ):
+        found.append((walk.model, plates, tuple(frames_of(walk, readings))))
+    model = reference_model()
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        q = standing(model)
+        middle = sole_points(model, q[None])[0].mean(axis=1)[0, :2]
+        plates = (plate(*middle),)
+        found.append((model, plates, tuple(_anyhow(rng, model, q, DT, 1))))
+        found.append((model, (), tuple(_anyhow(rng, model, q, DT, 0))))
+    return found + [(model, (), tuple(falling_body(share))) for share in (0.3, 0.38, 0.5)]
+
+
+@pytest.mark.parametrize("limit", ContactLimits._fields)
+def test_each_limit_matters_under_its_own_name(limit):
+    """A kernel with half or twice the limit decides otherwise somewhere."""
+    true = [decided(*scene) for scene in scenes()]
+    for factor in (0.5, 2.0):
+        other = rules.LIMITS._replace(**{limit: factor * getattr(rules.LIMITS, limit)})
+        with patch.object(compiled, "LIMITS", other):
+            assert [decided(*scene) for scene in scenes()] != true, f"{factor} {limit}"
 
 
 def test_a_memory_that_is_longer_than_its_window_is_refused():
