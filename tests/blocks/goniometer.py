@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "docs" / "examples" / "14_goniometer.py"
+EXAMPLE = Path(__file__).resolve().parents[2] / "docs" / "examples" / "15_goniometer.py"
 
 
 def block_source():
