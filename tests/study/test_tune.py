@@ -114,7 +114,7 @@ def test_the_dynamic_filter_is_tuned_without_plates(subject, trial):
         ({"filter": "torque"}, UnknownName, "'torque'"),
         ({"parameters": ("motoin",)}, UnknownName, "did you mean motion"),
         ({"parameters": ()}, InvalidInput, "motion"),
-        ({"hold_out": (0,)}, InvalidInput, "none is left"),
+        ({"hold_out": (0,)}, InvalidInput, "every trial is held out"),
     ],
 )
 def test_what_cannot_be_tuned(changes, error, fragment, subject, trial):

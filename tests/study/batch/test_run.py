@@ -98,7 +98,8 @@ def test_what_was_interrupted_is_gone_on_with(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "changes, why", [({"workers": 0}, "workers can do nothing"), ({"shard": (3, 2)}, "no shard")]
+    "changes, why",
+    [({"workers": 0}, "workers can do nothing"), ({"shard": (3, 2)}, "shard 3/2 does not exist")],
 )
 def test_what_cannot_be_asked_is_refused(tmp_path, changes, why):
     with pytest.raises(InvalidInput, match=why):
@@ -108,7 +109,7 @@ def test_what_cannot_be_asked_is_refused(tmp_path, changes, why):
 
 def test_a_source_is_a_folder_or_a_list(tmp_path):
     (tmp_path / "walk.c3d").touch()
-    with pytest.raises(FileFormatError, match="no folder, and no list"):
+    with pytest.raises(FileFormatError, match="neither a folder nor a list"):
         plan_of(tmp_path / "walk.c3d")
     assert len(plan_of(tmp_path).trials) == 1
     assert set(module.LISTS) == {".toml", ".csv"}

@@ -99,7 +99,7 @@ def test_names_are_claimed_where_nothing_else_has_them():
     assert with_claims(labels, replace(names, ignored="why")).tolist() == labels.tolist()
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, 1])
 def test_half_named_walk_is_labelled_around_its_names(seed):
     made = case(seed)
     found = label(made.raw, made.subject)
