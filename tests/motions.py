@@ -7,7 +7,8 @@ from functools import cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from mbkf.filters.tracking import Track
+from mbkf.filters.record import Track
+from mbkf.io.quantities import AXES, quantities
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
@@ -155,35 +156,15 @@ def assert_near(found, expected, tolerance):
 
 def track_of(q, v, a, **known):
     """A followed trial with this motion; what is not given is 0, as if everything were known exactly; no wrench."""
-    frames, nv = a.shape
+    frames = len(a)
+    sizes = {"time": frames, "dof": a.shape[1], "coordinate": a.shape[1], "marker": 0, "part": 0, "ball": 15}
     fields = {
-        name: np.zeros((frames, nv))
-        for name in ("position_sd", "velocity_sd", "angle_sd", "rate_sd", "torque_sd")
+        name: np.zeros([len(AXES[axis].labels) or sizes[axis] for axis in one.axes], one.dtype)
+        for name, one in quantities(Track).items()
+        if name not in ("q", "v", "a", "foot_contact", "covariance")
     }
-    fields |= {name.replace("_sd", "_offset"): values for name, values in fields.items()}
-    fields |= {
-        "wrench": np.full((frames, 2, 6), np.nan),
-        "wrench_sd": np.full((frames, 2, 6), np.nan),
-        "support": np.full((frames, 0, 6), np.nan),
-        "support_sd": np.full((frames, 0, 6), np.nan),
-        "contact": None,
-        "ball_covariance": np.zeros((frames, 15, 3, 3)),
-        "ball_offset": np.zeros((frames, 15, 3, 3)),
-        "wrench_offset": np.zeros((frames, 2, 6)),
-        "foot_height_sd": np.zeros((frames, 2)),
-        "refused": np.zeros((frames, 0), bool),
-        "tracked": np.ones(frames, bool),
-        "nis": np.zeros(frames),
-        "readings": np.zeros(frames, int),
-        "nis_by_kind": np.zeros((frames, 4)),
-        "readings_by_kind": np.zeros((frames, 4), int),
-        "marker_nis": np.zeros((frames, 0)),
-        "marker_spread_m": np.zeros((frames, 0)),
-        "step_seconds": np.zeros(frames),
-        "known": np.ones(frames, bool),
-        "uncorrected": np.zeros(frames, bool),
-        "starts": (0,),
-        "smoothed": False,
-        "covariance": None,
-    }
-    return Track(q=q, v=v, a=a, **(fields | known))
+    for name in ("wrench", "wrench_sd", "support", "support_sd"):
+        fields[name][:] = np.nan
+    for name in ("tracked", "known"):
+        fields[name][:] = True
+    return Track(**{"q": q, "v": v, "a": a, "starts": (0,), "smoothed": False, **fields, **known})

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.tracking import Track
+from mbkf.filters.record import Track
 from mbkf.model.body import Body
 from mbkf.model.newton_euler import NewtonEuler
 

@@ -7,7 +7,7 @@ much again and is not waited for, by :meth:`FrameRecorder.spread` and :meth:`Fra
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import NamedTuple
 
@@ -18,90 +18,67 @@ from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
 from mbkf.filters.estimate import Posterior, TrackingFilter
 from mbkf.filters.spread import ASKED, Spread
+from mbkf.io.estimates import TrackEstimates
+from mbkf.io.quantities import AXES, quantities
 
 UNASKED = -9
 """Contact of the feet as it stands in a record of a filter that does not decide it."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Track(TrackEstimates):
+    """A followed trial: its frames' records as arrays; frames before the first fitted pose are NaN.
+
+    Attributes:
+        starts: Frames at which the filter was started or restarted.
+        smoothed: Later frames corrected more than the uncorrected ones.
+    """
+
+    starts: tuple[int, ...]
+    smoothed: bool
+
+
 class Field(NamedTuple):
-    """A field of the record: its name, numpy type, and dimensions by letter or number."""
+    """A field of the record: its name, numpy type, and the names of its axes."""
 
     name: str
     kind: str
-    shape: str = ""
+    axes: tuple[str, ...] = ()
 
+
+_KINDS = {np.float64: "<f8", np.int64: "<i8", np.bool_: "?"}
 
 FIELDS = (
     Field("number", "<i8"),
-    Field("known", "?"),
     Field("started", "?"),
-    Field("tracked", "?"),
-    Field("uncorrected", "?"),
-    Field("readings", "<i8"),
-    Field("footing", "<i8", "2"),
-    Field("refused", "?", "M"),
-    Field("measured_m", "<f8", "M 3"),
+    Field("measured_m", "<f8", ("marker", "xyz")),
     Field("latency_s", "<f8"),
-    Field("step_seconds", "<f8"),
-    Field("nis", "<f8"),
-    Field("nis_by_kind", "<f8", "4"),
-    Field("readings_by_kind", "<i8", "4"),
-    Field("marker_nis", "<f8", "M"),
-    Field("marker_spread_m", "<f8", "M"),
-    Field("q", "<f8", "nq"),
-    Field("v", "<f8", "nv"),
-    Field("a", "<f8", "nv"),
-    Field("wrench", "<f8", "2 6"),
-    Field("wrench_sd", "<f8", "2 6"),
-    Field("support", "<f8", "B 6"),
-    Field("support_sd", "<f8", "B 6"),
-    Field("foot_height_sd", "<f8", "2"),
-    Field("position_sd", "<f8", "nv"),
-    Field("velocity_sd", "<f8", "nv"),
-    Field("angle_sd", "<f8", "A"),
-    Field("rate_sd", "<f8", "A"),
-    Field("ball_covariance", "<f8", "N 3 3"),
-    Field("torque_sd", "<f8", "nv"),
-    Field("position_offset", "<f8", "nv"),
-    Field("velocity_offset", "<f8", "nv"),
-    Field("torque_offset", "<f8", "nv"),
-    Field("angle_offset", "<f8", "A"),
-    Field("rate_offset", "<f8", "A"),
-    Field("ball_offset", "<f8", "N 3 3"),
-    Field("wrench_offset", "<f8", "2 6"),
+    *(Field(one.key, _KINDS[one.dtype], one.axes[1:]) for one in quantities(Track).values() if one.written),
 )
-"""The declaration.
-
-number: of the frame. known: whether there is an estimate. started: whether the filter was (re)started in it. tracked:
-whether enough instruments read. uncorrected: whether it is the filter's own since later frames made no person of it
-(:mod:`mbkf.filters.person`). readings, nis: numbers in the normalised innovation squared, and its value, NaN at a
-start; readings_by_kind, nis_by_kind: the same by :data:`mbkf.conventions.READING_KINDS`; marker_nis, marker_spread_m:
-of each marker per coordinate, and the spread it is in units of (:mod:`mbkf.filters.innovations`). footing: what right
-and left foot stand on (:class:`mbkf.sensors.contact.records.Contact`). refused: markers seen but outside their gate.
-measured_m: markers, NaN where missing. latency_s, step_seconds: from arrival to answer, and the computing time of the
-step. q, v, a: configuration, velocity, acceleration. wrench: of the ground on right and left foot, about the world's
-origin. support, support_sd: the same on the B parts that may bear load besides the feet, and standard deviations; 0 on
-one that bears none. The others are standard deviations: of the wrenches, of the height of the feet, of position and
-velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised forces.
-ball_covariance: of the rotations of the N joints with three angles in their distal segments' axes, rad², for angles
-told in other axes than the body file's. …_offset: the part of a standard deviation (covariance) that repeats in the
-same posture, since the person's body is not known exactly (:mod:`mbkf.filters.body_errors`).
-"""
+"""The declaration: number of the frame, flag of a (re)start of the filter, markers (NaN where missing), time from the
+frame's arrival to its answer, and the quantities of a :class:`Track`."""
 
 OFFSETS_HELD_S = 0.1
 """Offsets change with the posture and are worked out once in such a time."""
 
 MOTION = ("q", "v", "a", "wrench")
-SPREAD_AT_ONCE = ("position", "velocity", "torque")
+SPREAD_AT_ONCE = {
+    "sd_q": "position",
+    "sd_q_offset": "position_offset",
+    "sd_v": "velocity",
+    "sd_v_offset": "velocity_offset",
+}
+TORQUE_SPREAD = {"torque_sd": "torque", "torque_offset": "torque_offset"}
+"""Fields and the attributes of :class:`~mbkf.filters.spread.Spread` that fill them."""
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
-    """Type of a record: M markers, nq and nv of the body, A clinical coordinates, B bearing parts, N ball joints."""
+    """Type of a record, by the sizes of axes (:data:`mbkf.io.quantities.AXES`) that differ from trial to trial."""
 
-    def length(letter: str) -> int:
-        return int(letter) if letter.isdigit() else sizes[letter]
+    def length(axis: str) -> int:
+        return len(AXES[axis].labels) or sizes[axis]
 
-    return np.dtype([(f.name, f.kind, tuple(map(length, f.shape.split()))) for f in FIELDS])
+    return np.dtype([(f.name, f.kind, tuple(map(length, f.axes))) for f in FIELDS])
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:
@@ -169,8 +146,9 @@ class FrameRecorder:
         self.filter, self._body = filter, HeldErrors(body, filter.dt_s)
         self._asks_torques, self._asks_angles = (name in asked for name in ASKED)
         model = filter.model
-        sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
-        sizes |= {"B": len(model.description.bearings), "N": len(filter.clinical.ball_turns)}
+        sizes = {"marker": markers, "configuration": model.nq, "dof": model.nv}
+        sizes |= {"coordinate": len(filter.clinical.names), "ball": len(filter.clinical.ball_turns)}
+        sizes["part"] = len(model.description.bearings)
         self.dtype = record_dtype(sizes)
         self._empty = blank(self.dtype, 1).view(
             np.uint8
@@ -204,7 +182,7 @@ class FrameRecorder:
         """
         row["known"], row["step_seconds"] = True, step_seconds
         row["started"], row["tracked"] = posterior.started, posterior.tracked
-        row["refused"] = posterior.refused
+        row["rejected"] = posterior.refused
         if posterior.contact is not None:
             row["footing"] = posterior.contact
 
@@ -217,9 +195,8 @@ class FrameRecorder:
         row["support_sd"] = self.filter.support_sd(posterior)
         by_body = self._body.of(int(row["number"][0]), posterior)
         spread = replace(self.filter.spread(posterior, self._asks_torques), body=by_body())
-        for name in SPREAD_AT_ONCE if self._asks_torques else ("position", "velocity"):
-            row[f"{name}_sd"] = getattr(spread, name)
-            row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
+        for field, name in (SPREAD_AT_ONCE | (TORQUE_SPREAD if self._asks_torques else {})).items():
+            row[field] = getattr(spread, name)
         offset = spread.wrench_offset
         row["wrench_offset"], row["wrench_sd"] = offset, np.hypot(self.filter.wrench_sd(posterior), offset)
         return spread
@@ -229,8 +206,8 @@ class FrameRecorder:
         found = self.filter.innovations(posterior)
         if found is None:
             return
-        row["nis_by_kind"], row["readings_by_kind"] = found.squared, found.readings
-        row["nis"], row["readings"] = found.squared.sum(), found.readings.sum()
+        row["nis_by_kind"], row["nis_readings_by_kind"] = found.squared, found.readings
+        row["nis"], row["nis_readings"] = found.squared.sum(), found.readings.sum()
         row["marker_nis"], row["marker_spread_m"] = found.markers, found.marker_spread_m
 
     def spread(self, row: NDArray, spread: Spread) -> None:

@@ -3,96 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import Array
 from mbkf.errors import NotObservable
 from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
-from mbkf.filters.record import UNASKED, FrameRecorder, blank
+from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_loop import followed
-
-
-@dataclass(frozen=True)
-class Track:
-    """A followed trial; read off its records; frames before the first fitted pose are NaN.
-
-    Attributes:
-        q: (T, nq) configurations.
-        v, a: (T, nv) velocities and accelerations.
-        wrench: (T, 2, 6) estimated wrenches on right and left foot about the world's origin; NaN where the filter
-            estimates none.
-        wrench_sd: (T, 2, 6) their standard deviations.
-        support: (T, B, 6) wrenches on the parts that may bear load besides the feet (``description.bearings``), 0 on
-            one that bears none; NaN where the filter does not ask.
-        support_sd: (T, B, 6) their standard deviations.
-        contact: (T, 2) what the feet stand on (``mbkf.sensors.contact.records.Contact``); None where not decided.
-        position_sd, velocity_sd: (T, nv) standard deviations in the tangent space.
-        angle_sd, rate_sd: (T, A) of the clinical coordinates, the root's in the world's axes, and their rates.
-        ball_covariance: (T, n, 3, 3) covariances of the rotations of joints with three angles, in the axes of their
-            distal segments, rad².
-        torque_sd: (T, nv) of generalised forces; NaN where not known.
-        position_offset, velocity_offset, torque_offset, angle_offset, rate_offset, wrench_offset: The part of each of
-            these standard deviations that repeats in the same posture, since the body is not known exactly.
-        ball_offset: (T, n, 3, 3) likewise of the covariances.
-        foot_height_sd: (T, 2) of the height of right and left foot, m.
-        refused: (T, M) markers seen but refused by the gate.
-        tracked: (T,) whether enough markers passed the gate.
-        nis: (T,) normalised innovation squared; NaN at a start.
-        readings: (T,) numbers in it.
-        nis_by_kind, readings_by_kind: (T, 4) the same by :data:`mbkf.conventions.READING_KINDS`.
-        marker_nis: (T, M) of each marker per coordinate, NaN where it was not used.
-        marker_spread_m: (T, M) the spread it is told in units of, m.
-        step_seconds: (T,) computing time of each step.
-        known: (T,) whether there is an estimate at all; after the first start there is none of what was no person.
-        uncorrected: (T,) frames that stand as the filter had them, since later frames made no person of them.
-        starts: Frames at which the filter was started or restarted.
-        smoothed: Whether it was smoothed, with all later frames that matter, in more than the uncorrected frames.
-        covariance: (T, 2 nv, 2 nv) full covariances, or None.
-    """
-
-    q: Array
-    v: Array
-    a: Array
-    wrench: Array
-    wrench_sd: Array
-    support: Array
-    support_sd: Array
-    contact: Array | None
-    position_sd: Array
-    velocity_sd: Array
-    angle_sd: Array
-    rate_sd: Array
-    ball_covariance: Array
-    torque_sd: Array
-    position_offset: Array
-    velocity_offset: Array
-    torque_offset: Array
-    angle_offset: Array
-    rate_offset: Array
-    ball_offset: Array
-    wrench_offset: Array
-    foot_height_sd: Array
-    refused: BoolArray
-    tracked: BoolArray
-    nis: Array
-    readings: Array
-    nis_by_kind: Array
-    readings_by_kind: Array
-    marker_nis: Array
-    marker_spread_m: Array
-    step_seconds: Array
-    known: BoolArray
-    uncorrected: BoolArray
-    starts: tuple[int, ...]
-    smoothed: bool
-    covariance: Array | None
+from mbkf.io.quantities import quantities
 
 
 def track(
@@ -161,12 +86,16 @@ def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = N
         smoothed: Whether it was smoothed.
         covariance: (T, 2 nv, 2 nv) full covariances, where they were kept.
     """
+    values: dict[str, Any] = {
+        name: np.array(rows[one.key])
+        for name, one in quantities(Track).items()
+        if one.key in (rows.dtype.names or ())
+    }
     asked = rows["footing"][:, 0] != UNASKED
-    named = {f.name: rows[f.name] for f in fields(Track) if f.name in (rows.dtype.names or ())}
-    named.setdefault("uncorrected", np.zeros(len(rows), dtype=bool))  # older logs lack it
+    values["foot_contact"] = np.where(asked[:, None], rows["footing"], 0) if asked.any() else None
+    values.setdefault("uncorrected", np.zeros(len(rows), dtype=bool))  # older logs lack it
     return Track(
-        **{name: np.array(values) for name, values in named.items()},
-        contact=np.where(asked[:, None], rows["footing"], 0) if asked.any() else None,
+        **values,
         starts=tuple(int(t) for t in np.flatnonzero(rows["started"])),
         smoothed=smoothed and not rows["uncorrected"][rows["known"]].all(),
         covariance=covariance,

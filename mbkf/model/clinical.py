@@ -33,7 +33,17 @@ def dof_names(model: Body) -> tuple[str, ...]:
 
     Free and spherical joints: axes of the segment's own frame. Others: the axes they turn about, in turn.
     """
-    axes = {"free": ("tx", "ty", "tz", "x", "y", "z"), "spherical": ("x", "y", "z")}
+    return _joint_names(model, ("x", "y", "z"))
+
+
+def configuration_names(model: Body) -> tuple[str, ...]:
+    """Names of the nq numbers of a configuration: as :func:`dof_names`, and ``_qx`` to ``_qw`` of quaternions."""
+    return _joint_names(model, ("qx", "qy", "qz", "qw"))
+
+
+def _joint_names(model: Body, turns: tuple[str, ...]) -> tuple[str, ...]:
+    """Names by joint; those of the rotation of a joint with three angles are given."""
+    axes = {"free": ("tx", "ty", "tz", *turns), "spherical": turns}
     return tuple(
         f"{joint.segment}_{axis}"
         for joint in model.joints.values()

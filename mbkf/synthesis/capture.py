@@ -11,7 +11,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.model.body import Body
-from mbkf.model.clinical import dof_names
+from mbkf.model.clinical import configuration_names, dof_names
 from mbkf.synthesis import cameras, plates
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of
@@ -102,20 +102,21 @@ def synthesise_capture(
     still = CaptureSettings(**{**asdict(chosen), "skin_sd_m": 0.0, "occlusion": 0.0})
     static, _ = _record(model, subject, standing, still, rng)
     truth = Truth(
-        motion.times_s,
-        motion.q,
-        motion.v,
-        motion.a,
-        motion.tau,
-        motion.foot_wrench,
-        motion.centre_of_pressure,
-        trial.markers.names,
-        exact,
-        dof_names(model),
-        __version__,
-        {"motion": motion.name, "rate_hz": motion.rate_hz, "seed": seed, **asdict(chosen)},
-        motion.support_names,
-        motion.support_wrench,
+        times_s=motion.times_s,
+        dof_names=dof_names(model),
+        configuration_names=configuration_names(model),
+        q=motion.q,
+        v=motion.v,
+        a=motion.a,
+        tau=motion.tau,
+        foot_wrench=motion.foot_wrench,
+        centre_of_pressure=motion.centre_of_pressure,
+        marker_names=trial.markers.names,
+        markers_m=exact,
+        support_names=motion.support_names,
+        support_wrench=motion.support_wrench,
+        version=__version__,
+        settings={"motion": motion.name, "rate_hz": motion.rate_hz, "seed": seed, **asdict(chosen)},
     )
     return SyntheticCapture(trial, raw, static, truth)
 

@@ -176,10 +176,10 @@ def test_smoothing_comes_nearer_to_the_truth(name):
 def test_smoothed_spreads_are_smaller(name):
     before, after = tracked(name), tracked(name, WHOLE)
     assert after.smoothed and not before.smoothed
-    for part in ("position_sd", "velocity_sd"):
+    for part in ("sd_q", "sd_v"):
         shrunk = getattr(after, part)[5:-5] / getattr(before, part)[5:-5]
         # Skin does not average out: of the dynamic filter's positions it is most of the spread.
-        assert np.median(shrunk) < (1.0 if (name, part) == ("dynamic", "position_sd") else 0.9), part
+        assert np.median(shrunk) < (1.0 if (name, part) == ("dynamic", "sd_q") else 0.9), part
         assert shrunk.max() < 1.05, part
 
 
@@ -187,8 +187,8 @@ def test_smoothed_spreads_are_smaller(name):
 def test_the_last_frame_of_a_run_is_the_filters(name):
     """No later readings say more; the dynamic smoother, linearised anew, moves it by a fraction of its spread."""
     before, after = tracked(name), tracked(name, WHOLE)
-    q = made().model.difference(before.q[LAST], after.q[LAST]) / before.position_sd[LAST]
-    v = (after.v[LAST] - before.v[LAST]) / before.velocity_sd[LAST]
+    q = made().model.difference(before.q[LAST], after.q[LAST]) / before.sd_q[LAST]
+    v = (after.v[LAST] - before.v[LAST]) / before.sd_v[LAST]
     assert worst(np.r_[q, v]) < (0.2 if name == "dynamic" else 1e-9)
 
 
@@ -211,10 +211,10 @@ def test_a_wrong_marker_is_refused_and_hardly_moves_the_estimate(name):
     found = track(made_filter(name), replace(recording(), markers_m=wrong))
     expected = np.zeros((len(FRAMES), 36), dtype=bool)
     expected[WRONG, MARKER] = True
-    np.testing.assert_array_equal(found.refused, expected)
+    np.testing.assert_array_equal(found.rejected, expected)
     hidden = track(made_filter(name), without(recording(), WRONG, MARKER))
     np.testing.assert_allclose(found.q, hidden.q, rtol=0, atol=1e-12)
-    moved = angle_errors(made().model, found.q, tracked(name).q) / found.position_sd
+    moved = angle_errors(made().model, found.q, tracked(name).q) / found.sd_q
     assert worst(moved) < 2.0
 
 
@@ -239,7 +239,7 @@ def test_after_half_a_second_without_markers_the_filter_starts_anew(name):
     np.testing.assert_array_equal(np.flatnonzero(~found.tracked), np.arange(GAP.start, GAP.stop))
     truth = made().motion.q[LONG.start : LONG.stop]
     assert np.isfinite(found.q).all()
-    off = angle_errors(made().model, found.q, truth) / found.position_sd
+    off = angle_errors(made().model, found.q, truth) / found.sd_q
     assert worst(off[GAP.stop :]) < 5.5
 
 
@@ -249,7 +249,7 @@ def test_a_short_loss_is_bridged_with_growing_spreads(name):
     found = track(made_filter(name), without(recording(), slice(30, 40)))
     assert found.starts == (0,)
     assert not found.tracked[30:40].any() and found.tracked[40:].all()
-    assert (found.position_sd[39, 3:6] > 2 * found.position_sd[29, 3:6]).all()
+    assert (found.sd_q[39, 3:6] > 2 * found.sd_q[29, 3:6]).all()
 
 
 @every_filter

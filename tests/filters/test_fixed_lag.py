@@ -93,8 +93,8 @@ def test_the_default_lag_is_below_two_seconds():
 def test_short_windows_are_nearly_the_whole(name):
     """What readings say fades within the 0.2 s a window looks ahead: less than the spread is left, mostly nothing."""
     whole, parts, model = tracked(name, WHOLE), tracked(name, SHORT), made().model
-    q = angle_errors(model, parts.q, whole.q) / whole.position_sd
-    v = (parts.v - whole.v) / whole.velocity_sd
+    q = angle_errors(model, parts.q, whole.q) / whole.sd_q
+    v = (parts.v - whole.v) / whole.sd_v
     left = np.abs(np.hstack([q, v]))
     assert left.max() < 0.7 and np.median(left) < 0.02
     assert (errors(parts) < 1.03 * errors(whole)).all()
@@ -105,7 +105,7 @@ def test_short_windows_are_nearly_the_whole(name):
 def test_the_last_window_is_the_whole(name):
     """It has seen the same later readings; the dynamic smoother is linearised elsewhere before it."""
     whole, parts, model = tracked(name, WHOLE), tracked(name, SHORT), made().model
-    q = angle_errors(model, parts.q[30:], whole.q[30:]) / whole.position_sd[30:]
+    q = angle_errors(model, parts.q[30:], whole.q[30:]) / whole.sd_q[30:]
     assert np.abs(q).max() < (0.2 if name == "dynamic" else 1e-6)
 
 

@@ -76,7 +76,7 @@ def test_a_lag_holds_the_frames_within_it(lag_s, dt_s, frames):
 def test_no_lag_is_the_filter(name):
     plain = tracked(name)
     found = track(made_filter(name), recording(), lag_s=0.0, keep_covariance=True)
-    for one in ("q", "v", "a", "wrench", "position_sd", "torque_sd", "covariance"):
+    for one in ("q", "v", "a", "wrench", "sd_q", "torque_sd", "covariance"):
         np.testing.assert_array_equal(getattr(found, one), getattr(plain, one))
 
 
@@ -121,7 +121,7 @@ def test_stated_spreads_shrink_with_the_lag_and_never_below_the_smoothers(name):
     plain, whole = tracked(name), track(made_filter(name), recording(), lag_s=1.0)
     some = track(made_filter(name), recording(), lag_s=LAG_S)
     inside = slice(5, -10)
-    for spread in ("position_sd", "velocity_sd"):
+    for spread in ("sd_q", "sd_v"):
         causal, mine, all_ = (getattr(one, spread)[inside] for one in (plain, some, whole))
         assert (mine <= causal * (1 + 1e-9)).all() and (all_ <= mine * (1 + 1e-9)).all()
         assert np.median(mine / causal) < 0.99

@@ -112,7 +112,7 @@ def test_smoothing_that_makes_no_person_leaves_the_filter_s_own_estimates_and_is
     begin = 20
     assert np.flatnonzero(found.uncorrected).tolist() == list(range(begin, len(recording())))
     np.testing.assert_array_equal(found.q[begin:], plain.q[begin:])
-    np.testing.assert_array_equal(found.position_sd[begin:], plain.position_sd[begin:])
+    np.testing.assert_array_equal(found.sd_q[begin:], plain.sd_q[begin:])
     np.testing.assert_array_equal(found.q[: begin - 1], right.q[: begin - 1])
     assert found.smoothed == right.smoothed
 

@@ -12,15 +12,16 @@ from mbkf.filters.record import (
     UNASKED,
     FrameRecorder,
     HeldErrors,
+    Track,
     blank,
     record_dtype,
 )
 from mbkf.filters.spread import ASKED
-from mbkf.filters.tracking import Track, track_of
+from mbkf.filters.tracking import track_of
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made_filter, recording, tracked
 
-SIZES = {"M": 3, "nq": 8, "nv": 7, "A": 7, "B": 2, "N": 4}
+SIZES = {"marker": 3, "configuration": 8, "dof": 7, "coordinate": 7, "part": 2, "ball": 4}
 
 
 def test_every_field_has_its_type_and_shape():
@@ -32,14 +33,19 @@ def test_every_field_has_its_type_and_shape():
 
 def test_arrays_of_a_trial_are_fields_of_the_record():
     own = {field.name for field in FIELDS}
-    made_of_it = {field.name for field in fields(Track)} - {"contact", "starts", "smoothed", "covariance"}
+    made_of_it = {field.name for field in fields(Track)} - {
+        "foot_contact",
+        "starts",
+        "smoothed",
+        "covariance",
+    }
     assert made_of_it <= own
 
 
 def test_a_blank_record_says_nothing():
     row = blank(record_dtype(SIZES), 2)
     assert np.isnan(row["q"]).all() and np.isnan(row["nis"]).all()
-    assert not row["known"].any() and not row["refused"].any()
+    assert not row["known"].any() and not row["rejected"].any()
     assert (row["footing"] == UNASKED).all()
 
 
@@ -85,18 +91,15 @@ def test_spreads_are_totals_with_the_offset_beside_them(name, body):
         recorder.spread(row, spread)
         rows.append(row)
     roots = body.at(found[20].q, found[20].v, found[20].a, found[20].wrench, found[20].contact)
-    np.testing.assert_allclose(
-        rows[0]["position_offset"][0] ** 2, (roots.position**2).sum(axis=1), rtol=1e-12
-    )
-    for part in ("position", "velocity", "torque", "angle", "rate", "wrench"):
-        total, offset, alone = (
-            np.square(row)
-            for row in (rows[0][f"{part}_sd"], rows[0][f"{part}_offset"], rows[1][f"{part}_sd"])
-        )
+    np.testing.assert_allclose(rows[0]["sd_q_offset"][0] ** 2, (roots.position**2).sum(axis=1), rtol=1e-12)
+    of_name = {sd: f"{sd}_offset" for sd in ("sd_q", "sd_v")}
+    of_name |= {f"{part}_sd": f"{part}_offset" for part in ("torque", "angle", "rate", "wrench")}
+    for spread, beside in of_name.items():
+        total, offset, alone = (np.square(row) for row in (rows[0][spread], rows[0][beside], rows[1][spread]))
         np.testing.assert_allclose(
             total, alone + offset, rtol=1e-9, atol=1e-12 * np.nanmax(total, initial=0.0)
         )
-        assert not rows[1][f"{part}_offset"].any()
+        assert not rows[1][beside].any()
 
 
 def test_errors_by_the_body_are_held_for_a_while_and_found_when_asked(body, monkeypatch):

@@ -59,7 +59,7 @@ def followed(motion):
 def test_a_clean_trial_is_followed_from_the_first_frame(motion, followed):
     assert followed.starts == (0,)
     assert followed.tracked.all()
-    assert not followed.refused.any()
+    assert not followed.rejected.any()
     assert worst(angle_errors(MODEL, followed.q, motion[0])) < 0.03
     assert worst(followed.v - motion[1]) < LAG_S * worst(motion[2])
 
@@ -80,8 +80,8 @@ def test_accelerations_are_differences_of_velocities(followed):
 
 def test_spreads_are_those_of_the_covariance(followed):
     variance = np.diagonal(followed.covariance, axis1=1, axis2=2)
-    np.testing.assert_allclose(followed.position_sd**2, variance[:, :NV], rtol=1e-12)
-    np.testing.assert_allclose(followed.velocity_sd**2, variance[:, NV:], rtol=1e-12)
+    np.testing.assert_allclose(followed.sd_q**2, variance[:, :NV], rtol=1e-12)
+    np.testing.assert_allclose(followed.sd_v**2, variance[:, NV:], rtol=1e-12)
     started = np.arange(FRAMES) == 0
     assert np.isnan(followed.torque_sd[started]).all()
     assert np.isfinite(followed.torque_sd[~started]).all()
@@ -92,7 +92,7 @@ def test_covariances_are_kept_only_on_request(motion):
 
 
 def test_every_reading_is_counted(followed):
-    np.testing.assert_array_equal(followed.readings[1:], 3 * 36)
+    np.testing.assert_array_equal(followed.nis_readings[1:], 3 * 36)
     assert np.isnan(followed.nis[0])
     assert (followed.nis[1:] >= 0).all()
 
@@ -104,7 +104,7 @@ def test_a_short_loss_is_bridged(motion, followed):
     assert result.starts == (0,)
     np.testing.assert_array_equal(np.flatnonzero(~result.tracked), np.arange(30, 40))
     assert np.isfinite(result.q).all()
-    before, after = (result.position_sd[t, 0] for t in (29, 39))
+    before, after = (result.sd_q[t, 0] for t in (29, 39))
     assert after > 5 * before
 
 
@@ -124,7 +124,7 @@ def test_frames_before_the_first_markers_are_nan(motion):
     result = follow(measured)
     assert result.starts == (12,)
     assert not result.tracked[:12].any()
-    for name in ("q", "v", "a", "position_sd", "velocity_sd", "angle_sd", "nis", "step_seconds"):
+    for name in ("q", "v", "a", "sd_q", "sd_v", "angle_sd", "nis", "step_seconds"):
         assert np.isnan(getattr(result, name)[:12]).all(), name
     assert np.isfinite(result.q[12:]).all()
     assert worst(angle_errors(MODEL, result.q[12:], motion[0][12:])) < 0.03
@@ -141,8 +141,8 @@ def test_an_outlier_is_refused_in_its_frame_alone(motion):
     measured = motion[3].copy()
     measured[40, 7] += [0.0, 0.0, 0.4]
     result = follow(measured)
-    assert np.argwhere(result.refused).tolist() == [[40, 7]]
-    assert result.readings[40] == 3 * 35
+    assert np.argwhere(result.rejected).tolist() == [[40, 7]]
+    assert result.nis_readings[40] == 3 * 35
 
 
 @pytest.mark.parametrize("markers", [5, 0])

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from mbkf.errors import ShapeError, UnknownName
-from mbkf.io.results import ARRAYS, SHAPES, varying_sd
+from mbkf.io.results import ARRAYS, QUANTITIES, varying_sd
 from tests.io.reconstructions import made_up, made_up_whole
 
 
 def test_every_array_is_read_only_and_has_its_shape_documented():
     r = made_up_whole()
-    assert set(ARRAYS) == set(SHAPES)
     for name in ARRAYS:
         assert not getattr(r, name).flags.writeable
+        assert len(QUANTITIES[name].axes) == getattr(r, name).ndim
     assert r.tracked.dtype == bool
     assert r.nis_readings.dtype == np.int64
     assert r.foot_contact.dtype == np.int64
@@ -29,7 +29,7 @@ def test_a_wrong_shape_is_refused_by_name(name):
 
 
 def test_plates_have_four_corners():
-    with pytest.raises(ShapeError, match=r"^plate_corners_m must have shape \(P, 4, 3\)"):
+    with pytest.raises(ShapeError, match=r"^plate_corners_m must have shape \(2, 4, 3\)"):
         made_up(plate_corners_m=made_up_whole().plate_corners_m[:, :3])
 
 

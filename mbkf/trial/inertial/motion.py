@@ -14,7 +14,8 @@ from mbkf.filters.dynamic.worn_tracking import FirstPosture, WornTracking
 from mbkf.filters.estimate import Recording
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.mount_errors import MountErrors
-from mbkf.filters.tracking import Track, track
+from mbkf.filters.record import Track
+from mbkf.filters.tracking import track
 from mbkf.imu.frames import conjugate, multiply, rotate
 from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.imu.orientation import OrientSettings, orientations

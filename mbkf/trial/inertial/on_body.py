@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.filters.estimate import Recording
-from mbkf.filters.tracking import Track, track
+from mbkf.filters.record import Track
+from mbkf.filters.tracking import track
 from mbkf.imu.checks import problems, refuse_fatal
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import usual_place

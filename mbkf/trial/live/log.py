@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib.recfunctions import rename_fields
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
@@ -25,6 +26,13 @@ MOST_MISSING, MISSING_PER_ROW = 60_000, 4
 """Between the rows of a log so many may be missing in all, and so many more for each that is there: ten minutes at
 100 Hz. What follows a longer gap, or a number that does not rise, is left out; no number decides how much memory is
 asked for."""
+
+
+RENAMED = {
+    "position_sd": "sd_q", "velocity_sd": "sd_v", "position_offset": "sd_q_offset", "velocity_offset": "sd_v_offset",
+    "refused": "rejected", "readings": "nis_readings", "readings_by_kind": "nis_readings_by_kind",
+}  # fmt: skip
+"""Fields of older logs and their names today."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +131,7 @@ def read_live_log(folder: Path) -> Logged:
     """
     log = read_frame_log(folder / FRAMES_FILE)
     header: dict[str, Any] = log.header
-    rows = log.rows[: _believable(log.rows["number"])]
+    rows = rename_fields(log.rows[: _believable(log.rows["number"])], RENAMED)
     if not len(rows):
         raise FileFormatError(folder / FRAMES_FILE, "no frame was written")
     first = int(rows["number"][0])

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import NotObservable
-from mbkf.filters.tracking import Track, track_of
+from mbkf.filters.record import Track
+from mbkf.filters.tracking import track_of
 from mbkf.imu.segments import segment_of
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction

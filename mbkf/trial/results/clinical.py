@@ -2,53 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
-from mbkf.filters.tracking import Track
+from mbkf.conventions import Array
+from mbkf.filters.record import Track
+from mbkf.io.result_groups import Moments, Motion, Torques
 from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
-from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.clinical import ClinicalAngles, configuration_names, dof_names
 from mbkf.trial.results.progression import LABORATORY, Progression, laboratory
+from mbkf.trial.results.readings import AXES, STATIC
 
 BLOCK = 1000
 """Frames treated at once."""
 
 
-@dataclass(frozen=True)
-class ClinicalMotion:
-    """Coordinates, rates and conjugate moments (T, A) with standard deviations; NaN where untracked.
-
-    In ``angles_lab`` the root's angles are in the laboratory's axes, in the others in the frame of progression.
-    ``…_offset`` is the part of a standard deviation that repeats in the same posture.
-    """
-
-    names: tuple[str, ...]
-    angles_lab: Array
-    angles: Array
-    rates: Array
-    moments: Array
-    angles_sd: Array
-    rates_sd: Array
-    moments_sd: Array
-    angles_offset: Array
-    rates_offset: Array
-    moments_offset: Array
-    singular: BoolArray
-
-
 def clinical_motion(
     model: Body,
     track: Track,
-    tau: Array,
-    tau_sd: Array,
+    torques: Torques,
     frame: Progression | None = None,
     reading: AngleReading | None = None,
     zero_q: Array | None = None,
-) -> ClinicalMotion:
-    """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps.
+) -> tuple[Motion, Moments]:
+    """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps; NaN where untracked.
 
     The root's angles are told in the frame of progression; its position stays in the laboratory's axes. The heading
     counts as known. Where it turns, rates are those against the turning axes: E (v − ψ̇ e), with e the vertical.
@@ -57,8 +34,7 @@ def clinical_motion(
     Args:
         model: The body.
         track: The tracked trial.
-        tau: (T, nv) generalised forces.
-        tau_sd: (T, nv) their standard deviations.
+        torques: The generalised forces.
         frame: The frame of the root's angles; the laboratory's when None.
         reading: The axes that angles are read in; the body's own when None.
         zero_q: (nq,) posture in which the angles of joints are to be zero; the root's are not changed.
@@ -70,14 +46,14 @@ def clinical_motion(
     angles_lab = angles = clinical.angles(track.q)
     if not in_laboratory:
         angles = clinical.angles(seen)
-    known = np.asarray(np.isfinite(track.q).all(axis=1))
+    known = np.isfinite(track.q).all(axis=1)
     shape = angles.shape
     rates, moments, moments_sd, moments_offset = (np.full(shape, np.nan) for _ in range(4))
     q, v, theta = track.q[known], track.v[known], angles[known]
     if not in_laboratory:
         v = v.copy()
         v[:, clinical.root_turns] -= frame.turning_rad_s[known, None] * clinical.vertical(q)
-    velocity_spreads = np.stack([track.velocity_sd[known], track.velocity_offset[known]])
+    velocity_spreads = np.stack([track.sd_v[known], track.sd_v_offset[known]])
     rates[known], rate_spreads = _rates(clinical, q, theta, v, velocity_spreads)
     renewed = _renewed(clinical, in_laboratory)
     angles_sd, rates_sd = track.angle_sd.copy(), track.rate_sd.copy()
@@ -89,27 +65,31 @@ def clinical_motion(
         rates_sd[rows], rates_offset[rows] = rate_spreads[..., renewed]
     own = ClinicalAngles(model)
     own_angles = theta if reading is None or not reading.joints else own.angles(seen)[known]
-    moments[known] = own.moments(q, tau[known], own_angles)
-    moments_sd[known] = own.moments_sd(q, tau_sd[known], own_angles)
-    tau_offset = np.where(np.isnan(tau_sd), np.nan, track.torque_offset)
+    moments[known] = own.moments(q, torques.tau[known], own_angles)
+    moments_sd[known] = own.moments_sd(q, torques.sd_tau[known], own_angles)
+    tau_offset = np.where(np.isnan(torques.sd_tau), np.nan, torques.sd_tau_offset)
     moments_offset[known] = own.moments_sd(q, tau_offset[known], own_angles)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
     zero = 0.0 if zero_q is None else _of_joints(clinical, zero_q)
-    return ClinicalMotion(
-        clinical.names,
-        angles_lab - zero,
-        angles - zero,
-        rates,
-        moments,
-        angles_sd,
-        rates_sd,
-        moments_sd,
-        angles_offset,
-        rates_offset,
-        moments_offset,
-        singular,
+    motion = Motion(
+        dof_names=dof_names(model),
+        configuration_names=configuration_names(model),
+        coordinate_names=clinical.names,
+        angles=angles - zero,
+        angles_sd=angles_sd,
+        angles_sd_offset=angles_offset,
+        angle_rates=rates,
+        angle_rates_sd=rates_sd,
+        angle_rates_sd_offset=rates_offset,
+        angles_lab=angles_lab - zero,
+        singular=singular,
+        heading_rad=frame.heading_rad,
+        direction=frame.direction,
+        angles_read=clinical.reading.name,
+        angles_zero=AXES if zero_q is None else STATIC,
     )
+    return motion, Moments(moments=moments, moments_sd=moments_sd, moments_sd_offset=moments_offset)
 
 
 def _of_joints(clinical: ClinicalAngles, q: Array) -> Array:

@@ -2,71 +2,56 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.inverse_dynamics import inverse_dynamics
-from mbkf.filters.tracking import Track
+from mbkf.filters.record import Track
 from mbkf.io.contacts import Source, bearing, foot_sources
 from mbkf.io.records import PlateReadings
+from mbkf.io.result_groups import Reactions, SupportLoads, Torques
 from mbkf.model.body import Body
 from mbkf.sensors.contact.offline import FootLoads, assign_feet, falling
 from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.rules import BOTH, least_load
-from mbkf.trial.results.supports import Supports, supports_of
+from mbkf.trial.results.supports import supports_of
 
 PRESSURE_FROM_N = 20.0
 """Vertical force from which an estimated wrench has a centre of pressure."""
-
 
 FLOATING_SHARE = 0.02
 """Share of frames without any contact, and without a fall, that take-off and landing explain."""
 
 
 @dataclass(frozen=True)
-class Reactions:
-    """Reactions of a trial, the torques and the residual that follow from them; NaN where not known.
+class GroundReactions:
+    """Loads of a trial, and the torques and the residual that follow from them.
 
     Attributes:
-        wrench: (T, 2, 6) on right and left foot about the world's origin: estimated, or measured where the filter
-            estimates none.
-        wrench_sd: (T, 2, 6) standard deviations, or None.
-        centre_of_pressure_m: (T, 2, 3) under each foot.
-        free_moment_nm: (T, 2) about the vertical through it.
-        supports: Loads on other parts than the feet.
-        tau: (T, nv) generalised forces with all these loads.
-        residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis with the measured plates.
-        plate_change: (T, P, 6) estimated minus measured wrench about the plate's origin where a foot stands on that
-            plate alone; None where the filter estimates none or there are no plates.
-        foot_source: (T, 2) :class:`~mbkf.io.contacts.Source` of the feet's wrenches.
+        loads: On the feet: estimated, or measured where the filter estimates none.
+        supports: On other parts.
+        torques: With all these loads; NaN where neither plates nor the filter know the loads.
         measured: (T,) every loaded foot on a measured plate, of its own or shared, and no other part bears.
-        accounted: (T,) measured, or what no plate reads is estimated: a foot beside plates or another part; no plate is
-            loaded by something that is no foot.
+        accounted: (T,) measured, or a load that no plate reads is estimated: a foot beside plates or another part; no
+            plate is loaded by something that is no foot.
         warnings: Remarks for the reader.
     """
 
-    wrench: Array
-    wrench_sd: Array | None
-    centre_of_pressure_m: Array
-    free_moment_nm: Array
-    supports: Supports
-    tau: Array
-    residual_force_n: Array
-    residual_moment_nm: Array
-    plate_change: Array | None
-    foot_source: Array
+    loads: Reactions
+    supports: SupportLoads
+    torques: Torques
     measured: BoolArray
     accounted: BoolArray
     warnings: tuple[str, ...]
 
 
-def reactions(
+def ground_reactions(
     model: Body, track: Track, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
-) -> Reactions:
-    """Reactions of a tracked trial.
+) -> GroundReactions:
+    """Loads and torques of a tracked trial.
 
     Args:
         model: The body.
@@ -75,53 +60,73 @@ def reactions(
         rate_hz: Frame rate.
         plates: The plates it could read.
     """
-    loads = assign_feet(model, track.q, times_s, rate_hz, plates)
+    read = assign_feet(model, track.q, times_s, rate_hz, plates)
     supports = supports_of(model, track)
-    measured = inverse_dynamics(model, track, loads.wrench)
+    by_plates = inverse_dynamics(model, track, read.wrench)
     known = np.where(bool(plates), 1.0, np.nan)
-    force, moment = measured.residual_force_n * known, measured.residual_moment_nm * known
-    if track.contact is None:
-        return Reactions(
-            loads.wrench,
-            None,
-            loads.centre_of_pressure_m,
-            loads.free_moment_nm,
-            supports,
-            measured.tau * known,
-            force,
-            moment,
-            None,
-            _plate_sources(loads),
-            loads.valid,
-            loads.valid,
-            (*loads.warnings, *_shared_warning((loads.foot_of_plate == BOTH).any(axis=1)))
-            if plates
-            else ("no force plates: torques and residuals are not computed",),
-        )
+    if track.foot_contact is None:
+        tau = by_plates.tau * known
+        loads = _measured_loads(read)
+        measured = accounted = read.valid
+        shared = _shared_warning((read.foot_of_plate == BOTH).any(axis=1))
+        unread = ("no force plates: torques and residuals are not computed",)
+        warnings = (*read.warnings, *shared) if plates else unread
+    else:
+        tau = inverse_dynamics(model, track, track.wrench, track.support).tau
+        loads = _estimated_loads(track, track.foot_contact, read, plates)
+        bears = bearing(supports.support_wrench).any(axis=1)
+        estimated = (loads.foot_source == Source.ESTIMATED).any(axis=1) | bears
+        measured = read.valid & ~estimated
+        accounted = measured | (estimated & ~_stray(read, plates))
+        held = ~falling(track.q[:, 2], rate_hz) & ~bears
+        contact = _contact_warnings(track.foot_contact, plates)
+        floating = _floating_warning(track.foot_contact, held & track.tracked)
+        warnings = (*read.warnings, *contact, *floating)
+    torque_sd, torque_offset = (
+        np.where(np.isnan(tau), np.nan, sd) for sd in (track.torque_sd, track.torque_offset)
+    )
+    torques = Torques(
+        tau=tau,
+        sd_tau=torque_sd,
+        sd_tau_offset=torque_offset,
+        residual_force_n=by_plates.residual_force_n * known,
+        residual_moment_nm=by_plates.residual_moment_nm * known,
+    )
+    loads = replace(loads, read_plate_names=tuple(plate.name for plate in plates))
+    return GroundReactions(loads, supports, torques, measured, accounted, warnings)
+
+
+def _measured_loads(read: FootLoads) -> Reactions:
+    """Loads where the filter estimates none."""
+    return Reactions(
+        foot_wrench=read.wrench,
+        foot_cop_m=read.centre_of_pressure_m,
+        foot_free_moment_nm=read.free_moment_nm,
+        foot_source=_plate_sources(read),
+    )
+
+
+def _estimated_loads(
+    track: Track, contact: Array, read: FootLoads, plates: tuple[PlateReadings, ...]
+) -> Reactions:
+    """Loads as the filter estimates them.
+
+    Args:
+        track: The tracked trial.
+        contact: (T, 2) what the feet stand on.
+        read: Loads that the plates measured.
+        plates: The plates.
+    """
     surface = np.mean([surface_height(plate) for plate in plates]) if plates else 0.0
     pressure, free = pressure_and_free_moment(track.wrench, float(surface), PRESSURE_FROM_N)
-    source = foot_sources(track.contact, track.wrench)
-    estimated = (source == Source.ESTIMATED).any(axis=1) | bearing(supports.wrench).any(axis=1)
-    on_plates = loads.valid & ~estimated
-    held = ~falling(track.q[:, 2], rate_hz) & ~bearing(supports.wrench).any(axis=1)
     return Reactions(
-        track.wrench,
-        track.wrench_sd,
-        pressure,
-        free,
-        supports,
-        inverse_dynamics(model, track, track.wrench, track.support).tau,
-        force,
-        moment,
-        _plate_change(track.wrench, loads, plates) if plates else None,
-        source,
-        on_plates,
-        on_plates | (estimated & ~_stray(loads, plates)),
-        (
-            *loads.warnings,
-            *_contact_warnings(track.contact, plates),
-            *_floating_warning(track.contact, held & track.tracked),
-        ),
+        foot_wrench=track.wrench,
+        foot_wrench_sd=track.wrench_sd,
+        foot_wrench_sd_offset=track.wrench_offset,
+        foot_cop_m=pressure,
+        foot_free_moment_nm=free,
+        foot_source=foot_sources(contact, track.wrench),
+        plate_change=_plate_change(track.wrench, read, plates) if plates else None,
     )
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.tracking import Track
+from mbkf.filters.record import Track
 from mbkf.io.contacts import FEET, ContactInterval
+from mbkf.io.result_groups import SupportLoads
 from mbkf.model.body import Body
 from mbkf.sensors.supports.bearings import BearingParts
 
@@ -20,33 +20,35 @@ LEAST_N = 20.0
 """Size of a force from which it has a point where it acts."""
 
 
-@dataclass(frozen=True)
-class Supports:
-    """Loads on the B parts that may bear them, none (B = 0) where the filter does not ask; NaN where it is not started.
-
-    Attributes:
-        names: The parts.
-        wrench: (T, B, 6) on each, about the world's origin; 0 where it bears nothing.
-        wrench_sd: (T, B, 6) standard deviations.
-        point_m: (T, B, 3) where its force acts, NaN where it bears nothing.
-    """
-
-    names: tuple[str, ...]
-    wrench: Array
-    wrench_sd: Array
-    point_m: Array
-
-
-def supports_of(model: Body, track: Track) -> Supports:
-    """Loads on other parts than the feet of a tracked trial."""
+def supports_of(model: Body, track: Track) -> SupportLoads:
+    """Loads on other parts than the feet of a tracked trial; NaN where it is not started."""
     if not np.isfinite(track.support).any():
-        none = np.zeros((len(track.q), 0, 6))
-        return Supports((), none, none, none[..., :3])
+        return support_loads((), np.zeros((len(track.q), 0, 6)))
     parts = BearingParts(model)
     point_m = np.full((*track.support.shape[:2], 3), np.nan)
     for t in np.flatnonzero(np.nan_to_num(track.support).any(axis=(1, 2))):
         point_m[t] = pressed_points(parts, track.q[t], track.support[t])
-    return Supports(parts.names, track.support, track.support_sd, point_m)
+    return support_loads(parts.names, track.support, track.support_sd, point_m)
+
+
+def support_loads(
+    names: tuple[str, ...], wrench: Array, wrench_sd: Array | None = None, point_m: Array | None = None
+) -> SupportLoads:
+    """Loads on parts.
+
+    Args:
+        names: The B parts.
+        wrench: (T, B, 6) on each.
+        wrench_sd: (T, B, 6) standard deviations; NaN by default.
+        point_m: (T, B, 3) where the force acts; NaN by default.
+    """
+    unknown = np.full(wrench.shape, np.nan)
+    return SupportLoads(
+        support_names=names,
+        support_wrench=wrench,
+        support_wrench_sd=unknown if wrench_sd is None else wrench_sd,
+        support_point_m=unknown[..., :3] if point_m is None else point_m,
+    )
 
 
 def pressed_points(parts: BearingParts, q: Array, wrench: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mbkf.conventions import BoolArray
-from mbkf.filters.tracking import Track
+from mbkf.filters.record import Track
 from mbkf.io.findings import Finding
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
@@ -72,7 +72,7 @@ def track_warnings(
         )
     if len(result.starts) > 1:
         warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))
-    refused = int(result.refused.sum())
+    refused = int(result.rejected.sum())
     if refused:
         warnings.append(f"{refused} marker samples lay outside the innovation gate and were refused")
     return warnings

@@ -6,13 +6,14 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.contacts import Source, bearing
+from mbkf.io.result_groups import SupportLoads
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.segment_poses import segment_poses
 from mbkf.sensors.contact.plates import pressure_and_free_moment
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
-from mbkf.trial.results.supports import Supports, pressed_points
+from mbkf.trial.results.supports import pressed_points, support_loads
 from mbkf.viz.scene.channels import Layout, marker_states
 
 MOST_UNLABELLED = 60
@@ -81,19 +82,19 @@ class DisplayRows:
     def _put_reactions(self, rows: Array, frame: LiveFrame) -> None:
         pressure, _ = pressure_and_free_moment(frame.wrench[None], self._surface_m, PRESSURE_FROM_N)
         parts = self._parts(frame)
+        bears = bearing(parts.support_wrench)[0]
         for part, feet, others in (
-            ("force", frame.wrench[:, :3], parts.wrench[0, :, :3]),
-            ("force_sd", frame.wrench_sd[:, :3], parts.wrench_sd[0, :, :3]),
-            ("pressure", pressure[0], parts.point_m[0]),
-            ("source", frame.foot_source, np.where(bearing(parts.wrench)[0], Source.ESTIMATED, Source.NONE)),
+            ("force", frame.wrench[:, :3], parts.support_wrench[0, :, :3]),
+            ("force_sd", frame.wrench_sd[:, :3], parts.support_wrench_sd[0, :, :3]),
+            ("pressure", pressure[0], parts.support_point_m[0]),
+            ("source", frame.foot_source, np.where(bears, Source.ESTIMATED, Source.NONE)),
         ):
             self.layout.put(rows, part, np.concatenate([feet, others])[None])
 
-    def _parts(self, frame: LiveFrame) -> Supports:
+    def _parts(self, frame: LiveFrame) -> SupportLoads:
         """Loads on other parts than the feet; NaN where the filter does not ask."""
         names = self._bearings.names
-        unknown = np.full((1, len(names), 6), np.nan)
         if not names or len(frame.support) != len(names) or not np.isfinite(frame.q).all():
-            return Supports(names, unknown, unknown, unknown[..., :3])
+            return support_loads(names, np.full((1, len(names), 6), np.nan))
         points = pressed_points(self._bearings, frame.q, frame.support)
-        return Supports(names, frame.support[None], frame.support_sd[None], points[None])
+        return support_loads(names, frame.support[None], frame.support_sd[None], points[None])

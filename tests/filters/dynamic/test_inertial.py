@@ -73,10 +73,10 @@ def test_sensors_that_never_read_change_nothing():
 
 def test_standard_deviations_stay_finite_and_grow_where_nothing_is_seen():
     found = followed(imus=True)
-    assert np.isfinite(found.position_sd).all()
+    assert np.isfinite(found.sd_q).all()
     assert np.isfinite(found.torque_sd).all()
     hand = made().model.joint("right_hand").v
-    assert found.position_sd[LOST.stop - 1, hand].max() > 2 * found.position_sd[LOST.start - 2, hand].max()
+    assert found.sd_q[LOST.stop - 1, hand].max() > 2 * found.sd_q[LOST.start - 2, hand].max()
 
 
 def test_the_smoother_uses_them_too():

@@ -126,4 +126,4 @@ def test_it_starts_as_the_kinematic_filter_does():
     kinematic = made_filter("kinematic", kinematic=inputs().kinematic).start(recording(), 0, None)
     _, found = estimates("torque")
     moved = made().model.difference(kinematic.q, found[0].q)
-    assert worst(moved / tracked("torque").position_sd[0]) < 1.0
+    assert worst(moved / tracked("torque").sd_q[0]) < 1.0

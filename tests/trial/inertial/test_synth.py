@@ -17,8 +17,9 @@ def made(tmp_path_factory):
     folder, one = tmp_path_factory.mktemp("made"), trial("squat")
     m, count = one.motion, len(one.motion.q)
     truth = Truth(
-        m.times_s, m.q, m.v, m.a, m.tau, m.foot_wrench, m.centre_of_pressure, (), np.zeros((count, 0, 3)),
-        dof_names(one.model),
+        times_s=m.times_s, q=m.q, v=m.v, a=m.a, tau=m.tau, foot_wrench=m.foot_wrench,
+        centre_of_pressure=m.centre_of_pressure, marker_names=(), markers_m=np.zeros((count, 0, 3)),
+        dof_names=dof_names(one.model),
     )  # fmt: skip
     write_subject(one.subject, folder / "subject.toml")
     write_truth(truth, folder / "truth.h5")

@@ -236,7 +236,7 @@ def test_a_log_gives_back_its_frames_and_blanks_for_lost_ones(log):
     assert track.starts == (0,)
     assert np.isnan(track.q[27:29]).all()
     assert not track.tracked[27:29].any()
-    assert track.contact.shape == (58, 2)
+    assert track.foot_contact.shape == (58, 2)
 
 
 def test_results_are_made_from_a_log_alone(log):

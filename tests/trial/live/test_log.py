@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from mbkf.filters.record import blank
+from mbkf.filters.record import FIELDS, blank
 from mbkf.stream.source import empty_plate
-from mbkf.trial.live.log import MISSING_PER_ROW, MOST_MISSING, LiveLog, LiveStream, read_live_log
+from mbkf.trial.live.log import MISSING_PER_ROW, MOST_MISSING, RENAMED, LiveLog, LiveStream, read_live_log
 
 DTYPE = np.dtype([("number", "<i8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,))])
 
 
-def logged(folder, numbers, indices=(0, 1, 2)):
+def logged(folder, numbers, indices=(0, 1, 2), dtype=DTYPE):
     """What is read of a log with such numbers of frames and samples."""
     plate = empty_plate("1", 1000.0, 0.0, np.zeros(3), 10.0, None)
-    log = LiveLog(folder, LiveStream("x", 100.0, 0.0, (plate,)), DTYPE, {"filter": "dynamic"}, ["LASI"])
-    rows, samples = blank(DTYPE, len(numbers)), np.zeros(len(indices), log.plates.dtype)
+    log = LiveLog(folder, LiveStream("x", 100.0, 0.0, (plate,)), dtype, {"filter": "dynamic"}, ["LASI"])
+    rows, samples = blank(dtype, len(numbers)), np.zeros(len(indices), log.plates.dtype)
     rows["number"], rows["q"] = numbers, np.arange(len(numbers))[:, None]
     samples["index"], samples["wrench"] = indices, np.arange(len(indices))[:, None, None]
     log.frames.append(rows)
@@ -47,3 +47,10 @@ def test_a_gap_may_be_as_long_as_rows_allow(tmp_path):
     most = MOST_MISSING + 2 * MISSING_PER_ROW
     assert len(logged(tmp_path / "a", [0, 1, most + 2]).rows) == most + 3
     assert len(logged(tmp_path / "b", [0, 1, most + 3]).rows) == 2
+
+
+def test_fields_of_older_logs_have_their_new_names(tmp_path):
+    older = [(name, "<f8", (3,)) for name in RENAMED]
+    rows = logged(tmp_path / "log", [0, 1], dtype=np.dtype([*DTYPE.descr, *older])).rows
+    assert rows.dtype.names == (*DTYPE.names, *RENAMED.values())
+    assert set(RENAMED.values()) <= {field.name for field in FIELDS}

@@ -54,8 +54,8 @@ def test_motion_is_the_tracks_and_the_trial_is_named_after_its_file(trial):
     assert (found.trial, found.protocol, found.filter) == ("made", "reference36", "kinematic")
     for name, own in (
         ("q", "q"),
-        ("sd_q", "position_sd"),
-        ("sd_v_offset", "velocity_offset"),
+        ("sd_q", "sd_q"),
+        ("sd_v_offset", "sd_v_offset"),
         ("nis", "nis"),
     ):
         np.testing.assert_array_equal(getattr(found, name), getattr(followed, own))

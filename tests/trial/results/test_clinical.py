@@ -1,11 +1,13 @@
 """Clinical coordinates of a followed trial: means and spreads by the same linear maps."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from mbkf.io.result_groups import Torques
 from mbkf.model.angle_reading import AngleReading, JointAxes
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.trial.results.clinical import clinical_motion
@@ -13,6 +15,16 @@ from mbkf.trial.results.progression import Progression
 from tests.motions import random_model, smooth_motion, track_of
 
 FRAMES = 5
+
+
+def found_by(model, track, tau, sd_tau, *how):
+    """Motion and moments with these torques."""
+    offset, unknown = np.where(np.isnan(tau), np.nan, track.torque_offset), np.full((FRAMES, 3), np.nan)
+    torques = Torques(
+        tau=tau, sd_tau=sd_tau, sd_tau_offset=offset, residual_force_n=unknown, residual_moment_nm=unknown
+    )
+    motion, moments = clinical_motion(model, track, torques, *how)
+    return SimpleNamespace(**vars(motion), **vars(moments))
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +39,7 @@ def case():
         values[2] = np.nan
     tracked = np.arange(FRAMES) != 2
     track = track_of(q, v, a, angle_sd=angle_sd, rate_sd=rate_sd, tracked=tracked, starts=(0, 3))
-    return model, track, tau, sd_tau, clinical_motion(model, track, tau, sd_tau)
+    return model, track, tau, sd_tau, found_by(model, track, tau, sd_tau)
 
 
 KNOWN = [0, 1, 3, 4]
@@ -36,13 +48,13 @@ KNOWN = [0, 1, 3, 4]
 def test_angles_and_names_are_the_clinical_ones(case):
     model, track, _, _, found = case
     clinical = ClinicalAngles(model)
-    assert found.names == clinical.names
+    assert found.coordinate_names == clinical.names
     np.testing.assert_allclose(found.angles[KNOWN], clinical.angles(track.q)[KNOWN], rtol=1e-14)
 
 
 def test_frames_not_followed_are_nan_and_not_singular(case):
     found = case[-1]
-    for name in ("angles", "rates", "moments", "angles_sd", "rates_sd", "moments_sd"):
+    for name in ("angles", "angle_rates", "moments", "angles_sd", "angle_rates_sd", "moments_sd"):
         assert np.isnan(getattr(found, name)[2]).all(), name
         assert np.isfinite(getattr(found, name)[KNOWN]).all(), name
     assert not found.singular[2].any()
@@ -54,13 +66,13 @@ def test_rates_are_the_slopes_of_the_angles(case):
     for t in KNOWN:
         ends = np.array([model.integrate(track.q[t], s * h * track.v[t]) for s in (-1, 1)])
         before, after = clinical.angles(ends)
-        np.testing.assert_allclose(found.rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
+        np.testing.assert_allclose(found.angle_rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
 
 
 def test_moments_do_the_power_of_the_torques(case):
     _, track, tau, _, found = case
     for t in KNOWN:
-        assert found.moments[t] @ found.rates[t] == pytest.approx(tau[t] @ track.v[t], rel=1e-11)
+        assert found.moments[t] @ found.angle_rates[t] == pytest.approx(tau[t] @ track.v[t], rel=1e-11)
 
 
 def test_spread_of_moments_of_independent_dofs(case):
@@ -76,13 +88,13 @@ def test_long_trials_are_treated_in_blocks(case, monkeypatch):
     """The same rates whatever the size of a block."""
     model, track, tau, sd_tau, found = case
     monkeypatch.setattr("mbkf.trial.results.clinical.BLOCK", 3)
-    again = clinical_motion(model, track, tau, sd_tau)
-    np.testing.assert_array_equal(again.rates, found.rates)
+    again = found_by(model, track, tau, sd_tau)
+    np.testing.assert_array_equal(again.angle_rates, found.angle_rates)
 
 
 def in_frame(case, frame):
     model, track, tau, sd_tau, _ = case
-    return clinical_motion(model, track, tau, sd_tau, frame)
+    return found_by(model, track, tau, sd_tau, frame)
 
 
 def turned_track(model, track, angle_rad):
@@ -102,7 +114,7 @@ def spread_case(case):
     A = 0.1 * rng.normal(size=(FRAMES, 15, 3, 3))
     velocity_sd = rng.uniform(0.1, 1.0, track.v.shape)
     covariance = np.einsum("tnij,tnkj->tnik", A, A)
-    return model, replace(track, ball_covariance=covariance, velocity_sd=velocity_sd), tau, sd_tau, found
+    return model, replace(track, ball_covariance=covariance, sd_v=velocity_sd), tau, sd_tau, found
 
 
 STEADY = Progression("progression", np.full(FRAMES, 0.8), np.zeros(FRAMES))
@@ -115,8 +127,8 @@ def test_a_turned_capture_in_its_turned_frame_has_the_same_angles(spread_case, a
     clinical = ClinicalAngles(model)
     first = in_frame(spread_case, STEADY)
     turned = Progression("progression", STEADY.heading_rad + angle, STEADY.turning_rad_s)
-    second = clinical_motion(model, turned_track(model, track, angle), tau, sd_tau, turned)
-    for name in ("angles", "rates", "moments", "angles_sd", "rates_sd", "moments_sd"):
+    second = found_by(model, turned_track(model, track, angle), tau, sd_tau, turned)
+    for name in ("angles", "angle_rates", "moments", "angles_sd", "angle_rates_sd", "moments_sd"):
         one, other = (getattr(found, name)[:, clinical.rotational] for found in (first, second))
         if name == "angles":
             one, other = np.exp(1j * one), np.exp(1j * other)
@@ -127,8 +139,8 @@ def test_only_the_roots_angles_depend_on_the_frame(spread_case):
     model, track, tau, sd_tau, _ = spread_case
     clinical = ClinicalAngles(model)
     others = np.setdiff1d(np.arange(len(clinical.names)), clinical.root_angles)
-    lab, steady = clinical_motion(model, track, tau, sd_tau), in_frame(spread_case, STEADY)
-    for name in ("angles", "rates", "moments", "angles_sd", "rates_sd", "moments_sd", "singular"):
+    lab, steady = found_by(model, track, tau, sd_tau), in_frame(spread_case, STEADY)
+    for name in ("angles", "angle_rates", "moments", "angles_sd", "angle_rates_sd", "moments_sd", "singular"):
         np.testing.assert_array_equal(getattr(lab, name)[:, others], getattr(steady, name)[:, others])
     np.testing.assert_array_equal(steady.angles_lab, lab.angles)
     np.testing.assert_array_equal(lab.angles_lab, lab.angles)
@@ -139,7 +151,7 @@ def test_in_a_steady_frame_moments_do_the_power_of_the_torques(spread_case):
     _, track, tau, _, _ = spread_case
     found = in_frame(spread_case, STEADY)
     for t in KNOWN:
-        assert found.moments[t] @ found.rates[t] == pytest.approx(tau[t] @ track.v[t], rel=1e-11)
+        assert found.moments[t] @ found.angle_rates[t] == pytest.approx(tau[t] @ track.v[t], rel=1e-11)
 
 
 def test_in_a_turning_frame_rates_are_slopes_against_it_and_power_is_what_is_left(spread_case):
@@ -152,10 +164,10 @@ def test_in_a_turning_frame_rates_are_slopes_against_it_and_power_is_what_is_lef
         ends = np.array([model.integrate(track.q[t], s * h * track.v[t]) for s in (-1, 1)])
         seen = clinical.against(heading[t] + turning[t] * np.array([-h, h]), ends)
         before, after = clinical.angles(seen)
-        np.testing.assert_allclose(found.rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
+        np.testing.assert_allclose(found.angle_rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
         about_vertical = tau[t, clinical.root_turns] @ clinical.vertical(track.q[[t]])[0]
         power = tau[t] @ track.v[t] - turning[t] * about_vertical
-        assert found.moments[t] @ found.rates[t] == pytest.approx(power, rel=1e-10)
+        assert found.moments[t] @ found.angle_rates[t] == pytest.approx(power, rel=1e-10)
 
 
 def test_the_roots_spreads_follow_its_own_covariance(spread_case):
@@ -170,8 +182,10 @@ def test_the_roots_spreads_follow_its_own_covariance(spread_case):
         J = np.array([(after - before) / (2 * h) for before, after in angles]).T[clinical.root_angles]
         variance = np.diag(J @ track.ball_covariance[t, 0] @ J.T)
         np.testing.assert_allclose(found.angles_sd[t, clinical.root_angles] ** 2, variance, rtol=1e-6)
-        rate_variance = J**2 @ track.velocity_sd[t, clinical.root_turns] ** 2
-        np.testing.assert_allclose(found.rates_sd[t, clinical.root_angles] ** 2, rate_variance, rtol=1e-6)
+        rate_variance = J**2 @ track.sd_v[t, clinical.root_turns] ** 2
+        np.testing.assert_allclose(
+            found.angle_rates_sd[t, clinical.root_angles] ** 2, rate_variance, rtol=1e-6
+        )
 
 
 def test_a_reading_changes_angles_their_rates_and_spreads_and_no_moment(spread_case):
@@ -180,7 +194,7 @@ def test_a_reading_changes_angles_their_rates_and_spreads_and_no_moment(spread_c
     hip = JointAxes(*Rotation.from_rotvec([[0.1, 0.2, -0.1], [-0.1, 0.3, 0.2]]).as_matrix())
     reading = AngleReading("made up", {"hip_r": hip})
     read, own = ClinicalAngles(model, reading), in_frame(spread_case, STEADY)
-    found = clinical_motion(model, track, tau, sd_tau, STEADY, reading)
+    found = found_by(model, track, tau, sd_tau, STEADY, reading)
     seen = read.against(STEADY.heading_rad, track.q)
     np.testing.assert_allclose(found.angles[KNOWN], read.angles(seen)[KNOWN], rtol=1e-14)
     spread = read.ball_spread(seen[KNOWN], found.angles[KNOWN], track.ball_covariance[KNOWN])
@@ -192,19 +206,20 @@ def test_a_reading_changes_angles_their_rates_and_spreads_and_no_moment(spread_c
     for t in KNOWN:
         ends = np.array([model.integrate(track.q[t], s * h * track.v[t]) for s in (-1, 1)])
         before, after = read.angles(read.against(np.full(2, 0.8), ends))
-        np.testing.assert_allclose(found.rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
+        np.testing.assert_allclose(found.angle_rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
 
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_offsets_go_the_way_of_their_totals(spread_case, turned):
     """A fixed share of every spread is the same share in every frame and reading."""
     model, track, tau, sd_tau, _ = spread_case
-    told = {f"{name}_offset": 0.6 * getattr(track, f"{name}_sd") for name in ("angle", "rate", "velocity")}
+    told = {f"{name}_offset": 0.6 * getattr(track, f"{name}_sd") for name in ("angle", "rate")}
+    told["sd_v_offset"] = 0.6 * track.sd_v
     track = replace(track, **told, ball_offset=0.36 * track.ball_covariance, torque_offset=0.6 * sd_tau)
     hip = JointAxes(*Rotation.from_rotvec([[0.1, 0.2, -0.1], [-0.1, 0.3, 0.2]]).as_matrix())
     how = (STEADY, AngleReading("made up", {"hip_r": hip})) if turned else ()
-    found = clinical_motion(model, track, tau, sd_tau, *how)
-    for name in ("angles", "rates", "moments"):
-        total, offset = getattr(found, f"{name}_sd"), getattr(found, f"{name}_offset")
+    found = found_by(model, track, tau, sd_tau, *how)
+    for name in ("angles", "angle_rates", "moments"):
+        total, offset = getattr(found, f"{name}_sd"), getattr(found, f"{name}_sd_offset")
         np.testing.assert_allclose(offset, 0.6 * total, rtol=1e-12)
         assert np.isnan(offset[2]).all() and (offset[KNOWN] > 0.0).all()

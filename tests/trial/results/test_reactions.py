@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from mbkf.io.contacts import Source
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.contact.records import Contact
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
-from mbkf.trial.results.reactions import PRESSURE_FROM_N, reactions
+from mbkf.trial.results.reactions import PRESSURE_FROM_N, ground_reactions
 from tests.dynamics import trial
 from tests.motions import assert_near, track_of
 
@@ -39,7 +40,7 @@ def followed(wrench=None, contact=None, **known):
     q, v, a = (getattr(motion(), name)[SOME] for name in ("q", "v", "a"))
     if wrench is not None:
         contact = np.tile(STANDING, (FRAMES, 1)) if contact is None else contact
-        known |= {"wrench": wrench, "wrench_sd": np.ones((FRAMES, 2, 6)), "contact": np.array(contact)}
+        known |= {"wrench": wrench, "wrench_sd": np.ones((FRAMES, 2, 6)), "foot_contact": np.array(contact)}
     return track_of(q, v, a, **known)
 
 
@@ -49,16 +50,20 @@ def truly():
 
 
 def found_with(track, plates=()):
-    return reactions(trial("squat").model, track, motion().times_s[SOME], RATE_HZ, plates)
+    found = ground_reactions(trial("squat").model, track, motion().times_s[SOME], RATE_HZ, plates)
+    parts = vars(found.loads) | vars(found.supports) | vars(found.torques)
+    return SimpleNamespace(
+        **parts, measured=found.measured, accounted=found.accounted, warnings=found.warnings
+    )
 
 
 @pytest.mark.slow
 def test_measured_and_estimated_reactions_agree_where_the_estimate_is_exact():
     measured, estimated = found_with(followed(), plates()), found_with(followed(truly()), plates())
-    assert_near(measured.wrench, truly(), 1e-9)
+    assert_near(measured.foot_wrench, truly(), 1e-9)
     assert_near(estimated.tau, measured.tau, 1e-9)
-    assert_near(estimated.centre_of_pressure_m, measured.centre_of_pressure_m, 1e-12)
-    assert_near(estimated.free_moment_nm, measured.free_moment_nm, 1e-9)
+    assert_near(estimated.foot_cop_m, measured.foot_cop_m, 1e-12)
+    assert_near(estimated.foot_free_moment_nm, measured.foot_free_moment_nm, 1e-9)
     assert_near(estimated.residual_force_n, measured.residual_force_n, 1e-9)
     assert estimated.measured.all() and measured.measured.all()
     assert estimated.warnings == measured.warnings == ()
@@ -111,10 +116,10 @@ def test_the_centre_of_pressure_of_a_known_wrench():
     wrench[:, RIGHT, 5] += free
     wrench[:, LEFT, 2] = 0.9 * PRESSURE_FROM_N
     found = found_with(followed(wrench))
-    assert_near(found.centre_of_pressure_m[:, RIGHT], np.tile(point, (FRAMES, 1)), 1e-12)
-    assert_near(found.free_moment_nm[:, RIGHT], free, 1e-12)
-    assert np.isnan(found.centre_of_pressure_m[:, LEFT]).all()
-    assert np.isnan(found.free_moment_nm[:, LEFT]).all()
+    assert_near(found.foot_cop_m[:, RIGHT], np.tile(point, (FRAMES, 1)), 1e-12)
+    assert_near(found.foot_free_moment_nm[:, RIGHT], free, 1e-12)
+    assert np.isnan(found.foot_cop_m[:, LEFT]).all()
+    assert np.isnan(found.foot_free_moment_nm[:, LEFT]).all()
 
 
 def test_without_plates_only_estimates_are_known():
@@ -122,7 +127,7 @@ def test_without_plates_only_estimates_are_known():
     for name in ("tau", "residual_force_n", "residual_moment_nm"):
         assert np.isnan(getattr(none, name)).all()
     assert none.warnings == ("no force plates: torques and residuals are not computed",)
-    assert none.wrench_sd is None and none.plate_change is None
+    assert none.foot_wrench_sd is None and none.plate_change is None
     guessed = found_with(followed(truly()))
     assert np.isfinite(guessed.tau).all()
     assert np.isnan(guessed.residual_force_n).all()
@@ -177,9 +182,11 @@ def one_plate():
 def test_one_plate_under_both_feet_is_shared_and_that_is_told():
     """Inverse dynamics gets the plate's whole wrench; the change of a plate is known of feet that stand alone."""
     found = found_with(followed(), one_plate())
-    assert_near(found.wrench.sum(axis=1), truly().sum(axis=1), 1e-9)
-    assert_near(found.wrench[:, :, 2], truly()[:, :, 2], 0.1 * trial("squat").model.mass_kg * GRAVITY_M_S2)
-    assert (found.wrench[:, :, 2] > 0.0).all() and found.measured.all()
+    assert_near(found.foot_wrench.sum(axis=1), truly().sum(axis=1), 1e-9)
+    assert_near(
+        found.foot_wrench[:, :, 2], truly()[:, :, 2], 0.1 * trial("squat").model.mass_kg * GRAVITY_M_S2
+    )
+    assert (found.foot_wrench[:, :, 2] > 0.0).all() and found.measured.all()
     told = f"in {FRAMES} frames both feet stand on one plate: how they share its load is estimated"
     assert any(warning.startswith(told) for warning in found.warnings)
     assert not any("one plate" in warning for warning in found_with(followed(), plates()).warnings)

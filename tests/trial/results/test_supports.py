@@ -74,19 +74,19 @@ def test_a_trial_has_names_and_points_of_every_frame(model, rng):
     support[2, 3, :3] = [0.0, 0.0, 300.0]
     support[3] = np.nan
     found = supports_of(model, track_of(q, zero, zero, support=support, support_sd=0.1 * support))
-    assert found.names == names
-    np.testing.assert_array_equal(found.wrench, support)
-    np.testing.assert_array_equal(found.wrench_sd, 0.1 * support)
-    assert np.argwhere(np.isfinite(found.point_m).all(axis=2)).tolist() == [[2, 3]]
-    assert_near(found.point_m[2, 3], pressed_points(BearingParts(model), q[2], support[2])[3], 0.0)
+    assert found.support_names == names
+    np.testing.assert_array_equal(found.support_wrench, support)
+    np.testing.assert_array_equal(found.support_wrench_sd, 0.1 * support)
+    assert np.argwhere(np.isfinite(found.support_point_m).all(axis=2)).tolist() == [[2, 3]]
+    assert_near(found.support_point_m[2, 3], pressed_points(BearingParts(model), q[2], support[2])[3], 0.0)
 
 
 def test_a_filter_that_does_not_ask_has_no_parts(model, rng):
     q, zero = moderate_pose(model, rng)[None], np.zeros((1, model.nv))
     unasked = np.full((1, len(parts(model)), 6), np.nan)
     found = supports_of(model, track_of(q, zero, zero, support=unasked, support_sd=unasked))
-    assert found.names == ()
-    assert found.wrench.shape == (1, 0, 6) and found.point_m.shape == (1, 0, 3)
+    assert found.support_names == ()
+    assert found.support_wrench.shape == (1, 0, 6) and found.support_point_m.shape == (1, 0, 3)
 
 
 def test_loads_on_other_parts_are_told_with_their_times():

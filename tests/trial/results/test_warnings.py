@@ -43,7 +43,7 @@ def test_a_track_without_trouble_has_no_warnings():
         ({"uncorrected": frames(6, 7)}, f"2 of {FRAMES} frames"),
         ({"known": ~frames(0, 3, 4), "starts": (2,)}, "in 2 frames"),
         ({"starts": (0, 4, 6)}, "anew at frames 4, 6"),
-        ({"refused": np.eye(FRAMES, 3, dtype=bool)}, "3 marker samples"),
+        ({"rejected": np.eye(FRAMES, 3, dtype=bool)}, "3 marker samples"),
     ],
 )
 def test_each_condition_is_counted(known, words):
