@@ -19,6 +19,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "mathml",
     "public_surface",
+    "result_quantities",
     "step_files",
 ]
 html_math_renderer = "mathml"

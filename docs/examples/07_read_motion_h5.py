@@ -1,4 +1,4 @@
-"""Read motion.h5 with h5py alone: what other programs need to know about the file."""
+"""Read motion.h5 with h5py alone, then with xarray, which knows the labels of its axes."""
 
 import json
 from subprocess import run
@@ -6,6 +6,7 @@ from sys import executable
 
 import h5py
 import numpy as np
+import xarray
 
 command = [executable, "-m", "mbkf"]
 run(
@@ -22,7 +23,8 @@ with h5py.File("result/motion.h5") as file:
     )
     for name, dataset in file.items():
         if np.issubdtype(dataset.dtype, np.floating):
-            print(f"  {name:22} {dataset.shape!s:16} {dataset.attrs['unit']}")
+            axes = ", ".join(axis[0].name.strip("/") for axis in dataset.dims if len(axis))
+            print(f"  {name:22} {dataset.shape!s:16} {axes:40} {dataset.attrs['unit']}")
     coordinates = list(file["coordinate_names"].asstr())
     knee = coordinates.index("knee_angle_r")
     knee_rad, sd_rad = file["angles"][:, knee], file["angles_sd"][:, knee]
@@ -37,3 +39,9 @@ print(
 
 assert (sd_rad > 0.0).all()
 assert 0.5 < vertical_n.sum(axis=1).mean() / (9.80665 * subject["mass_kg"]) < 1.5
+
+with xarray.open_dataset("result/motion.h5", engine="h5netcdf") as motion:
+    right_n = motion.foot_wrench.sel(foot="right", wrench="force_z")
+    np.testing.assert_array_equal(right_n, vertical_n[:, 0])
+    print(motion.angles.sel(coordinate_names="knee_angle_r"))
+    print(dict(zip(motion.footing.flag_values, motion.footing.flag_meanings.split(), strict=True)))

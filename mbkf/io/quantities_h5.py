@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import h5py
 import numpy as np
@@ -21,7 +21,10 @@ from mbkf.conventions import Array
 from mbkf.io.hdf5 import array
 from mbkf.io.quantities import AXES, Quantity, attributes, quantities
 
-_PLAIN = (str, bool, int, float)
+Fields: TypeAlias = dict[str, Any]
+"""Values by the name of a record's field."""
+
+PLAIN = (str, bool, int, float)
 """Attributes that HDF5 holds as they are; others are JSON."""
 
 _TEXT = h5t.py_create(h5py.string_dtype(), logical=True)
@@ -35,7 +38,7 @@ def write_record(file: h5py.File, record: object) -> None:
     kind: type = type(record)
     for kept in attributes(kind):
         value = getattr(record, kept.name)
-        file.attrs[kept.name] = value if kept.read in _PLAIN else plain_json(value)
+        file.attrs[kept.name] = value if kept.read in PLAIN else plain_json(value)
     declared = [one for one in quantities(kind).values() if one.written]
     for one in declared:
         if one.is_text:
@@ -51,13 +54,13 @@ def write_record(file: h5py.File, record: object) -> None:
         _describe(file[key], ancillary_variables=" ".join(beside))
 
 
-def read_record(file: h5py.File, record: type) -> dict[str, Any]:
+def read_record(file: h5py.File, record: type) -> Fields:
     """Declared attributes, names and arrays of a type of record, as far as the file has them.
 
     Raises:
         ValueError: An array claims to be larger than the file can hold.
     """
-    values: dict[str, Any] = {
+    values: Fields = {
         kept.name: kept.read(file.attrs[kept.name]) for kept in attributes(record) if kept.name in file.attrs
     }
     for one in quantities(record).values():

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import mbkf
+from docs._extensions import result_quantities
 from mbkf.cli.main import build_parser
 from mbkf.model.protocol import protocol_names
 
@@ -90,9 +91,15 @@ def test_every_setting_stands_in_the_page_on_tuning():
 
 def test_every_dataset_of_a_result_stands_in_the_page_on_files():
     text = (DOCS / "files.md").read_text(encoding="utf-8")
+    assert "```{result-quantities}" in text and "```{result-attributes}" in text
+    rows = [*result_quantities.quantity_rows(), *result_quantities.attribute_rows()]
+    named = [name for row in rows for name in re.findall(r"`(\w+)`", row.split("|")[1])]
     result = typing.get_type_hints(mbkf.read_reconstruction)["return"]
-    missing = {one.name for one in dataclasses.fields(result)} - set(re.findall(r"`(\w+)`", text))
-    assert missing <= {"subject", "covariance"}  # an attribute, and what is never written
+    missing = {one.name for one in dataclasses.fields(result)} - set(named)
+    assert missing == {"subject", "covariance"}  # an attribute that the page explains, and one never written
+    assert len(set(named)) == len(named)
+    for label in {label for row in rows for label in re.findall(r"\{ref\}`more <([\w-]+)>`", row)}:
+        assert any(f"({label})=" in path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md")), label
 
 
 @pytest.mark.slow

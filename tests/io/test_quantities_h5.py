@@ -77,9 +77,9 @@ def test_xarray_shows_axes_and_labels(path, tmp_path, frames):
 
 
 def test_labels_take_little_room(tmp_path):
-    """At most 1.5 kB for each dataset: a trial of 5 s has 1 to 5 MB."""
+    """At most 1.2 kB for each dataset besides its numbers; a trial of 5 s has 1 to 5 MB."""
     write_h5(made_up_whole(), tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5") as file:
         stored = sum(dataset.id.get_storage_size() for dataset in file.values())
         count = len(file)
-    assert (tmp_path / "motion.h5").stat().st_size - stored < 3000 * count
+    assert (tmp_path / "motion.h5").stat().st_size - stored < 1200 * count
