@@ -14,7 +14,7 @@ from typing import NamedTuple, get_type_hints
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.imu.placement import typical_mounts
 from mbkf.model.human_dynamics import HumanDynamics
@@ -27,7 +27,7 @@ from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture_sensor import PostureSensor
-from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
+from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, singer, trial
 
 LAST, LIVED = 130, 115
 """A frame of the walk in which a foot stands on its plate, and how many frames a block has seen by then."""
@@ -168,8 +168,8 @@ class Scene:
     def plant(self, block):
         """A plant whose states the block speaks of: accelerations, or forces where it asks for a forced body."""
         if HumanDynamics in get_type_hints(type(block).__init__).values():
-            return TorquePlant(self.body, DT, lambda _: np.zeros(()), Scheme(), wrenches=12)
-        return SingerPlant(self.model, DT, self.everywhere, extras=block.states())
+            return TorquePlant(self.body, DT, lambda _: np.zeros(()), Scheme(), wrenches=True)
+        return singer(self.model, block.states())
 
     def state(self, true, plant, P):
         """A true motion as the plant's state, with a covariance, and what blocks add at its start."""

@@ -5,9 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from mbkf.filters.dynamic.plant import SingerPlant, SingerSettings
 from mbkf.filters.dynamic.support_loads import Loads, SupportLoads
-from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.model.newton_euler import NewtonEuler
@@ -22,7 +20,7 @@ from mbkf.sensors.supports.block import Supports
 from mbkf.sensors.supports.sharing import shares
 from tests.derivatives import checks, named, slope
 from tests.derivatives_of_bodies import forced_body
-from tests.dynamics import LOAD, block_of, dynamic_filter, markers_of, random_state, standing
+from tests.dynamics import LOAD, block_of, dynamic_filter, markers_of, random_state, singer, standing
 from tests.motions import central_difference, moderate_pose, protocol_sensor, random_model
 
 DT = 0.01
@@ -127,35 +125,6 @@ def plates(rng):
 # Plants and filters.
 
 
-@checks("filters.kinematic.plant.WhiteAccelerationPlant.transition")
-def kinematic_plant(rng):
-    model = random_model(rng)
-    plant, s = WhiteAccelerationPlant(model, 0.1, model.acceleration_sd), random_state(model, rng)
-    P, nv = np.eye(2 * model.nv), model.nv
-    end = plant.predict(KinematicState(s.q, s.v, P))
-
-    def tangent(x):
-        at = plant.predict(KinematicState(model.integrate(s.q, x[:nv]), s.v + x[nv:], P))
-        return np.concatenate([model.difference(end.q, at.q), at.v - end.v])
-
-    stated = plant.transition(KinematicState(s.q, s.v, P))
-    return named(
-        "filters.kinematic.plant.WhiteAccelerationPlant",
-        ("transition", stated, slope(tangent, np.zeros(2 * nv))),
-    )
-
-
-@checks("filters.dynamic.plant.SingerPlant.transition")
-def singer_plant(rng):
-    model = random_model(rng)
-    s = random_state(model, rng)
-    motion = SingerSettings(decay_s=float(rng.uniform(0.02, 1.0)))
-    plant = SingerPlant(model, 0.1, np.zeros(model.nv, dtype=bool), motion)
-    end, N = plant.predict(s), len(s.P)
-    numeric = slope(lambda x: plant.difference(end, plant.predict(plant.retract(s, x, s.P))), np.zeros(N))
-    return named("filters.dynamic.plant.SingerPlant", ("transition", plant.transition(s), numeric))
-
-
 @checks("filters.filter.Filter.linearise", "filters.readings.Readings.rows", tolerance=1e-6)
 def dynamic_readings(rng):
     """Whitened innovations fall by the rows; without priors, what markers say falls by their information."""
@@ -219,18 +188,15 @@ def torque_sensitivity(rng):
     return named("filters.torque.plant.TorquePlant", ("sensitivity", stated, numeric))
 
 
-@checks(
-    "filters.torque.plant.ForcedPrediction.phi", "filters.torque.plant.TorquePlant.transition", tolerance=1e-4
-)
+@checks("filters.torque.plant.ForcedPrediction.phi", tolerance=1e-4)
 def torque_transition(rng):
     """With F averaged over a short step, exp(F Δt) is Φ to second order."""
     body, q, v, _, u = forced_body(rng)
     n, dt = 2 * body.nv + body.nu, 1e-3
     plant = TorquePlant(body, dt, lambda _: np.zeros((n, n)), Scheme("RK4", mean_slope=True))
     state, numeric = ForcedState(q, v, u, np.zeros((n, n))), flow_derivative(body, Motion(q, v), u, dt)
-    phi, transition = (one[: 2 * body.nv] for one in (plant.predict(state).phi, plant.transition(state)))
-    return named("filters.torque.plant.ForcedPrediction", ("phi", phi, numeric)) | named(
-        "filters.torque.plant.TorquePlant", ("transition", transition, numeric)
+    return named(
+        "filters.torque.plant.ForcedPrediction", ("phi", plant.predict(state).phi[: 2 * body.nv], numeric)
     )
 
 
@@ -253,7 +219,7 @@ def shared_wrench(rng):
 def torques_of_all_contacts(rng):
     """Along the whole state, the parts' middles held: a configuration moves bodies under loads that stay."""
     model = random_model(rng)
-    plant = SingerPlant(model, DT, np.zeros(model.nv, dtype=bool), extras=Supports(model, DT).states())
+    plant = singer(model, Supports(model, DT).states())
     reader, balance, s = SupportLoads(model, plant.layout), NewtonEuler(model), random_state(model, rng)
     s, parts = replace(s, extra=rng.normal(size=6) * LOAD), some_parts(rng)
     chosen = tuple(int(k) for k in rng.choice(len(reader.bearings), 3, replace=False))

@@ -7,7 +7,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.filter import DynamicFilter
-from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.settings import changed
 from mbkf.io.records import PlateReadings
@@ -16,6 +16,7 @@ from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
+from mbkf.sensors.layout import Layout
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
@@ -70,6 +71,12 @@ def plates_under(model, q):
     """One plate under each sole of a standing body."""
     soles = sole_points(model, q[None])[0].mean(axis=1)
     return tuple(plate(x, y, (0.25, 0.08), name=name) for name, (x, y, _) in zip("12", soles, strict=True))
+
+
+def singer(model, extras=(), held=None, settings=None, dt_s=DT):
+    """A Singer plant with states that blocks add; ``held`` dofs stay where they are."""
+    held = np.zeros(model.nv, dtype=bool) if held is None else held
+    return SingerPlant(model, Layout.dynamic(model.nv, extras), dt_s, held, settings or SingerSettings())
 
 
 def dynamic_filter(

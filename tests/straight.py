@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mbkf.filters.plant import Plant
 from mbkf.sensors.layout import Layout
 
 
@@ -19,37 +20,31 @@ class StraightState:
     def v(self):
         return self.q
 
+    def retracted(self, model, step, P):
+        size = len(self.q)
+        return StraightState(self.q + step[:size], P, self.extra + step[size:])
 
-class StraightPlant:
+    def minus(self, model, origin):
+        return np.concatenate([self.q - origin.q, self.extra - origin.extra])
+
+
+class StraightPlant(Plant):
     """q' = q + noise, and states that blocks add."""
-
-    dt_s, model = 0.01, None
 
     def __init__(self, size, sd=0.0, blocks=()):
         extras = [extra for block in blocks for extra in block.states()]
-        self.size, self.layout = size, Layout.of(size, q=size).with_extras(extras)
-        self._noise = np.concatenate([np.full(size, sd**2), self.layout.walk_variance(self.dt_s)])
+        super().__init__(None, Layout.of(size, q=size).with_extras(extras), 0.01)
+        self.size, self._noise = size, np.zeros((self.layout.size,) * 2)
+        self._noise[:size, :size] = sd**2 * np.eye(size)
 
-    def begin(self):
-        return None
-
-    def noise(self, memory):
-        return self._noise
-
-    def predict(self, state, noise):
-        return replace(state, P=np.asfortranarray(state.P + np.diag(noise)))
+    def move(self, state):
+        return replace(state)
 
     def transition(self, state):
         return np.eye(self.layout.size)
 
-    def retract(self, state, step, P):
-        return StraightState(state.q + step[: self.size], P, state.extra + step[self.size :])
-
-    def difference(self, origin, state):
-        return np.concatenate([state.q - origin.q, state.extra - origin.extra])
-
-    def remember(self, posterior, notes, memory):
-        return None
+    def noise(self, memory):
+        return self._noise
 
     def start(self, sd=1.0):
         """Zeros of a standard deviation, and added states as their blocks say."""

@@ -1,8 +1,9 @@
 """Every derivative the package states is the numeric one along the manifold, and none escapes: they are found here.
 
 Looked for are public fields, methods and functions of the rooms below whose name or docstring speaks of a derivative.
-Each needs a case, which compares it with finite differences, or a line in :data:`ELSEWHERE`. Filters' blocks, those of
-tests/blocks among them, have their cases by themselves (:mod:`tests.derivatives_of_blocks`).
+Each needs a case, which compares it with finite differences, or a line in :data:`ELSEWHERE`. Blocks and plants, those
+of tests/blocks and tests/plants among them, have their cases by themselves (:mod:`tests.derivatives_of_blocks`,
+:mod:`tests.derivatives_of_plants`).
 """
 
 import dataclasses
@@ -23,6 +24,7 @@ from tests import (
     derivatives_of_filters,
     derivatives_of_inertial,
     derivatives_of_pendulum,
+    derivatives_of_plants,
 )
 from tests.derivatives import CASES
 
@@ -44,8 +46,10 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
     "filters.torque.integrators.trapezoidal_newton": "filters/torque/test_integrators.py TN",
     "sensors.gating.gated": "sensors/test_gating.py",
-    "filters.dynamic.plant.SingerPlant.transition_parts": "filters/dynamic/test_plant.py transition",
-    "filters.kinematic.plant.WhiteAccelerationPlant.transition_parts": "filters/kinematic/test_plant.py transition",
+    "filters.plant.Plant.step_transition": "filters/test_plant.py step_transition",
+    "filters.dynamic.plant.SingerPlant.step_transition": "filters/test_plant.py step_transition",
+    "filters.kinematic.plant.WhiteAccelerationPlant.step_transition": "filters/test_plant.py step_transition",
+    "filters.torque.plant.TorquePlant.step_transition": "filters/test_plant.py step_transition",
     "filters.state_variances.state_variances": "filters/test_state_variances.py",
     "filters.spread.SpreadReader.rise_jacobian": "filters/test_spread.py rise",
     "filters.filter.Filter.prepared_by": "filters/test_filter.py",
@@ -59,7 +63,9 @@ ELSEWHERE = {
     "numerics.levenberg_marquardt.ArrowEquations.frame_gradient": "numerics/test_levenberg_marquardt.py",
     "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.windows.slopes": "numerics/test_windows.py",
-    "numerics.passage.LinearStep.transition": "numerics/test_passage.py",
+    "numerics.later_frames.LinearStep.transition": "numerics/test_later_frames.py",
+    "numerics.smoothing.BackwardPass.through_parts": "numerics/test_smoothing.py through_parts",
+    "numerics.transition.DenseTransition.phi": "numerics/test_transition.py",
     "numerics.rotations.travel_by_turn": "numerics/test_rotations.py",
     "numerics.rotations.log_and_inverse_jacobian": "numerics/test_rotations.py",
     "filters.record.Track.nis_by_kind": "trial/results/test_innovations.py nis_by_kind",
@@ -175,6 +181,11 @@ def test_blocks_have_their_cases_by_themselves():
         "sensors.coordination.prior.CoordinationPrior.linearise",
     } <= own
     assert "tests.blocks.drifting_tracker.DriftingTracker.linearise" in own
+
+
+def test_plants_have_their_cases_by_themselves():
+    own = {case.names[0] for case in CASES if case.compare.__module__ == derivatives_of_plants.__name__}
+    assert {"filters.dynamic.plant.SingerPlant.transition", "tests.plants.damped.Damped.transition"} <= own
 
 
 @pytest.mark.parametrize("address", ELSEWHERE)

@@ -21,6 +21,7 @@ from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.sensors.layout import Layout
 
 PLATE = np.array([0, 1, 5])
 """F_x, F_y and T_2 among the wrenches of both feet."""
@@ -82,8 +83,9 @@ class PendulumAccelerationFilter:
         """
         self.body, self.settings = DoublePendulum(shape, residual=False), settings
         spread = np.full(4, settings.acceleration)
+        held = np.zeros(4, dtype=bool)
         motion = SingerSettings(activity_gain=0.0, decay_s=settings.decay_s)
-        self.plant = SingerPlant(PlainManifold.as_model(spread), dt_s, np.zeros(4, dtype=bool), motion)
+        self.plant = SingerPlant(PlainManifold.as_model(spread), Layout.dynamic(4), dt_s, held, motion)
         self._walk = settings.load_noise**2 * dt_s
         plate = [settings.force_n, settings.force_n, settings.moment_nm]
         self._sd = np.array([settings.marker_m] * 8 + plate + [settings.residual] * 3)

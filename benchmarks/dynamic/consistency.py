@@ -12,14 +12,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import cast
 
 import numpy as np
 
 from benchmarks.checks import Check, within
 from benchmarks.dynamic.methods import Mapper
+from benchmarks.dynamic.nis import nis
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.filter import DynamicFilter
-from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.settings import changed
@@ -129,6 +131,7 @@ class OwnPlant:
         noise = np.full(len(self._sensor.segments), MARKER_SD_M)
         unobservable, feet = np.zeros(self.model.nv, dtype=bool), AlwaysMeasured(self.centres_m)
         self.kalman = DynamicFilter.standard(self._sensor, noise, feet, DT_S, unobservable, SETTINGS)
+        self.plant = cast("SingerPlant", self.kalman.plant)
 
     @cached_property
     def _sensor(self) -> MarkerSensor:
@@ -138,7 +141,7 @@ class OwnPlant:
 
     def start(self) -> DynamicState:
         """What the filter starts from, before the first frame."""
-        nv, accelerations = self.model.nv, self.kalman.plant.acceleration_sd
+        nv, accelerations = self.model.nv, self.plant.acceleration_sd
         sd = np.concatenate([np.repeat([0.01, 0.1], nv), accelerations, np.full(12, _UNKNOWN_WRENCH)])
         still = np.zeros(nv)
         return DynamicState(self.q, still, still, np.zeros(12), np.diag(sd**2))
@@ -158,7 +161,7 @@ class OwnPlant:
             share: Share of the load on the right foot, 0 to 1.
             rng: Source of the noise.
         """
-        plant = self.kalman.plant
+        plant = self.plant
         drawn = np.linalg.cholesky(plant.covariance) @ rng.normal(size=(3, self.model.nv))
         noise = drawn * plant.acceleration_sd
         planned = self.model.integrate(state.q, plant.dt_s * state.v + plant.c2 * state.a)
@@ -194,20 +197,19 @@ def simulate(seed: int, *, smoothed: bool = False) -> Run:
     with single_threaded():
         person, rng = OwnPlant(), np.random.default_rng(seed)
         state, memory = person.start(), person.kalman.begin()
-        true, truth, steps, filtered, nis, readings = person.drawn(state, rng), [], [], [], [], []
+        true, truth, steps, filtered, squared = person.drawn(state, rng), [], [], [], []
         for t in range(FRAMES):
             true = person.moved(true, 0.5 + 0.3 * np.sin(0.1 * t), rng)
             step = person.kalman.step(state, memory, person.readings(true, rng))
             state, memory = step.state, step.memory
             truth.append(true)
             filtered.append(person.judged(true, state))
-            nis.append(step.nis)
-            readings.append(step.nis_readings)
+            squared.append(nis(step))
             if smoothed:
                 steps.append(step)
         later = smooth(person.kalman, steps, rounds=2) if smoothed else []
         after = tuple(person.judged(*pair) for pair in zip(truth, later, strict=smoothed))
-    return Run(tuple(filtered), after, np.array(nis), np.array(readings))
+    return Run(tuple(filtered), after, *map(np.array, zip(*squared, strict=True)))
 
 
 def ratios_of(estimates: Sequence[Sequence[Judged]], quantity: int) -> Array:

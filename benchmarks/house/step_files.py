@@ -12,14 +12,13 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import mbkf
 from benchmarks.kernel import using
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.filters.estimate import Recording, TrackingFilter
-from mbkf.filters.filter import Step
+from mbkf.filters.estimate import Recording
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.kernel.loading import REFERENCE
 from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.contact.records import Contact
@@ -116,7 +115,8 @@ def executed_in_a_step() -> set[str]:
             # The step after it asks for what this one keeps in mind.
             after = kalman.step(before, recording, FRAME)
             kalman.step(after, recording, FRAME + 1)
-    notes = cast("Step[DynamicState]", after.inner).decisions.notes
+    assert after.record.step is not None
+    notes = after.record.step.decisions.notes
     on_plates = notes.contact is not None and set(notes.contact.contacts) == {Contact.MEASURED}
     if not (notes.seen.all() and notes.trusted.all() and on_plates):
         raise InvalidInput(f"frame {FRAME}: not every marker is seen, or a foot is off its plate")

@@ -13,8 +13,10 @@ from benchmarks.speed.products import SIZE as PRODUCT_SIZE
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.warm_start import WarmStart
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.labelling.running import RunningLabeller
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
@@ -38,9 +40,8 @@ class TimedWalk:
         self.markers = made.trial.markers
         dt = 1.0 / self.markers.rate_hz
         nowhere = np.zeros(model.nv, dtype=bool)
-        self.tracking = KinematicTracking(
-            KinematicFilter(self.sensor, noise, dt, nowhere, KinematicSettings())
-        )
+        kalman = KinematicFilter(self.sensor, noise, dt, nowhere, KinematicSettings())
+        self.tracking = TrackingFilter(KinematicReport(kalman), WarmStart(kalman))
         self.recording = Recording(self.markers.positions_m, np.zeros((self.markers.frames, 0, 6)), dt)
         self.labeller = RunningLabeller(noise, np.full(len(noise), 0.005), dt)
 

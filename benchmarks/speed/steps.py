@@ -9,8 +9,9 @@ import numpy as np
 from benchmarks.speed.products import Stopwatch, Times, joined
 from benchmarks.speed.walks import Walk
 from mbkf.errors import InvalidInput
-from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.record import FrameRecorder, blank
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import TrackingLoop
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.threads import single_threaded

@@ -9,9 +9,8 @@ import numpy as np
 
 from benchmarks.dynamic.captures import SOURCES
 from mbkf.filters.body_errors import BodyErrors
-from mbkf.filters.dynamic.tracking import DynamicTracking
 from mbkf.filters.estimate import Recording
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.subject import Subject
@@ -42,19 +41,16 @@ class Walk:
     subject: Subject
     capture: Capture
 
-    def dynamic(self) -> tuple[DynamicTracking, Recording, BodyErrors | None]:
+    def dynamic(self) -> tuple[TrackingFilter, Recording, BodyErrors | None]:
         """The dynamic filter, what it reads, and the errors of the person's body."""
-        found, recording, body = self._filter("dynamic")
-        assert isinstance(found, DynamicTracking)
-        return found, recording, body
+        return self._filter("dynamic")
 
-    def kinematic(self) -> tuple[KinematicTracking, Recording]:
+    def kinematic(self) -> tuple[TrackingFilter, Recording]:
         """The kinematic filter and what it reads."""
         found, recording, _ = self._filter("kinematic")
-        assert isinstance(found, KinematicTracking)
         return found, recording
 
-    def _filter(self, name: str) -> tuple[object, Recording, BodyErrors | None]:
+    def _filter(self, name: str) -> tuple[TrackingFilter, Recording, BodyErrors | None]:
         settings = ReconstructSettings(filter=name)
         with single_threaded():
             measured = subject_markers(self.capture.markers, self.subject)

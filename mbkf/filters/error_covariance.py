@@ -1,10 +1,11 @@
 """Error covariance of the dynamic filter, where skin repeats marker errors from frame to frame.
 
-Its marker noise is wide, because a frame of skin-borne markers is no independent reading, and its plant as wide to
-keep up; gains depend on their ratio, but P on their size. So P is not what the errors are like. They have two parts:
+Its marker noise is wide, because frames of skin-borne markers are not independent readings, and its plant as wide to
+keep up; gains depend on their ratio, but P on their size. So P is not the covariance of the errors. They have two
+parts:
 
-    what is new in every frame    K P K, κ = K² the share of the marker noise that is new
-    what skin repeats             C of positions and, moving about as ω, ω² C of velocities, ω⁴ C of accelerations
+    new in every frame    K P K, κ = K² the share of the marker noise that is new
+    repeated by skin      C of positions and, moving about as ω, ω² C of velocities, ω⁴ C of accelerations
 
 with C the covariance of a pose fitted to one frame whose markers err as much as the innovations show; a sine of
 amplitude 1 has q, v and a of size 1, ω and −ω², the first and the last in opposition. Joints that nothing observes owe
@@ -35,6 +36,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
+from mbkf.sensors.layout import FEET, Layout
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class ErrorCovariance:
     """Errors of (q, v, a, w); their covariance Σ is positive semidefinite as P is.
 
     Attributes:
+        layout: Slices of the state.
         P: (N, N) the filter's own covariance.
         information: (nv, nv) of one frame on the configuration, as the filter weighs it.
         seen: (n,) dofs that markers observe.
@@ -86,6 +89,7 @@ class ErrorCovariance:
         supports: Slice of the wrench on other parts that bear, which Newton's law alone tells, too; None where none do.
     """
 
+    layout: Layout
     P: Array
     information: Array
     seen: NDArray[np.intp]
@@ -95,7 +99,7 @@ class ErrorCovariance:
     free: tuple[int, ...] = ()
     sharing: float = 1.0
     lag: Array | None = None
-    edges: Array = field(default_factory=lambda: np.zeros((0, 12)))
+    edges: Array = field(default_factory=lambda: np.zeros((0, FEET)))
     supports: slice | None = None
     new_rates: tuple[float, float] | None = None
     plates: float = 1.0
@@ -103,13 +107,12 @@ class ErrorCovariance:
     @cached_property
     def size(self) -> Array:
         """(N,) by which errors of the filter's kind are smaller than P says, √κ."""
-        nv, size = len(self.information), np.ones(len(self.P))
-        everything = len(self.seen) == nv
-        for n, new in enumerate((self.new, *(self.new_rates or (self.new, self.new)))):
-            size[slice(n * nv, n * nv + nv) if everything else n * nv + self.seen] = new**0.5
-        for foot in (0, 1):
-            known = self.new**0.5 if foot in self.free else self.plates
-            size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = known
+        layout, size = self.layout, np.ones(self.layout.size)
+        everything, rates = len(self.seen) == layout.nv, self.new_rates or (self.new, self.new)
+        for part, new in zip((layout.q, layout.v, layout.a), (self.new, *rates), strict=True):
+            size[part if everything else part.start + self.seen] = new**0.5
+        for foot, part in enumerate(layout.feet):
+            size[part] = self.new**0.5 if foot in self.free else self.plates
         if self.supports is not None:
             size[self.supports] = self.new**0.5
         return size
@@ -117,20 +120,25 @@ class ErrorCovariance:
     @cached_property
     def added(self) -> Array:
         """(k, N) roots of what is added for lags and for wrenches that may be there or not."""
-        nv, edges = len(self.information), len(self.edges)
-        added = np.zeros((edges + (self.lag is not None), len(self.P)))
-        added[:edges, 3 * nv : 3 * nv + 12] = self.edges
+        edges = len(self.edges)
+        added = np.zeros((edges + (self.lag is not None), self.layout.size))
+        added[:edges, self.layout.wrench] = self.edges
         if self.lag is not None:
-            added[-1, 2 * nv : 2 * nv + len(self.lag)] = self.lag
+            added[-1, self._late] = self.lag
         return added
+
+    @property
+    def _late(self) -> slice:
+        """Components that lag: accelerations, wrenches of the feet, and on other parts where they are stated."""
+        first = self.layout.a.start
+        return slice(first, first if self.lag is None else first + len(self.lag))
 
     @cached_property
     def difference(self) -> Array | None:
         """(6, 6) what is added to both feet's wrenches, and taken from between them; None for one foot or none."""
         if len(self.free) < 2 or self.sharing == 1.0:
             return None
-        first = 3 * len(self.information)
-        right, left = slice(first, first + 6), slice(first + 6, first + 12)
+        right, left = self.layout.feet
         between = self.P[right, left]
         half = 0.25 * (self.P[right, right] + self.P[left, left] - between - between.T)
         return np.asarray((self.sharing**2 - 1.0) * self.new * half)
@@ -163,77 +171,72 @@ class ErrorCovariance:
     @property
     def position(self) -> Array:
         """(nv, nv) block of Σ of the configuration."""
-        nv, seen = len(self.information), self.seen
-        size = self.size[:nv]
-        block = self.P[:nv, :nv] * size
-        block *= size[:, None]
+        q, seen = self.layout.q, self.seen
+        block = self.P[q, q] * self.size[q]
+        block *= self.size[q, None]
         block[seen[:, None], seen] += self.repeated
         return block
 
     @property
     def position_variance(self) -> Array:
         """(nv,) diagonal of Σ of the configuration."""
-        return self._variance(0, 1.0)
+        return self._variance(self.layout.q, 1.0)
 
     @property
     def velocity_variance(self) -> Array:
         """(nv,) diagonal of Σ of the velocities."""
-        return self._variance(len(self.information), self.rate_rad_s**2)
+        return self._variance(self.layout.v, self.rate_rad_s**2)
 
-    def _variance(self, first: int, share: float) -> Array:
-        mine = slice(first, first + len(self.information))
-        found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
+    def _variance(self, part: slice, share: float) -> Array:
+        found: Array = np.diagonal(self.P)[part] * self.size[part] ** 2
         found[self.seen] += share * self._repeated_variance
         return found
 
     def variance_of(self, T: Array) -> Array:
         """(m,) diagonal of T Σ Tᵀ for quantities T (m, n) of its first n components, without Σ."""
-        nv, rate = len(self.information), self.rate_rad_s
-        n = T.shape[1]
+        layout, rate, n = self.layout, self.rate_rad_s, T.shape[1]
         sized = T * self.size[:n]
         variance: Array = np.einsum("ij,ij->i", sized @ self.P[:n, :n], sized)
         # Positions and accelerations swing in opposition, velocities between them.
-        swing = T[:, :nv] - rate**2 * T[:, 2 * nv : 3 * nv]
-        quarter = rate * T[:, nv : 2 * nv]
-        parts = np.concatenate([swing, quarter])
-        repeated = (parts[:, self.seen] if len(self.seen) < nv else parts) @ self._root.T
+        parts = np.concatenate([T[:, layout.q] - rate**2 * T[:, layout.a], rate * T[:, layout.v]])
+        repeated = (parts[:, self.seen] if len(self.seen) < layout.nv else parts) @ self._root.T
         squared = np.einsum("ij,ij->i", repeated, repeated)
         variance += self.skin * (squared[: len(T)] + squared[len(T) :])
-        if n < 3 * nv + 12:
+        if n < layout.wrench.stop:
             return variance
         if self.difference is not None:
-            apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 : 3 * nv + 12]
+            right, left = layout.feet
+            apart = T[:, right] - T[:, left]
             variance += np.einsum("ij,ij->i", apart @ self.difference, apart)
         if self.lag is not None:
-            late = T[:, 2 * nv : 2 * nv + len(self.lag)]
+            late = T[:, self._late]
             variance += (late @ self.lag[: late.shape[1]]) ** 2
-        return variance + np.square(T[:, 3 * nv : 3 * nv + 12] @ self.edges.T).sum(axis=1)
+        return variance + np.square(T[:, layout.wrench] @ self.edges.T).sum(axis=1)
 
     @property
     def wrench_variance(self) -> Array:
         """(12,) diagonal of Σ of both feet's wrenches."""
-        mine = slice(3 * len(self.information), 3 * len(self.information) + 12)
+        mine, first = self.layout.wrench, self.layout.a.start
         found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
         if self.difference is not None:
             found += np.tile(np.diagonal(self.difference), 2)
         found += np.square(self.edges).sum(axis=0)
-        nv = len(self.information)
-        return found if self.lag is None else found + self.lag[nv : nv + 12] ** 2
+        return found if self.lag is None else found + self.lag[mine.start - first : mine.stop - first] ** 2
 
     def covariance(self) -> Array:
         """(N, N) Σ."""
-        nv, rate, C = len(self.information), self.rate_rad_s, self.repeated
+        layout, rate, C = self.layout, self.rate_rad_s, self.repeated
         whole = self.P * self.size * self.size[:, None]
-        rates = (1.0, rate, rate**2)
-        for first, second, sign in ((0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (0, 2, -1.0), (2, 0, -1.0)):
-            own = np.ix_(first * nv + self.seen, second * nv + self.seen)
-            whole[own] += sign * rates[first] * rates[second] * C
+        q, v, a = (part.start + self.seen for part in (layout.q, layout.v, layout.a))
+        swing = rate**2 * C
+        for part, own in ((q, C), (v, swing), (a, rate**2 * swing)):
+            whole[np.ix_(part, part)] += own
+        whole[np.ix_(q, a)] -= swing
+        whole[np.ix_(a, q)] -= swing
+        feet, late = layout.wrench, self._late
         if self.difference is not None:
-            wrenches = slice(3 * nv, 3 * nv + 12)
-            whole[wrenches, wrenches] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self.difference)
+            whole[feet, feet] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self.difference)
         if self.lag is not None:
-            late = slice(2 * nv, 2 * nv + len(self.lag))
             whole[late, late] += np.outer(self.lag, self.lag)
-        feet = slice(3 * nv, 3 * nv + 12)
         whole[feet, feet] += self.edges.T @ self.edges
         return whole

@@ -1,7 +1,7 @@
 """The filter: a plant predicts, blocks decide and speak, one update follows; no block is known here by name.
 
-    x⁻ = f(x),  P⁻ = Φ P Φᵀ + Q                        plant
-    Λ = Σ HᵀR⁻¹H,  λ = Σ HᵀR⁻¹y                         blocks, linearised at x⁻
+    x⁻ = f(x),  P⁻ = Φ P Φᵀ + Q                        plant (mbkf.filters.plant)
+    Λ = Σ HᵀR⁻¹H,  λ = Σ HᵀR⁻¹y                         blocks, linearised at x⁻ (mbkf.sensors.block)
     P⁺ = (P⁻⁻¹ + Λ)⁻¹,  x⁺ = x⁻ ⊕ P⁺ λ                  update, without inverting P⁻ (mbkf.numerics.information_update)
 
 The kinematic, torque and dynamic filters are this class with another plant and other blocks.
@@ -10,76 +10,25 @@ The kinematic, torque and dynamic filters are this class with another plant and 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import Any, Generic, NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.filters.cached import Cached
 from mbkf.filters.innovations import Innovations, InnovationSpreads
-from mbkf.filters.once import Once
+from mbkf.filters.plant import PlantOf, StateT
 from mbkf.filters.readings import Readings, summed
 from mbkf.kernel.covariance import correction, informed_with_rows
-from mbkf.model.body import Body
-from mbkf.numerics.kalman import correct
 from mbkf.numerics.running_spread import RunningSpread
-from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State
-from mbkf.sensors.layout import Layout
+from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint
 
 Update = Callable[[Array, Array, Array], Array]
 """P⁺ (N, N) of a prior P⁻ (N, N), information Λ (n, n) on its first components and whitened rows (k, N)."""
 
-StateT = TypeVar("StateT", bound=State)
-
-
-class Plant(Protocol[StateT]):
-    """How a state moves from one frame to the next.
-
-    Attributes:
-        model: The body that moves, to which blocks are bound.
-        layout: Slices of its tangent state.
-        dt_s: Time step.
-    """
-
-    model: Body
-    layout: Layout
-    dt_s: float
-
-    def begin(self) -> Any:
-        """Memory before the first frame."""
-
-    def noise(self, memory: Any) -> Any:
-        """Process noise of the next step, adapted to what the motion was like."""
-
-    def predict(self, state: StateT, noise: Any) -> StateT:
-        """The state one step later, P⁻ = Φ P Φᵀ + Q exactly symmetric, new and in Fortran order."""
-
-    def transition(self, state: StateT) -> Array:
-        """(N, N) Φ at a state."""
-
-    def retract(self, state: StateT, step: Array, P: Array) -> StateT:
-        """The state moved along its tangent space.
-
-        Args:
-            state: The state.
-            step: (N,) tangent vector.
-            P: (N, N) covariance of the moved state.
-        """
-
-    def difference(self, origin: StateT, state: StateT) -> Array:
-        """(N,) tangent vector from one state's mean to another's."""
-
-    def remember(self, posterior: StateT, notes: Notes, memory: Any) -> Any:
-        """Memory for the next frame.
-
-        Args:
-            posterior: Corrected state.
-            notes: What the blocks noted of the frame.
-            memory: Of the frame before.
-        """
-
 
 class Memory(NamedTuple):
-    """What a frame leaves for the next besides its estimate: memories of plant and blocks, and spreads of readings."""
+    """Carried to the next frame besides the estimate: memories of plant and blocks, and spreads of readings."""
 
     plant: Any
     blocks: Sequence[Any]
@@ -87,7 +36,7 @@ class Memory(NamedTuple):
 
 
 class Prior(NamedTuple, Generic[StateT]):
-    """A predicted state with what blocks worked out at it, before the frame is there.
+    """A predicted state with the work of the blocks that needs no frame.
 
     Attributes:
         state: x⁻ and P⁻.
@@ -101,12 +50,12 @@ class Prior(NamedTuple, Generic[StateT]):
 
 
 class Decisions(NamedTuple):
-    """What a frame's readings were taken to be; with it a smoother linearises the same readings elsewhere.
+    """Decisions on a frame's readings; with them a smoother linearises the same readings elsewhere.
 
     Attributes:
         noise: Process noise of the step into the frame.
         blocks: Decision of each block.
-        notes: What blocks shared.
+        notes: Notes that the blocks shared.
     """
 
     noise: Any
@@ -115,42 +64,42 @@ class Decisions(NamedTuple):
 
 
 class Step(NamedTuple, Generic[StateT]):
-    """One step of a filter; what only the next step or a report needs is worked out when asked for.
+    """One step of a filter.
 
     Attributes:
         state: Posterior.
         prior: Prediction it came from.
-        decisions: What the frame's readings were taken to be.
-        readings: They, linearised at the prior.
-        recall: Makes the memory for the next step, once, when it is first asked for: after the answer.
-        judge: Makes its innovations against what is expected of them, once, when they are first asked for.
+        decisions: Decisions on the frame's readings.
+        readings: The readings, linearised at the prior.
+        cached_memory: Memory for the next step, computed when first asked for: after the answer.
+        cached_innovations: Innovations against their expected spread, likewise.
     """
 
     state: StateT
     prior: Prior[StateT]
     decisions: Decisions
     readings: Readings
-    recall: Callable[[], Memory]
-    judge: Callable[[], Innovations]
+    cached_memory: Cached[Memory]
+    cached_innovations: Cached[Innovations]
 
     @property
     def memory(self) -> Memory:
-        """For the next step."""
-        return self.recall()
+        """Memory for the next step."""
+        return self.cached_memory()
 
     @property
     def innovations(self) -> Innovations:
-        """The frame's innovations against what one frame's are expected to be."""
-        return self.judge()
+        """The frame's innovations against their expected spread."""
+        return self.cached_innovations()
 
     @property
     def tracked(self) -> bool:
-        """Whether enough instruments read, and the prediction was not far from most markers."""
+        """True where enough instruments read, and the prediction was not far from most markers."""
         return self.decisions.notes.observed and not self.decisions.notes.lost
 
     @property
     def lost(self) -> bool:
-        """Whether most markers, and at least half of all, were seen far from where they were predicted."""
+        """True where most markers, and at least half of all, were seen far from their prediction."""
         notes = self.decisions.notes
         return notes.lost and 2 * int(np.count_nonzero(notes.seen)) >= len(notes.seen)
 
@@ -160,40 +109,23 @@ class Step(NamedTuple, Generic[StateT]):
         notes = self.decisions.notes
         return notes.seen & ~notes.trusted if notes.trusted is not notes.seen else np.zeros_like(notes.seen)
 
-    @property
-    def nis_readings(self) -> int:
-        """Number of readings in :attr:`nis`."""
-        return self.readings.instruments.readings + len(self.readings.counted[1])
-
-    @property
-    def nis(self) -> float:
-        """Normalised innovation squared of instruments and laws in the filter's own P and R; priors are no readings."""
-        (rows, values), known, P = self.readings.counted, self.readings.instruments, self.prior.state.P
-        if not len(values):
-            n = len(known.vector)
-            return correct(P[:n, :n], known).nis
-        after = correct(P, known)
-        innovation = values - rows @ after.step
-        S = rows @ after.covariance @ rows.T + np.eye(len(rows))
-        return after.nis + float(innovation @ np.linalg.solve(S, innovation))
-
 
 class Filter(Generic[StateT]):
     """Extended Kalman filter on a manifold.
 
     Attributes:
-        plant: How the state moves.
+        plant: Motion of the state.
         blocks: Instruments, laws and priors, in the order in which they decide.
         layout: Slices of the tangent state.
     """
 
     def __init__(
-        self, plant: Plant[StateT], blocks: Sequence[AnyBlock], update: Update = informed_with_rows
+        self, plant: PlantOf[StateT], blocks: Sequence[AnyBlock], update: Update = informed_with_rows
     ) -> None:
         """Makes the filter.
 
         Args:
-            plant: How the state moves.
+            plant: Motion of the state.
             blocks: Instruments, laws and priors, in the order in which they decide.
             update: Arithmetic of the update; all give the same up to rounding, and differ in speed.
         """
@@ -201,7 +133,7 @@ class Filter(Generic[StateT]):
         self._spreads = InnovationSpreads(self.blocks, plant.dt_s)
         for block in self.blocks:
             block.bind(self.layout, plant.model)
-        # Blocks that have something of their own to do; at these sizes empty calls count.
+        # Blocks that override a method; at these sizes empty calls count.
         self._inflating = self._with_own("inflate")
         self._reviewing = self._with_own("review")
         self._remembering = self._with_own("remember")
@@ -217,12 +149,12 @@ class Filter(Generic[StateT]):
         return Memory(self.plant.begin(), [block.begin() for block in self.blocks], self._spreads.begin())
 
     def predict(self, state: StateT, memory: Memory) -> Prior[StateT]:
-        """All that can be worked out before the frame is there."""
+        """The prior of the next frame, with all work that needs no frame."""
         noise = self.plant.noise(memory.plant)
         return self.prepared(self.plant.predict(state, noise), noise, memory)
 
-    def prepared(self, state: StateT, noise: Any, memory: Memory) -> Prior[StateT]:
-        """A state as a prior: what blocks work out at it without the frame.
+    def prepared(self, state: StateT, noise: object, memory: Memory) -> Prior[StateT]:
+        """A state as a prior.
 
         Args:
             state: The state; its covariance is changed in place by :meth:`correct`.
@@ -238,8 +170,8 @@ class Filter(Generic[StateT]):
             points[k] = OperatingPoint(state, block.prepare(state, None if memory is None else memory[k]))
         return points
 
-    def prepared_by(self, kind: type[AnyBlock], prior: Prior[StateT]) -> Any:
-        """What the first block of a kind has worked out at a prior.
+    def prepared_by(self, kind: type[AnyBlock], prior: Prior[StateT]) -> object:
+        """Prepared work of the first block of a kind at a prior.
 
         Raises:
             LookupError: The filter has no such block.
@@ -258,7 +190,7 @@ class Filter(Generic[StateT]):
             state: Posterior of the frame before.
             memory: Of the frame before.
             frame: The readings.
-            prior: What :meth:`predict` made of state and memory; used up.
+            prior: Result of :meth:`predict` for state and memory, where it is known; used up.
         """
         return self.correct(prior or self.predict(state, memory), memory, frame)
 
@@ -271,45 +203,50 @@ class Filter(Generic[StateT]):
             frame: The readings.
         """
         state, points, notes = prior.state, prior.points, Notes()
-        chosen, said = [], []
+        decided, statements = [], []
         for block, at, kept in zip(self.blocks, points, memory.blocks, strict=True):
-            chosen.append(block.decide(at, frame, kept, notes))
-        self.inflate(state.P, chosen)
-        for block, at, one in zip(self.blocks, points, chosen, strict=True):
-            said.append(block.linearise(at, one))
-        readings = summed(self.blocks, said, self.layout)
+            decided.append(block.decide(at, frame, kept, notes))
+        self.inflate(state.P, decided)
+        for block, at, decision in zip(self.blocks, points, decided, strict=True):
+            statements.append(block.linearise(at, decision))
+        readings = summed(self.blocks, statements, self.layout)
         posterior = self._updated(state, readings)
-        again = [(k, block, block.review(posterior, chosen[k])) for k, block in self._reviewing]
-        for k, block, one in again:
-            if one is not None:
-                chosen[k], said[k] = one, block.linearise(points[k], one)
-        if any(one is not None for _, _, one in again):
-            readings = summed(self.blocks, said, self.layout)
+        reviews = [(k, block, block.review(posterior, decided[k])) for k, block in self._reviewing]
+        if any(decision is not None for _, _, decision in reviews):
+            for k, block, decision in reviews:
+                if decision is not None:
+                    decided[k], statements[k] = decision, block.linearise(points[k], decision)
+            readings = summed(self.blocks, statements, self.layout)
             posterior = self._updated(state, readings)
 
-        read = Once(lambda: self._spreads.read(chosen, said))
-        judge = Once(lambda: self._spreads.innovations(memory.spreads, read()))
+        channels = Cached(lambda: self._spreads.read(decided, statements))
 
         def remembered() -> Memory:
             kept = list(memory.blocks)
             for k, block in self._remembering:
-                kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
-            spreads = self._spreads.after(memory.spreads, read())
+                kept[k] = block.remember(posterior, points[k], decided[k], kept[k])
+            spreads = self._spreads.after(memory.spreads, channels())
             return Memory(self.plant.remember(posterior, notes, memory.plant), kept, spreads)
 
-        decisions = Decisions(prior.noise, chosen, notes)
-        return Step(posterior, prior, decisions, readings, Once(remembered), judge)
+        return Step(
+            posterior,
+            prior,
+            Decisions(prior.noise, decided, notes),
+            readings,
+            Cached(remembered),
+            Cached(lambda: self._spreads.innovations(memory.spreads, channels())),
+        )
 
-    def inflate(self, P: Array, chosen: Sequence[Any]) -> None:
+    def inflate(self, P: Array, decided: Sequence[object]) -> None:
         """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""
         for k, block in self._inflating:
-            block.inflate(P, chosen[k])
+            block.inflate(P, decided[k])
 
     def linearise(self, state: StateT, decisions: Decisions) -> Readings:
         """A frame's readings, decided before, linearised at another state (for smoothing)."""
-        asked = zip(self.blocks, self._points(state, None), decisions.blocks, strict=True)
-        said = [block.linearise(at, one) for block, at, one in asked]
-        return summed(self.blocks, said, self.layout)
+        known = zip(self.blocks, self._points(state, None), decisions.blocks, strict=True)
+        statements = [block.linearise(at, decision) for block, at, decision in known]
+        return summed(self.blocks, statements, self.layout)
 
     def _updated(self, prior: StateT, readings: Readings) -> StateT:
         P = self.update(prior.P, readings.matrix, readings.rows)

@@ -1,4 +1,4 @@
-"""How probable a trial is under a filter's settings: the log-likelihood of its innovations, frame by frame.
+"""Log-likelihood of a trial's innovations under a filter's settings, frame by frame.
 
 So that settings are compared on the same readings, a marker that the gate refuses is not left out but counts as an
 outlier that may lie anywhere in a cubic metre.
@@ -8,19 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic.tracking import DynamicStep, DynamicTracking
-from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
+from mbkf.filters.estimate import Recording
 from mbkf.filters.filter import Filter, Step
-from mbkf.filters.kinematic.tracking import KinematicRecord, KinematicStep, KinematicTracking
+from mbkf.filters.plant import StateT
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
-from mbkf.sensors.block import StateT
 
 OUTLIER = 0.0
 """Log density of an outlier's coordinate, uniform over a metre."""
@@ -31,10 +28,10 @@ class TrialLikelihood:
     """Log-likelihood of a trial's innovations, nats.
 
     Attributes:
-        markers: (T,) of all markers seen; what is refused, or seen before the filter runs, counts as outliers.
+        markers: (T,) of all markers seen; those refused, or seen before the filter runs, count as outliers.
         loads: (T,) of plates and Newton's law given the markers.
-        marker_readings, load_readings: (T,) numbers read; of loads, those the filter made use of.
-        followed: (T,) whether the filter told of a frame.
+        marker_readings, load_readings: (T,) numbers read; of loads, those that the filter used.
+        followed: (T,) frames of which the filter has an estimate.
     """
 
     markers: Array
@@ -55,48 +52,26 @@ def trial_likelihood(
     """Runs a filter over a trial for its likelihood.
 
     Args:
-        filter: A kinematic or dynamic filter.
-        recording: What the instruments read.
+        filter: The filter.
+        recording: Readings of the instruments.
         progress: Called with frames done and frames in all.
 
     Raises:
-        InvalidInput: It is another filter.
-        LinAlgError: It diverged so far that its covariance is none.
+        LinAlgError: The filter diverged so far that its covariance is not positive.
     """
     seen: BoolArray = np.asarray(~np.isnan(recording.markers_m).any(axis=2))
     frames = len(seen)
     markers, loads = OUTLIER * 3.0 * seen.sum(axis=1), np.zeros(frames)
-    load_readings = np.zeros(frames, dtype=int)
-    told = np.zeros(frames, dtype=bool)
+    load_readings, known = np.zeros(frames, dtype=int), np.zeros(frames, dtype=bool)
     for t, estimate, _ in followed(filter, recording):
-        told[t] = True
-        if not estimate.started:
-            found, load_readings[t] = frame_likelihood(filter, estimate)
+        known[t], step = True, estimate.record.step
+        if not estimate.started and step is not None:
+            found, load_readings[t] = step_likelihood(filter.kalman, step)
             outliers = 3.0 * np.count_nonzero(estimate.refused)
             markers[t], loads[t] = found.readings + OUTLIER * outliers, found.rows
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
-    return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, told)
-
-
-def frame_likelihood(filter: TrackingFilter, estimate: Posterior) -> tuple[LogLikelihood, int]:
-    """Of one frame's markers inside the gate, and of its loads and how many numbers those are.
-
-    Args:
-        filter: A kinematic or dynamic filter.
-        estimate: Its posterior of the frame, not a start.
-
-    Raises:
-        InvalidInput: It is another filter.
-        LinAlgError: The prior covariance is none.
-    """
-    if isinstance(filter, DynamicTracking):
-        return step_likelihood(filter.kalman, cast("DynamicStep", estimate.inner))
-    if isinstance(filter, KinematicTracking):
-        return step_likelihood(
-            filter.kalman, cast("KinematicStep", cast("KinematicRecord", estimate.inner).step)
-        )
-    raise InvalidInput("the likelihood is known of the kinematic and the dynamic filter only")
+    return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, known)
 
 
 def step_likelihood(kalman: Filter[StateT], step: Step[StateT]) -> tuple[LogLikelihood, int]:

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
-from mbkf.filters.estimate import Posterior, TrackingFilter
+from mbkf.filters.estimate import Posterior
 from mbkf.filters.spread import ASKED, Spread
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.estimates import TrackEstimates
 from mbkf.io.quantities import AXES, quantities
 

@@ -74,7 +74,7 @@ def _compiled(
     kernel = library()
     if kernel is None:
         return None
-    nv = len(errors.information)
+    layout = errors.layout
     failed, diagonal, torque, height, blocks = kernel.error_variances(
         errors.P,
         np.ascontiguousarray(errors.information),
@@ -89,9 +89,10 @@ def _compiled(
     )
     if failed:
         return None
-    wrench = diagonal[3 * nv : 3 * nv + 12]
+    wrench = diagonal[layout.wrench]
     if errors.difference is not None:
         wrench += np.tile(np.diagonal(errors.difference), 2)
-        apart = by_state[:, 3 * nv : 3 * nv + 6] - by_state[:, 3 * nv + 6 : 3 * nv + 12]
+        right, left = layout.feet
+        apart = by_state[:, right] - by_state[:, left]
         torque += np.einsum("ij,ij->i", apart @ errors.difference, apart)
-    return StateVariances(diagonal[:nv], diagonal[nv : 2 * nv], wrench, torque, height, blocks)
+    return StateVariances(diagonal[layout.q], diagonal[layout.v], wrench, torque, height, blocks)

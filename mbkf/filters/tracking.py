@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.errors import NotObservable
 from mbkf.filters.body_errors import BodyErrors
-from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
 from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
 from mbkf.io.quantities import quantities
 
@@ -61,7 +62,7 @@ def track(
 
     later: FixedLag | FixedLagSmoother = FixedLag(filter, lag_s)
     if smoothing is not None:
-        later = FixedLagSmoother(filter, recording, smoothing)
+        later = FixedLagSmoother(filter, smoothing)
     for t, fresh, seconds in followed(filter, recording):
         row = rows[t : t + 1]
         recorder.step(row, fresh, seconds)

@@ -1,9 +1,9 @@
 """A filter's way through a trial, frame by frame: start, steps, and a restart after a loss.
 
 Where a frame shows the body elsewhere than it was predicted (it was moved while it was hidden, or the capture has a
-cut), or the estimate is no person, the frame is asked for again and starts anew: a filter would take a jump for a
-movement, and its readings would correct the frames before. Where what comes of that is no person either, the frame has
-no estimate, and the next one starts anew.
+cut), or the estimate is implausible (:mod:`mbkf.filters.plausibility`), the same frame starts anew: a filter would take
+a jump for a movement, and its readings would correct the frames before. Where the start is implausible, too, the frame
+has no estimate, and the next one starts anew.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
-from mbkf.filters.person import is_person
+from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.plausibility import plausible
+from mbkf.filters.tracking_filter import TrackingFilter
 
 
 class TrackingLoop:
@@ -22,26 +23,26 @@ class TrackingLoop:
 
     Attributes:
         filter: The filter.
-        estimate: The latest estimate, None before the first start and after one that was no person.
-        again: Whether the latest frame has no answer yet and is to be asked for again, with those after it.
-        no_person: Whether the latest frame has no estimate since that was no person.
+        estimate: The latest estimate, None before the first start and after an implausible one.
+        again: The latest frame has no answer yet and is to be given again, with those after it.
+        implausible: The latest frame has no estimate, since its start was implausible.
     """
 
     def __init__(self, filter: TrackingFilter) -> None:
         self.filter = filter
         self.estimate: Posterior | None = None
-        self.again = self.no_person = False
+        self.again = self.implausible = False
         self._lost_for = 0
         self._prediction: Prediction | None = None
 
     @property
     def must_start(self) -> bool:
-        """Whether the next frame tries a start, which looks at the frames after it, too."""
+        """True where the next frame tries a start, which needs the frames after it, too."""
         lost = self._lost_for * self.filter.dt_s > self.filter.restart_after_s
         return self.estimate is None or lost or self.again
 
     def predict(self) -> Prediction | None:
-        """What the next frame should show, None where it has to start; the step into that frame goes on from it."""
+        """Prediction of the next frame, None where it has to start; the step into that frame goes on from it."""
         if self.estimate is None or self.must_start:
             return None
         if self._prediction is None:
@@ -53,14 +54,14 @@ class TrackingLoop:
         before, fresh = self.estimate, None
         prediction, self._prediction = self._prediction, None
         starting, self.again = self.must_start, False
-        with np.errstate(all="ignore"):  # what comes of it is looked at
+        with np.errstate(all="ignore"):  # the result is checked
             if starting:
                 fresh = self.filter.start(recording, t, None if before is None else before.q)
             if fresh is None and before is not None:
                 fresh = self.filter.step(before, recording, t, prediction)
-        astray = fresh is not None and not is_person(fresh, self.filter.model)
-        self.no_person = astray and starting
-        if self.no_person:
+        astray = fresh is not None and not plausible(fresh, self.filter.model)
+        self.implausible = astray and starting
+        if self.implausible:
             self.forget()
             return None
         if fresh is not None and not starting and (astray or fresh.lost):
@@ -72,7 +73,7 @@ class TrackingLoop:
         return fresh
 
     def forget(self) -> None:
-        """Nothing is known any more; the next frame has to start anew."""
+        """Drops the estimate; the next frame has to start anew."""
         self.estimate, self._lost_for, self._prediction, self.again = None, 0, None, False
 
 

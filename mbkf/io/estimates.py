@@ -118,4 +118,4 @@ class TrackEstimates(Estimates):
     )
     ball_offset: Array = offset("ball_covariance")
     known: BoolArray = flag("time", "there is an estimate")
-    uncorrected: BoolArray = flag("time", "later frames were not used, see :mod:`mbkf.filters.person`")
+    uncorrected: BoolArray = flag("time", "later frames were not used, see :mod:`mbkf.filters.plausibility`")

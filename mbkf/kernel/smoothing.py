@@ -6,8 +6,8 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import library
-from mbkf.numerics.rate_transition import RateTransition
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.numerics.transition import RateTransition, Transition
 
 
 class SparseBackwardPass(BackwardPass):
@@ -58,9 +58,7 @@ class SparseBackwardPass(BackwardPass):
         """
         n = len(matrix)
         if self.curvature is not None and self._kernel is None:
-            information = rows.T @ rows
-            information[:n, :n] += matrix
-            self.through_readings(P, information, vector)
+            super().through_parts(P, matrix, rows, vector)
             return
         if self.curvature is not None and self._kernel is not None:
             self._smooth(P, self.curvature)
@@ -74,13 +72,18 @@ class SparseBackwardPass(BackwardPass):
         self.gradient = kept - (rows @ change) @ rows
         self.gradient[:n] -= matrix @ change[:n]
 
-    def through_motion(self, transition: RateTransition) -> None:
-        """From before a frame's readings to after those of the frame before it, as :meth:`through_plant`."""
-        if self.curvature is not None and self._kernel is None:
-            self.through_plant(transition.matrix(len(self.gradient)))
-            return
-        self.gradient = transition.backward(self.gradient)
-        if self.curvature is not None and self._kernel is not None:
+    def through_motion(self, transition: Transition) -> None:
+        """From before a frame's readings to after those of the frame before it.
+
+        A transition that is no :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
+        """
+        if self.curvature is None:
+            self.gradient = transition.backward(self.gradient)
+        elif self._kernel is None or not isinstance(transition, RateTransition):
+            super().through_motion(transition)
+            self._of = None
+        else:
+            self.gradient = transition.backward(self.gradient)
             A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
             self._kernel.curvature_before_motion(
                 self.curvature, A, B, transition.joints, transition.push, transition.rates, self._spare

@@ -155,7 +155,7 @@ class StateFunctions(Protocol):
         before: Out[Array, "N N symmetric"],
         /,
     ) -> None:
-        """Writes Φᵀ L Φ with the transition Φ of :mod:`mbkf.numerics.rate_transition`.
+        """Writes Φᵀ L Φ with the transition Φ of :mod:`mbkf.numerics.transition`.
 
         Args:
             L: Curvature after the step.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.transition import Transition
 
 
 class BackwardPass:
@@ -57,6 +58,23 @@ class BackwardPass:
             C.reshape(-1)[:: len(C) + 1] += 1.0
             curvature = C.T @ (self.curvature @ C + information)
             self.curvature = 0.5 * (curvature + curvature.T)
+
+    def through_parts(self, P: Array, matrix: Array, rows: Array, vector: Array) -> None:
+        """From after a frame's readings to before them, as :meth:`through_readings`.
+
+        Args:
+            P: (N, N) posterior covariance.
+            matrix: (n, n) information on the first n components.
+            rows: (m, N) whitened Jacobian of the other readings: Λ is ``matrix`` on the first n, and rowsᵀ rows.
+            vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
+        """
+        information = rows.T @ rows
+        information[: len(matrix), : len(matrix)] += matrix
+        self.through_readings(P, information, vector)
+
+    def through_motion(self, transition: Transition) -> None:
+        """From before a frame's readings to after those of the frame before it."""
+        self.through_plant(transition.matrix(len(self.gradient)))
 
     def through_plant(self, transition: Array) -> None:
         """From before a frame's readings to after those of the frame before it; ``transition`` is Φ (N, N)."""

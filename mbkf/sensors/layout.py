@@ -1,4 +1,4 @@
-"""Which slice of a filter's tangent state holds what: positions, velocities, and whatever plant and blocks add."""
+"""Names of the parts of a filter's tangent state, and where they lie; sizes of the state are stated here alone."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ WRENCH = "wrench"
 SUPPORT = "support"
 """Name of the slice of the wrench on all other parts: force N, moment N m about the world's origin."""
 
+FOOT, FEET = 6, 12
+"""Components of a foot's wrench, and of both feet's."""
+
 UNSEEN_MOMENT = "unseen moment"
 """Name of the slice of the moment of what no instrument shows: N m about the root's origin, in its axes."""
 
@@ -28,7 +31,7 @@ class ExtraState(NamedTuple):
         name: Name of its slice in the layout.
         start: (k,) mean before the first reading.
         start_sd: (k,) standard deviation of that.
-        walk_sd: (k,) standard deviation of what a second adds, unit/√s.
+        walk_sd: (k,) standard deviation of the change in a second, unit/√s.
     """
 
     name: str
@@ -41,13 +44,11 @@ class ExtraState(NamedTuple):
 class Layout:
     """Named slices of a tangent state of ``size`` components, in order and without gaps.
 
-    A slice may also name the end of another (:meth:`with_last`).
-
     Attributes:
         nv: Dofs of the body.
         slices: Slice of each part by its name.
         size: Components in all, N.
-        extras: What blocks have added, the last slices.
+        extras: States that blocks add, the last slices.
     """
 
     nv: int
@@ -64,6 +65,30 @@ class Layout:
             first += size
         return cls(nv, slices, first)
 
+    @classmethod
+    def kinematic(cls, nv: int) -> Layout:
+        """State of the kinematic filter: q, v."""
+        return cls.of(nv, q=nv, v=nv)
+
+    @classmethod
+    def dynamic(cls, nv: int, extras: Sequence[ExtraState] = ()) -> Layout:
+        """State of the dynamic filter: q, v, a, wrenches of the feet, and states that blocks add."""
+        return cls.of(nv, q=nv, v=nv, a=nv, **{WRENCH: FEET}).with_extras(extras)
+
+    @classmethod
+    def forced(cls, nv: int, nu: int, wrenches: bool = False) -> Layout:
+        """State of the torque filter: q, v, u.
+
+        Args:
+            nv: Dofs of the body.
+            nu: Forces u.
+            wrenches: The last forces are the wrenches of the feet.
+        """
+        layout = cls.of(nv, q=nv, v=nv, u=nu)
+        if wrenches:
+            layout.slices[WRENCH] = slice(layout.size - FEET, layout.size)
+        return layout
+
     def with_extras(self, extras: Sequence[ExtraState]) -> Layout:
         """The layout with further states at its end.
 
@@ -77,12 +102,6 @@ class Layout:
             slices[extra.name] = slice(first, first + len(extra.start))
             first += len(extra.start)
         return Layout(self.nv, slices, first, (*self.extras, *extras))
-
-    def with_last(self, name: str, size: int) -> Layout:
-        """The layout with a name of their own for its last ``size`` components."""
-        return Layout(
-            self.nv, {**self.slices, name: slice(self.size - size, self.size)}, self.size, self.extras
-        )
 
     def __getitem__(self, name: str) -> slice:
         """The slice of a part.
@@ -113,14 +132,29 @@ class Layout:
         return self.slices["a"]
 
     @property
+    def motion(self) -> slice:
+        """Positions and velocities, 2 nv."""
+        return slice(self.q.start, self.v.stop)
+
+    @property
     def wrench(self) -> slice:
         """Wrenches of right and left foot, 12."""
         return self.slices[WRENCH]
 
+    @property
+    def feet(self) -> tuple[slice, slice]:
+        """Wrench of the right foot, and of the left one, 6 each."""
+        first = self.wrench.start
+        return slice(first, first + FOOT), slice(first + FOOT, first + FEET)
+
+    @property
+    def extra(self) -> slice:
+        """States that blocks add."""
+        return slice(self.size - sum(len(extra.start) for extra in self.extras), self.size)
+
     def extra_index(self, name: str) -> slice:
         """Where a part added by a block lies in the vector of all such parts (``state.extra``)."""
-        first = self.size - sum(len(extra.start) for extra in self.extras)
-        own = self[name]
+        first, own = self.extra.start, self[name]
         return slice(own.start - first, own.stop - first)
 
     def start(self) -> tuple[Array, Array]:

@@ -15,9 +15,10 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import ShapeError
 from mbkf.filters.body_errors import BodyErrorRoots
-from mbkf.filters.estimate import Posterior, TrackingFilter
+from mbkf.filters.estimate import Posterior
 from mbkf.filters.record import HeldErrors
 from mbkf.filters.spread import Spread
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import dof_names

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.filters.error_covariance import ErrorCovariance
+from mbkf.sensors.layout import Layout
 
 NV = 5
-EVERYBODY = np.arange(NV)
+EVERYBODY, LAYOUT = np.arange(NV), Layout.dynamic(NV)
 
 
 def made(seed):
@@ -23,7 +24,7 @@ def made(seed):
 def test_it_is_symmetric_and_positive(seed, new, rate):
     rng, P, information = made(seed)
     seen = np.flatnonzero(rng.random(NV) > 0.3)
-    stated = ErrorCovariance(P, information, seen, 0.2, new, rate).covariance()
+    stated = ErrorCovariance(LAYOUT, P, information, seen, 0.2, new, rate).covariance()
     np.testing.assert_allclose(stated, stated.T, rtol=1e-12, atol=1e-9 * np.abs(stated).max())
     assert np.linalg.eigvalsh(stated).min() > -1e-9 * np.abs(stated).max()
 
@@ -32,7 +33,7 @@ def test_it_is_symmetric_and_positive(seed, new, rate):
 def test_parts_are_those_of_the_whole(seed, new, rate):
     """What is read off without the whole covariance is what the whole says."""
     rng, P, information = made(seed)
-    errors = ErrorCovariance(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
+    errors = ErrorCovariance(LAYOUT, P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
     free = [(), (0,), (1,), (0, 1)][seed % 4]
     errors = replace(
         errors,
@@ -57,12 +58,12 @@ def test_a_frame_that_says_nothing_of_a_joint_says_so():
     """Where nothing is known of a seen dof its information cannot be inverted: LinAlgError, nothing made up."""
     _, P, _ = made(4)
     with pytest.raises(np.linalg.LinAlgError):
-        ErrorCovariance(P, np.zeros((NV, NV)), EVERYBODY, 0.2, 0.04, 4.0).covariance()
+        ErrorCovariance(LAYOUT, P, np.zeros((NV, NV)), EVERYBODY, 0.2, 0.04, 4.0).covariance()
 
 
 def test_without_skin_it_is_the_share_that_is_new():
     _, P, information = made(1)
-    stated = ErrorCovariance(P, information, EVERYBODY, 0.0, 0.04, 4.0).covariance()
+    stated = ErrorCovariance(LAYOUT, P, information, EVERYBODY, 0.0, 0.04, 4.0).covariance()
     np.testing.assert_allclose(stated[: 3 * NV, : 3 * NV], 0.04 * P[: 3 * NV, : 3 * NV])
     np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :], P[3 * NV :, 3 * NV :])
 
@@ -70,7 +71,7 @@ def test_without_skin_it_is_the_share_that_is_new():
 def test_unknown_joints_keep_what_the_filter_says():
     _, P, information = made(2)
     unknown = np.array([1, 3])
-    stated = ErrorCovariance(P, information, np.array([0, 2, 4]), 0.3, 0.04, 4.0).covariance()
+    stated = ErrorCovariance(LAYOUT, P, information, np.array([0, 2, 4]), 0.3, 0.04, 4.0).covariance()
     for block in (0, NV, 2 * NV):
         own = np.ix_(block + unknown, block + unknown)
         np.testing.assert_array_equal(stated[own], P[own])
@@ -87,7 +88,7 @@ def test_skin_that_swings_has_the_stated_covariance():
     x = np.hstack([skin @ fit.T, rates @ fit.T, -(rate**2) * skin @ fit.T])
     measured = x.T @ x / runs
     P = np.zeros((3 * NV + 12,) * 2)
-    errors = ErrorCovariance(P, H.T @ H, EVERYBODY, amplitude**2, 0.04, rate)
+    errors = ErrorCovariance(LAYOUT, P, H.T @ H, EVERYBODY, amplitude**2, 0.04, rate)
     stated = errors.covariance()[: 3 * NV, : 3 * NV]
     scale = np.sqrt(np.diag(stated))
     np.testing.assert_allclose(measured / scale / scale[:, None], stated / scale / scale[:, None], atol=0.03)
@@ -95,7 +96,7 @@ def test_skin_that_swings_has_the_stated_covariance():
 
 def test_reactions_without_a_plate_err_as_accelerations_do():
     _, P, information = made(3)
-    stated = ErrorCovariance(P, information, EVERYBODY, 0.0, 0.04, 4.0, free=(1,)).covariance()
+    stated = ErrorCovariance(LAYOUT, P, information, EVERYBODY, 0.0, 0.04, 4.0, free=(1,)).covariance()
     np.testing.assert_allclose(stated[3 * NV + 6 :, 3 * NV + 6 :], 0.04 * P[3 * NV + 6 :, 3 * NV + 6 :])
     np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :][:6, :6], P[3 * NV :, 3 * NV :][:6, :6])
 
@@ -104,7 +105,7 @@ def test_how_two_feet_share_is_known_less_well_than_their_sum():
     """The spread of the difference is larger by the factor, that of the sum is none the worse."""
     _, P, information = made(5)
     usual, wider = (
-        ErrorCovariance(P, information, EVERYBODY, 0.0, 0.04, 4.0, (0, 1), sharing).covariance()
+        ErrorCovariance(LAYOUT, P, information, EVERYBODY, 0.0, 0.04, 4.0, (0, 1), sharing).covariance()
         for sharing in (1.0, 2.5)
     )
     both, apart = (np.hstack([np.zeros((6, 3 * NV)), np.eye(6), sign * np.eye(6)]) for sign in (1.0, -1.0))
@@ -116,7 +117,7 @@ def test_what_lags_errs_along_its_change():
     """A torque to which the late parts add up to nothing has no further spread."""
     rng, P, information = made(6)
     lag = rng.normal(size=NV + 12)
-    usual = ErrorCovariance(P, information, EVERYBODY, 0.2, 0.04, 4.0, (0,))
+    usual = ErrorCovariance(LAYOUT, P, information, EVERYBODY, 0.2, 0.04, 4.0, (0,))
     late = replace(usual, lag=lag)
     T = np.concatenate([np.zeros(2 * NV), lag])[None]
     across = rng.normal(size=NV + 12)

@@ -26,8 +26,8 @@ class Counter:
     def __init__(self):
         self.asked = []
 
-    def smooth(self, run, recording, first, wanted):
-        self.asked.append((first, len(run), wanted))
+    def smooth(self, run, wanted):
+        self.asked.append((run[0].t, len(run), wanted))
         return list(run[:wanted])
 
 
@@ -44,7 +44,7 @@ class Told:
 def returned(frames, settings, starts=(0,)):
     """The frames that come back, with the frame that was put in when they did, and what was asked of the smoother."""
     tracking = Counter()
-    smoother = FixedLagSmoother(tracking, None, settings)
+    smoother = FixedLagSmoother(tracking, settings)
     found = []
     for t in frames:
         found += [(t, k, e) for k, e in smoother.push(t, Told(t, t in starts))]
@@ -62,7 +62,7 @@ def test_every_frame_comes_back_once_in_order(frames):
 def test_no_frame_waits_longer_than_the_lag():
     found, _ = returned(range(200), SHORT)
     waits = [t - k for t, k, _ in found]
-    assert max(waits) * DT <= SHORT.lag_s == pytest.approx(0.3)
+    assert max(waits) * DT <= SHORT.window_s + SHORT.ahead_s == pytest.approx(0.3)
     assert max(waits) == 29  # the frame itself is the 30th
     assert min(waits[:-40]) == 20  # every one is looked ahead of
 
@@ -81,11 +81,12 @@ def test_a_restart_ends_a_run():
 
 
 def test_nothing_comes_of_nothing():
-    assert FixedLagSmoother(Counter(), None, SHORT).finish() == []
+    assert FixedLagSmoother(Counter(), SHORT).finish() == []
 
 
 def test_the_default_lag_is_below_two_seconds():
-    assert SmoothingSettings().lag_s == pytest.approx(1.9)
+    settings = SmoothingSettings()
+    assert settings.window_s + settings.ahead_s == pytest.approx(1.9)
 
 
 @pytest.mark.slow
@@ -111,7 +112,7 @@ def test_the_last_window_is_the_whole(name):
 
 def test_pushing_is_what_a_trial_does():
     one, found = estimates("kinematic")
-    smoother = FixedLagSmoother(one, recording(), SHORT)
+    smoother = FixedLagSmoother(one, SHORT)
     back = [
         pair for t, estimate in enumerate(found) for pair in smoother.push(t, estimate)
     ] + smoother.finish()

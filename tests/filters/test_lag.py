@@ -6,7 +6,7 @@ import pytest
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.lag import FixedLag, lag_frames
 from mbkf.filters.tracking import track
-from mbkf.numerics.passage import LinearStep
+from mbkf.numerics.later_frames import LinearStep
 from mbkf.trial.preparation.filters import FILTERS
 from tests.dynamics import DT
 from tests.filters.test_fixed_lag import Told
@@ -84,7 +84,7 @@ def test_no_lag_is_the_filter(name):
 def test_a_lag_of_the_whole_run_is_the_linear_smoother(name):
     """These filters smooth by the same linear pass; the first frame then knows all."""
     one, found = estimates(name)
-    smoothed = one.smooth(found, recording(), 0, len(found))
+    smoothed = one.smooth(found, len(found))
     lag = FixedLag(one, DT * len(FRAMES))
     assert [lag.push(t, e) for t, e in enumerate(found)] == [[]] * len(found)
     for (_, mine), theirs in zip(lag.finish(), smoothed, strict=True):
@@ -96,7 +96,7 @@ def test_a_lag_of_the_whole_run_is_the_linear_smoother(name):
 def test_a_lag_of_the_whole_run_is_nearly_a_round_of_the_dynamic_smoother():
     """That linearises at the filter's answers, the lag at its predictions: a share of the standard deviations apart."""
     one, found = estimates("dynamic")
-    expected = list(smooth(one.kalman, [e.inner for e in found], 1))
+    expected = list(smooth(one.kalman, [e.record.step for e in found], 1))
     lag = FixedLag(one, DT * len(FRAMES))
     mine = [e for k, fresh in enumerate(found) for _, e in lag.push(k, fresh)] + [e for _, e in lag.finish()]
     sd = np.array([np.sqrt(np.diag(state.P)[: one.model.nv]) for state in expected])

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import KinematicTracking
-from mbkf.filters.likelihood import frame_likelihood, step_likelihood, trial_likelihood
+from mbkf.filters.kinematic.warm_start import WarmStart
+from mbkf.filters.likelihood import step_likelihood, trial_likelihood
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import Contact
@@ -84,7 +85,8 @@ def recording():
 @pytest.fixture(scope="module")
 def kinematic():
     sensor = protocol_sensor(MODEL)[0]
-    return KinematicTracking(KinematicFilter(sensor, np.full(36, 0.004), DT, EVERYWHERE, KinematicSettings()))
+    kalman = KinematicFilter(sensor, np.full(36, 0.004), DT, EVERYWHERE, KinematicSettings())
+    return TrackingFilter(KinematicReport(kalman), WarmStart(kalman))
 
 
 def test_frames_of_the_kinematic_filter(kinematic, recording):
@@ -97,7 +99,7 @@ def test_frames_of_the_kinematic_filter(kinematic, recording):
     for t, estimate, _ in followed(kinematic, recording):
         if t not in (20, 25, 39):
             continue
-        prior = estimate.inner.step.prior.state
+        prior = estimate.record.step.prior.state
         seen = ~np.isnan(recording.markers_m[t, :, 0]) & ~estimate.refused
         assert estimate.refused.sum() == (t == 25)
         H, sd, y = marker_part(
@@ -116,18 +118,9 @@ def test_a_refused_marker_counts_as_an_outlier(kinematic, recording):
 
 def test_trials_of_the_dynamic_filter(kinematic, recording):
     done = []
-    tracking = DynamicTracking(dynamic_filter(MODEL), kinematic.kalman)
+    tracking = TrackingFilter(DynamicReport(dynamic_filter(MODEL)), WarmStart(kinematic.kalman))
     found = trial_likelihood(tracking, recording, lambda at, total: done.append((at, total)))
     assert done[-1] == (40, 40)
     assert np.isfinite(found.markers).all()
     assert (found.load_readings[3:] == 6).all()
     assert (found.loads[3:] != 0.0).all()
-
-
-def test_other_filters_are_refused(kinematic, recording):
-    class Other:
-        pass
-
-    _, estimate, _ = list(followed(kinematic, recording))[5]
-    with pytest.raises(InvalidInput, match="kinematic and the dynamic"):
-        frame_likelihood(Other(), estimate)

@@ -7,6 +7,7 @@ import pytest
 
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.state_variances import state_variances
+from mbkf.sensors.layout import ExtraState, Layout
 
 NV, DOFS = 31, np.array([[3, 4, 5], [6, 7, 8], [28, 29, 30], [0, 1, 2]])
 
@@ -17,7 +18,9 @@ def errors(seed, unseen=0.0):
     N = 3 * NV + 18
     A, B = rng.normal(size=(N, N)), rng.normal(size=(3 * NV, NV))
     free = [(), (0,), (0, 1)][seed % 3]
+    support = ExtraState("support", *np.zeros((3, 6)))
     return rng, ErrorCovariance(
+        Layout.dynamic(NV, [support]),
         A @ A.T,
         B.T @ B,
         np.flatnonzero(rng.random(NV) >= unseen),

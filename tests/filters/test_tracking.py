@@ -6,9 +6,11 @@ import pytest
 from mbkf.errors import NotObservable
 from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import SETTLING_S, KinematicTracking
+from mbkf.filters.kinematic.warm_start import SETTLING_S, WarmStart
 from mbkf.filters.tracking import track
+from mbkf.filters.tracking_filter import TrackingFilter
 from tests.motions import (
     angle_errors,
     marker_positions,
@@ -34,8 +36,9 @@ def kalman(**settings):
 
 def follow(measured, **options):
     """A trial of markers (T, M, 3) through the kinematic filter."""
+    one = kalman()
     return track(
-        KinematicTracking(kalman()),
+        TrackingFilter(KinematicReport(one), WarmStart(one)),
         Recording(measured, np.zeros((len(measured), 0, 6)), 1 / RATE_HZ),
         **options,
     )

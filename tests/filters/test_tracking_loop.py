@@ -8,9 +8,11 @@ import pytest
 from mbkf.filters.estimate import Recording
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.warm_start import WarmStart
 from mbkf.filters.tracking import track
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
 
@@ -28,7 +30,7 @@ def test_it_is_what_a_track_records():
     recording = Recording(markers, np.zeros((FRAMES, 0, 6)), 1.0 / RATE_HZ)
     everywhere = np.zeros(MODEL.nv, dtype=bool)
     kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, everywhere, KinematicSettings())
-    tracking = KinematicTracking(kalman)
+    tracking = TrackingFilter(KinematicReport(kalman), WarmStart(kalman))
     recorded = track(tracking, recording)
     course = list(followed(tracking, recording))
     assert [t for t, _, _ in course] == list(range(3, FRAMES))
@@ -38,7 +40,7 @@ def test_it_is_what_a_track_records():
     assert all(seconds > 0.0 for _, _, seconds in course)
 
 
-def whole_motion(filter=KinematicTracking):
+def whole_motion(filter=TrackingFilter):
     """A filter, and a smooth motion that it sees all markers of."""
     sensor, _ = protocol_sensor(MODEL)
     markers = marker_positions(
@@ -46,14 +48,16 @@ def whole_motion(filter=KinematicTracking):
     )
     dt_s, everywhere = 1.0 / RATE_HZ, np.zeros(MODEL.nv, dtype=bool)
     kalman = KinematicFilter(sensor, np.full(36, 0.005), dt_s, everywhere, KinematicSettings())
-    return filter(kalman), Recording(markers, np.zeros((FRAMES, 0, 6)), dt_s)
+    return filter(KinematicReport(kalman), WarmStart(kalman)), Recording(
+        markers, np.zeros((FRAMES, 0, 6)), dt_s
+    )
 
 
 def thrown(estimate):
     return estimate._replace(v=1e6 * np.ones_like(estimate.v))
 
 
-class Thrown(KinematicTracking):
+class Thrown(TrackingFilter):
     """The step into frame 30 throws it."""
 
     def step(self, before, recording, t, prediction=None):
@@ -69,13 +73,13 @@ class ThrownTwice(Thrown):
         return thrown(found) if t == 30 else found
 
 
-def test_a_frame_whose_estimate_is_no_person_starts_anew():
+def test_a_frame_with_an_implausible_estimate_starts_anew():
     found = track(*whole_motion(Thrown))
     assert found.starts == (0, 30)
     assert found.known.all() and found.tracked.all()
 
 
-def test_where_a_start_makes_no_person_either_the_frame_has_no_estimate():
+def test_a_frame_whose_start_is_implausible_too_has_no_estimate():
     found = track(*whole_motion(ThrownTwice))
     assert np.flatnonzero(~found.known).tolist() == [30]
     assert found.starts == (0, 31)

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.kernel.covariance import correction, informed_with_rows
 from mbkf.kernel.loading import library
 from mbkf.numerics import information_update
-from tests.dynamics import DT
+from tests.dynamics import DT, singer
 from tests.motions import random_model, reference_model, worst
 
 needs_kernel = pytest.mark.skipif(library() is None, reason="the kernel is not compiled here")
@@ -118,7 +118,7 @@ MODELS = {"reference": reference_model(), "random": random_model(np.random.defau
 def test_the_prediction_is_phi_p_phi_and_noise(either_kernel, model, order):
     rng = np.random.default_rng(5)
     nv = model.nv
-    plant = SingerPlant(model, DT, np.arange(nv) == 7)
+    plant = singer(model, held=np.arange(nv) == 7)
     N = plant.layout.size
     P = np.array(covariance(rng, N), order=order)
     q = model.integrate(model.neutral(), rng.normal(size=nv))

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from mbkf.kernel.loading import library
 from mbkf.kernel.smoothing import SparseBackwardPass
-from mbkf.numerics.rate_transition import RateTransition
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.numerics.transition import DenseTransition, RateTransition
 from tests.kernel.test_covariance import banded_rows, covariance, information
 from tests.motions import worst
 
@@ -102,6 +102,13 @@ def test_parts_are_whole_matrices(seed, nv, orders, rest, readings):
 def test_with_the_kernel_and_without_it(either_kernel, covariances):
     rng = np.random.default_rng(8)
     assert_follows(filtered(rng, 4, 9, 2, 12, 7), 1e-8, covariances)
+
+
+@pytest.mark.parametrize("covariances", [True, False])
+def test_a_dense_transition_is_taken_as_a_matrix(either_kernel, covariances):
+    frames = filtered(np.random.default_rng(7), 4, 9, 2, 12, 7)
+    dense = [(*known, DenseTransition(phi.matrix(len(known[0])))) for *known, phi in frames]
+    assert_follows(dense, 1e-8, covariances)
 
 
 def test_a_covariance_is_that_of_the_frame_asked_for(either_kernel):

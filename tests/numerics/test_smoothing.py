@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.numerics.transition import DenseTransition
 from tests.motions import worst
 
 
@@ -132,6 +133,22 @@ def test_smoothed_covariances_are_symmetric_positive_and_never_larger():
         np.testing.assert_array_equal(P, P.T)
         assert np.linalg.eigvalsh(P).min() > -1e-12 * worst(P)
         assert np.linalg.eigvalsh(own - P).min() > -1e-9 * worst(own)
+
+
+def test_readings_and_transitions_may_come_by_their_parts():
+    """through_parts: information on the first components, and rows; through_motion: any form of Φ."""
+    rng = np.random.default_rng(5)
+    H, rows, P, vector, phi = (rng.normal(size=size) for size in ((4, 3), (2, 5), (5, 5), (5,), (5, 5)))
+    whole = rows.T @ rows
+    whole[:3, :3] += H.T @ H
+    found, expected = BackwardPass(5), BackwardPass(5)
+    for _ in range(2):
+        found.through_parts(P @ P.T, H.T @ H, rows, vector)
+        found.through_motion(DenseTransition(phi))
+        expected.through_readings(P @ P.T, whole, vector)
+        expected.through_plant(phi)
+    np.testing.assert_array_equal(found.gradient, expected.gradient)
+    np.testing.assert_array_equal(found.curvature, expected.curvature)
 
 
 def test_nothing_comes_after_the_last_frame():

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic.plant import SingerPlant
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.layout import SUPPORT, ExtraState
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
-from tests.dynamics import DT, notes_of, prepared_at, random_state, standing
+from tests.dynamics import notes_of, prepared_at, random_state, singer, standing
 from tests.motions import assert_near, reference_model
 
 MODEL = reference_model()
@@ -73,7 +72,7 @@ def test_the_wrench_of_other_contacts_counts_like_a_foots():
     plain, state, _ = law()
     extras = [ExtraState(SUPPORT, np.zeros(6), np.ones(6), np.zeros(6))]
     other = [ExtraState("mine", np.zeros(2), np.ones(2), np.zeros(2))]
-    plant = SingerPlant(MODEL, DT, np.zeros(MODEL.nv, dtype=bool), extras=[*other, *extras])
+    plant = singer(MODEL, [*other, *extras])
     block = NewtonEulerLaw(NewtonEuler(MODEL), SETTINGS)
     block.bind(plant.layout, plant.model)
     wrench = np.array([20.0, -30.0, 400.0, 50.0, -80.0, 10.0])

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.records import Contact
@@ -17,10 +17,11 @@ from mbkf.sensors.standing_feet import (
     StandingFeet,
     StandingSettings,
 )
+from tests.dynamics import singer
 from tests.motions import moderate_pose, reference_model
 
 MODEL = reference_model()
-PLANT = SingerPlant(MODEL, 0.01, np.zeros(MODEL.nv, bool))
+PLANT = singer(MODEL)
 RNG = np.random.default_rng(5)
 Q, V = moderate_pose(MODEL, RNG), RNG.normal(size=MODEL.nv)
 N = PLANT.layout.size

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic.plant import SingerPlant
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.layout import UNSEEN_MOMENT
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
 from mbkf.sensors.unseen_moment import UnseenMoment, UnseenMomentSettings
-from tests.dynamics import DT, prepared_at, random_state, standing
+from tests.dynamics import DT, prepared_at, random_state, singer, standing
 from tests.motions import reference_model
 
 MODEL = reference_model()
@@ -18,7 +17,7 @@ SETTINGS = UnseenMomentSettings(40.0, 2.0)
 
 
 def bound(block):
-    plant = SingerPlant(MODEL, DT, np.zeros(MODEL.nv, dtype=bool), extras=block.states())
+    plant = singer(MODEL, block.states())
     block.bind(plant.layout, plant.model)
     return plant
 

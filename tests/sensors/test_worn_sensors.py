@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import typical_mounts
 from mbkf.io.imu.mount import ImuMount
@@ -12,6 +12,7 @@ from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.worn_sensors import BIASES, TURNS, WornSensors, WornSettings
+from tests.dynamics import singer
 from tests.motions import moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -30,7 +31,7 @@ def block_of(mounts):
         np.ones((count, 3)),
         SETTINGS,
     )
-    plant = SingerPlant(MODEL, 0.01, np.zeros(MODEL.nv, bool), extras=block.states())
+    plant = singer(MODEL, block.states())
     block.bind(plant.layout, plant.model)
     return block, plant
 

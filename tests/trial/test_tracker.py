@@ -142,7 +142,7 @@ def test_a_block_of_ones_own_may_bring_a_state():
     heights = np.array([plain[min(t, len(plain) - 1)].q[2] for t in range(FRAMES)]) + 0.3
     blocks = [*mbkf.standard_blocks(person, trial.markers.names, trial.plates, 100.0), Barometer()]
     _, found = followed(blocks, readings={"height": heights})
-    state = found[-1].posterior.inner.state
+    state = found[-1].posterior.record.state
     assert state.extra[0] == pytest.approx(0.3, abs=0.01)
     assert abs(found[-1].q[2] - plain[-1].q[2]) < 0.005
 

@@ -7,6 +7,7 @@ has a linear plant that is never stiff; Newton's law at the pelvis is one of its
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.filter import Filter, Step
+from mbkf.filters.plant import PlantMaker
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import AnyBlock, Frame
 from mbkf.sensors.contact.causal import ContactDetector
@@ -23,6 +25,7 @@ from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.lasting_noise import prior_dilution
+from mbkf.sensors.layout import FEET, Layout
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.mean_posture import MeanPosture
@@ -53,7 +56,7 @@ def dynamic_blocks(
     Args:
         sensor: The markers on the body.
         noise_m: (M,) their noise, m.
-        detector: Finds what the feet stand on.
+        detector: Finds the support of the feet.
         dt_s: Time between frames.
         unobservable: (nv,) dofs that no marker of the capture moves with.
         settings: Settings of every block.
@@ -61,7 +64,7 @@ def dynamic_blocks(
         spread_m: (M,) spread of one reading where noise stays for a while (:mod:`mbkf.sensors.lasting_noise`), m. A
             frame then counts for less than an independent reading, and so does the posture prior, or the body would
             be drawn to standing.
-        other_contacts: Whether parts besides the feet bear load in some frames.
+        other_contacts: Parts besides the feet bear load in some frames.
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
     dilution = None if spread_m is None else prior_dilution(sensor, noise_m, spread_m)
@@ -85,6 +88,10 @@ def dynamic_blocks(
     ]
 
 
+DynamicStep = Step[DynamicState]
+"""A step of the dynamic filter."""
+
+
 class DynamicFilter(Filter[DynamicState]):
     """A :class:`mbkf.filters.filter.Filter` with decaying accelerations and blocks on (q, v, a, wrenches).
 
@@ -94,12 +101,9 @@ class DynamicFilter(Filter[DynamicState]):
         unobservable: (nv,) dofs that no marker of the capture moves with.
         settings: Settings of plant and blocks.
         model: The body.
-        dt_s: Time between frames.
         balance: Newton–Euler equations, for torques.
         spread_m: (M,) spread of one reading where noise stays for a while, else None.
     """
-
-    plant: SingerPlant
 
     def __init__(
         self,
@@ -110,6 +114,7 @@ class DynamicFilter(Filter[DynamicState]):
         settings: DynamicSettings,
         blocks: Sequence[AnyBlock],
         spread_m: Array | None = None,
+        plant: PlantMaker | None = None,
     ) -> None:
         """Makes the filter.
 
@@ -121,13 +126,14 @@ class DynamicFilter(Filter[DynamicState]):
             settings: Settings of plant and error covariance.
             blocks: Instruments, laws and priors; :func:`dynamic_blocks` for the standard ones.
             spread_m: (M,) spread of one reading of markers whose noise stays; None where the noise is white.
+            plant: Makes another plant than the Singer plant, for a state of the same parts.
         """
-        self.spread_m = spread_m
-        extras = [extra for block in blocks for extra in block.states()]
-        super().__init__(SingerPlant(sensor.model, dt_s, unobservable, settings.motion, extras), blocks)
+        model, extras = sensor.model, [extra for block in blocks for extra in block.states()]
+        make = partial(SingerPlant, settings=settings.motion) if plant is None else plant
+        super().__init__(make(model, Layout.dynamic(model.nv, extras), dt_s, unobservable), blocks)
         self.sensor, self.unobservable, self.settings = sensor, unobservable, settings
-        self.noise_m = noise_m * settings.markers.marker_noise_scale
-        self.model, self.dt_s, self.balance = sensor.model, dt_s, NewtonEuler(sensor.model)
+        self.noise_m, self.spread_m = noise_m * settings.markers.marker_noise_scale, spread_m
+        self.model, self.balance = model, NewtonEuler(model)
 
     @classmethod
     def standard(
@@ -145,7 +151,7 @@ class DynamicFilter(Filter[DynamicState]):
         Args:
             sensor: The markers on the body.
             noise_m: (M,) their noise, m.
-            detector: Finds what the feet stand on.
+            detector: Finds the support of the feet.
             dt_s: Time between frames.
             unobservable: (nv,) dofs that no marker of the capture moves with.
             settings: Settings of plant and blocks.
@@ -164,14 +170,13 @@ class DynamicFilter(Filter[DynamicState]):
             P: (2 nv, 2 nv) covariance of (q, v).
             frame: Readings of the frame; inertial ones are left out.
         """
-        nv, layout = self.model.nv, self.layout
-        whole, sd = np.zeros((layout.size, layout.size)), np.zeros(layout.size)
-        free = np.tile(~self.unobservable, 2)
-        whole[: 2 * nv, : 2 * nv] = P * np.outer(free, free)
+        layout, size, motion = self.layout, self.layout.size, self.layout.motion
+        whole, sd, free = np.zeros((size, size)), np.zeros(size), np.tile(~self.unobservable, 2)
+        whole[motion, motion] = P * np.outer(free, free)
         sd[layout.a] = np.where(self.unobservable, 0.0, self.model.acceleration_sd)
         sd[layout.wrench] = START_WRENCH_SD
-        extra, sd[layout.wrench.stop :] = layout.start()
-        whole.reshape(-1)[:: layout.size + 1][2 * nv :] = sd[2 * nv :] ** 2
-        state, memory = DynamicState(q, v, a, np.zeros(12), whole.T, extra), self.begin()
-        prior = self.prepared(state, self.plant.acceleration_sd, memory)
+        extra, sd[layout.extra] = layout.start()
+        whole.reshape(-1)[:: size + 1][motion.stop :] = sd[motion.stop :] ** 2
+        state, memory = DynamicState(q, v, a, np.zeros(FEET), whole.T, extra), self.begin()
+        prior = self.prepared(state, self.plant.noise(memory.plant), memory)
         return self.correct(prior, memory, frame._replace(imus=None))

@@ -12,22 +12,20 @@ wrenches depends on the contact of the feet and is the contact block's (:mod:`mb
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.filter import Plant
+from mbkf.filters.plant import Plant
 from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.loading import library
 from mbkf.kernel.state_functions import Singer
 from mbkf.model.body import Body
-from mbkf.numerics.diagonals import block_diagonals
-from mbkf.numerics.rate_transition import RateTransition
+from mbkf.numerics.transition import RateTransition
 from mbkf.sensors.block import Notes
-from mbkf.sensors.layout import WRENCH, ExtraState, Layout
+from mbkf.sensors.layout import FEET, Layout
 
 
 @dataclass(frozen=True)
@@ -72,16 +70,40 @@ class DynamicState:
     P: Array
     extra: Array = field(default_factory=lambda: np.zeros(0))
 
+    def retracted(self, model: Body, step: Array, P: Array) -> DynamicState:
+        """The state moved by a tangent vector.
 
-class SingerPlant(Plant[DynamicState]):
-    """Predicts a :class:`DynamicState`.
+        Args:
+            model: The body.
+            step: (N,) tangent vector.
+            P: (N, N) covariance of the moved state.
+        """
+        nv = model.nv
+        return DynamicState(
+            model.integrate(self.q, step[:nv]),
+            self.v + step[nv : 2 * nv],
+            self.a + step[2 * nv : 3 * nv],
+            self.w + step[3 * nv : 3 * nv + FEET],
+            P,
+            self.extra + step[3 * nv + FEET :],
+        )
+
+    def minus(self, model: Body, origin: DynamicState) -> Array:
+        """(N,) tangent vector from the mean of another state to this one's."""
+        q = model.difference(origin.q, self.q)
+        rest = (self.v - origin.v, self.a - origin.a, self.w - origin.w, self.extra - origin.extra)
+        return np.concatenate([q, *rest])
+
+
+class SingerPlant(Plant[DynamicState, Array, Array | None]):
+    """Predicts a :class:`DynamicState`, in compiled code where there is such.
 
     Attributes:
         model: The body.
         layout: Slices of the tangent state.
         dt_s: Time step Δt.
         acceleration_sd: (nv,) the table's σ_a; 0 holds a dof where it is.
-        settings: How σ_a adapts, and T.
+        settings: Adaptation of σ_a, and T.
         rho, c1, c2: The factors above.
         covariance: (3, 3) covariance of (q, v, a) after one step for σ_a = 1.
     """
@@ -89,40 +111,34 @@ class SingerPlant(Plant[DynamicState]):
     def __init__(
         self,
         model: Body,
+        layout: Layout,
         dt_s: float,
-        unobservable: BoolArray,
+        held: BoolArray,
         settings: SingerSettings = SingerSettings(),
-        extras: Sequence[ExtraState] = (),
     ) -> None:
         """Makes the plant.
 
         Args:
             model: The body.
+            layout: Slices of the tangent state (:meth:`mbkf.sensors.layout.Layout.dynamic`).
             dt_s: Time step.
-            unobservable: (nv,) dofs that no marker of the capture moves with; they stay where they are.
+            held: (nv,) dofs that no instrument shows; they stay where they are.
             settings: Process noise.
-            extras: States that blocks add.
         """
-        s, nv = settings, model.nv
-        self.model, self.dt_s, self.settings = model, dt_s, settings
-        self.layout = Layout.of(nv, q=nv, v=nv, a=nv, **{WRENCH: 12}).with_extras(extras)
-        self.acceleration_sd = np.where(unobservable, 0.0, s.acceleration_scale * model.movement_sd)
+        super().__init__(model, layout, dt_s)
+        s, self.settings = settings, settings
+        self.acceleration_sd = np.where(held, 0.0, s.acceleration_scale * model.movement_sd)
         self.rho = float(np.exp(-dt_s / s.decay_s))
         self.c1 = -s.decay_s * float(np.expm1(-dt_s / s.decay_s))
         self.c2 = s.decay_s * (dt_s - self.c1)
         self.covariance = _singer_noise(dt_s, s.decay_s)
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
-        self._busiest = self.acceleration_sd * np.where(np.arange(nv) < 3, *s.busy_shares)
-        self._walk = self.layout.walk_variance(dt_s)
+        self._busiest = self.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
         self._joints = joint_ranges(joint.v for joint in model.joints.values())
         self._push, self._rates = np.array([dt_s, self.c2]), np.array([[1.0, self.c1], [0.0, self.rho]])
         singer = Singer(dt_s, self.c1, self.c2, self.rho)
         self._kernel, self._constants = library(), (self._joints, singer, self.covariance)
-
-    def begin(self) -> Array | None:
-        """No motion was seen yet."""
-        return None
 
     def noise(self, memory: Array | None) -> Array:
         """(nv,) σ_a of the next step."""
@@ -134,7 +150,7 @@ class SingerPlant(Plant[DynamicState]):
     def remember(self, posterior: DynamicState, notes: Notes, memory: Array | None) -> Array | None:
         """(nv,) mean square of recent accelerations, m²/s⁴ or rad²/s⁴.
 
-        What nothing observes moves as the table says, or it would feed on its own guesses.
+        Dofs that nothing observes move as the table says: a mean of their own estimates would feed on itself.
         """
         s, unobserved = self.settings, notes.unobserved
         if s.activity_gain <= 0.0:
@@ -144,12 +160,20 @@ class SingerPlant(Plant[DynamicState]):
             now[unobserved] = (self.acceleration_sd[unobserved] / s.activity_gain) ** 2
         return now if memory is None else memory + self._calm * (now - memory)
 
+    def move(self, state: DynamicState) -> DynamicState:
+        """The state one step later: q ⊕ (v Δt + a c₂), v + a c₁, ρ a."""
+        q = self.model.integrate(state.q, self.dt_s * state.v + self.c2 * state.a)
+        return replace(state, q=q, v=state.v + self.c1 * state.a, a=self.rho * state.a)
+
     def transition(self, state: DynamicState) -> Array:
         """(N, N) Φ at a state."""
-        return self.transition_parts(state).matrix(self.layout.size)
+        return self._parts(state).matrix(self.layout.size)
 
-    def transition_parts(self, state: DynamicState) -> RateTransition:
-        """Φ at a state, by its parts."""
+    def step_transition(self, before: DynamicState, predicted: DynamicState) -> RateTransition:
+        """Φ of a step, by its parts."""
+        return self._parts(before)
+
+    def _parts(self, state: DynamicState) -> RateTransition:
         A, B = self.model.integration_derivatives(state.q, self.dt_s * state.v + self.c2 * state.a)
         return RateTransition(A, B, self._joints, self._push, self._rates)
 
@@ -157,53 +181,22 @@ class SingerPlant(Plant[DynamicState]):
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric, new, and in Fortran order.
 
         Args:
-            state: State.
+            state: The state.
             noise: (nv,) σ_a for this step; None for the table's.
         """
         sd = self.acceleration_sd if noise is None else noise
-        if self._kernel is not None and (tree := self.model.tree) is not None:
-            P, q, v, a = self._kernel.predict(
-                tree.handle, state.P, state.q, state.v, state.a, *self._constants, sd
-            )
-        else:
-            P, q, v, a = self._predicted(state, sd)
-        if len(self._walk):
-            P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
+        if self._kernel is None or (tree := self.model.tree) is None:
+            return super().predict(state, self.process_noise(sd))
+        moved = self._kernel.predict(tree.handle, state.P, state.q, state.v, state.a, *self._constants, sd)
+        P, q, v, a = moved
+        self._add_walk(P)
         return DynamicState(q, v, a, state.w, P.T, state.extra)
 
-    def _predicted(self, state: DynamicState, sd: Array) -> tuple[Array, Array, Array, Array]:
-        """P, q, v and a one step later, in whole matrices.
-
-        Args:
-            state: The state.
-            sd: (nv,) σ_a of the step.
-        """
-        phi = self.transition(state)
-        P = phi @ state.P @ phi.T
-        P = 0.5 * (P + P.T)
-        diagonals = block_diagonals(P, 3, self.model.nv)
-        diagonals += self.covariance[:, :, None] * sd**2
-        q = self.model.integrate(state.q, self.dt_s * state.v + self.c2 * state.a)
-        return P, q, state.v + self.c1 * state.a, self.rho * state.a
-
-    def difference(self, origin: DynamicState, state: DynamicState) -> Array:
-        """(N,) tangent vector from one state's mean to another's."""
-        q = self.model.difference(origin.q, state.q)
-        rest = (state.v - origin.v, state.a - origin.a, state.w - origin.w, state.extra - origin.extra)
-        return np.concatenate([q, *rest])
-
-    def retract(self, state: DynamicState, step: Array, P: Array) -> DynamicState:
-        """The state moved by a tangent vector (N,), with another covariance."""
-        nv = self.model.nv
-        w = 3 * nv + 12
-        return DynamicState(
-            self.model.integrate(state.q, step[:nv]),
-            state.v + step[nv : 2 * nv],
-            state.a + step[2 * nv : 3 * nv],
-            state.w + step[3 * nv : w],
-            P,
-            state.extra + step[w:],
-        )
+    def process_noise(self, sd: Array) -> Array:
+        """(N, N) Q of one step for accelerations of standard deviations (nv,)."""
+        Q, moving = np.zeros((self.layout.size, self.layout.size)), slice(self.layout.a.stop)
+        Q[moving, moving] = np.kron(self.covariance, np.diag(sd * sd))
+        return Q
 
 
 def _singer_noise(dt_s: float, decay_s: float) -> Array:

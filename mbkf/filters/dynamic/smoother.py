@@ -18,7 +18,7 @@ from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.filter import Decisions, Readings, Step
 from mbkf.kernel.covariance import informed_with_rows
 from mbkf.kernel.smoothing import SparseBackwardPass
-from mbkf.numerics.rate_transition import RateTransition
+from mbkf.numerics.transition import Transition
 
 FURTHEST_RAD = 0.5
 """A round corrects no joint by more than this."""
@@ -32,7 +32,7 @@ class _Forward:
     delta: Array
     readings: Readings | None
     vector: Array
-    transition: RateTransition | None
+    transition: Transition | None
 
 
 def smooth(
@@ -47,7 +47,7 @@ def smooth(
     Args:
         kalman: The filter that ran through it.
         run: Its steps; the first one's state is taken as it is.
-        rounds: How often to linearise anew.
+        rounds: Number of linearisations.
         wanted: Only the first ``wanted`` frames are returned; the others are looked at.
         memory: Arrays (N, N) to work in, which may serve one window after another: fresh memory costs as much as the
             products that go there. It grows as it has to; what is returned does not lie in it.
@@ -71,7 +71,7 @@ def smooth(
 
 
 def _damping(steps: Sequence[Array], nv: int) -> float:
-    """Share of a round's steps to take: none turns a joint further than a linearisation reaches."""
+    """Share of a round's steps to take, so that no joint turns further than a linearisation reaches."""
     furthest = max(float(np.abs(step[:nv]).max()) for step in steps)
     return min(1.0, FURTHEST_RAD / furthest) if furthest > 0.0 else 1.0
 
@@ -89,7 +89,7 @@ def _forward(
         kalman: The filter.
         begin: The first state.
         means: The trajectory.
-        decided: What each frame's readings were taken to be.
+        decided: Decisions on each frame's readings.
         memory: (N, N) for each frame's covariance.
     """
     plant = kalman.plant
@@ -99,8 +99,8 @@ def _forward(
         means[:-1], means[1:], decided[1:], memory[: len(means) - 1], strict=True
     ):
         before = replace(last, P=P)
-        transition = plant.transition_parts(before)
         prior = plant.predict(before, decisions.noise)
+        transition = plant.step_transition(before, prior)
         kalman.inflate(prior.P, decisions.blocks)
         delta = transition.forward(delta) + plant.difference(mean, prior)
         readings = kalman.linearise(mean, decisions)

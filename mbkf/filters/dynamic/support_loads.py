@@ -1,4 +1,4 @@
-"""What the parts that bear besides the feet carry, read off a state of the dynamic filter, and the torques it makes."""
+"""Loads on parts of the body besides the feet, read off a state of the dynamic filter, and their torques."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.error_covariance import ErrorCovariance
-from mbkf.filters.filter import Step
 from mbkf.model.body import Body
 from mbkf.model.newton_euler import JointTorques, NewtonEuler
 from mbkf.sensors.layout import SUPPORT, Layout
@@ -29,7 +28,7 @@ class SupportLoads:
 
     Attributes:
         bearings: The parts that may bear.
-        slice: Where the wrench on all of them stands in the state; None where it is none of its.
+        slice: Slice of the wrench on all of them in the state; None where the state has no such part.
     """
 
     def __init__(self, model: Body, layout: Layout) -> None:
@@ -38,19 +37,17 @@ class SupportLoads:
         self.slice = layout[SUPPORT] if known else None
         self._extra = layout.extra_index(SUPPORT) if known else slice(0)
 
-    def of(self, step: Step[DynamicState]) -> Loads | None:
-        """What bears at a step's state; None where only feet do."""
-        parts, state = step.decisions.notes.supports, step.state
+    def of(self, parts: tuple[int, ...], state: DynamicState) -> Loads | None:
+        """Loads on some parts (``notes.supports``) at a state; None where only feet bear."""
         if not parts or self.slice is None:
             return None
         points, chosen = self.bearings.at(state.q, state.v).points_m, list(parts)
         grips = [self.bearings.grips[k] for k in parts]
-        return Loads(
-            parts, shares(state.extra[self._extra], points[chosen], self.bearings.levers_m[chosen], grips)
-        )
+        levers = self.bearings.levers_m[chosen]
+        return Loads(parts, shares(state.extra[self._extra], points[chosen], levers, grips))
 
     def wrench(self, loads: Loads | None) -> Array | None:
-        """(B, 6) wrench on each part about the world's origin; None where the filter has no such state."""
+        """(B, 6) wrench on each part about the world's origin; None where the state has no such part."""
         if self.slice is None:
             return None
         found = np.zeros((len(self.bearings), 6))
@@ -59,7 +56,7 @@ class SupportLoads:
         return found
 
     def change(self, before: DynamicState, state: DynamicState) -> Array:
-        """(6,) change of the wrench on all parts from one state to another; none (0,) where the state has none."""
+        """(6,) change of the wrench on all parts from one state to another; (0,) where the state has no such part."""
         return (state.extra - before.extra)[self._extra]
 
     def sd(self, loads: Loads | None, errors: ErrorCovariance | None) -> Array:
@@ -77,12 +74,12 @@ class SupportLoads:
     ) -> tuple[Array, Array | None]:
         """Derivative (nv, n) of the generalised forces by the state, and (nv,) variance by how parts share the load.
 
-        There is no such variance, None, where nothing else bears.
+        The variance is None where only feet bear.
 
         Args:
             balance: The equations, last asked for these torques.
             torque: Torques for the feet's wrenches; the others' are counted in, in place.
-            loads: What else bears; None for nothing.
+            loads: Loads on other parts; None where only feet bear.
         """
         if loads is None or self.slice is None:
             return torque.by_state, None

@@ -5,18 +5,16 @@ Bar-Shalom, Li, Kirubarajan, *Estimation with Applications to Tracking and Navig
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.filter import Plant
+from mbkf.filters.plant import Plant
 from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.loading import library
 from mbkf.model.body import Body
-from mbkf.numerics.diagonals import block_diagonals
-from mbkf.numerics.rate_transition import RateTransition
-from mbkf.sensors.block import Notes
+from mbkf.numerics.transition import RateTransition
 from mbkf.sensors.layout import Layout
 
 
@@ -34,6 +32,21 @@ class KinematicState:
     v: Array
     P: Array
 
+    def retracted(self, model: Body, step: Array, P: Array) -> KinematicState:
+        """The state moved by a tangent vector.
+
+        Args:
+            model: The body.
+            step: (2 nv,) tangent vector.
+            P: (2 nv, 2 nv) covariance of the moved state.
+        """
+        nv = model.nv
+        return KinematicState(model.integrate(self.q, step[:nv]), self.v + step[nv:], P)
+
+    def minus(self, model: Body, origin: KinematicState) -> Array:
+        """(2 nv,) tangent vector from the mean of another state to this one's."""
+        return np.concatenate([model.difference(origin.q, self.q), self.v - origin.v])
+
     def reversed_in_time(self) -> KinematicState:
         """The same instant of the motion played backwards: v changes sign, and its covariance with q."""
         nv = len(self.v)
@@ -41,7 +54,7 @@ class KinematicState:
         return KinematicState(self.q, -self.v, sign[:, None] * self.P * sign)
 
 
-class WhiteAccelerationPlant(Plant[KinematicState]):
+class WhiteAccelerationPlant(Plant[KinematicState, Array, None]):
     """q' = q ⊕ (v Δt + a Δt²/2), v' = v + a Δt with a white, constant over the step.
 
     Φ = [[A, B Δt], [0, 1]] is exact on the manifold: A and B are the derivatives of the retraction, which reduce to 1
@@ -56,65 +69,45 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
     """
 
     def __init__(self, model: Body, dt_s: float, acceleration_sd: Array) -> None:
-        self.model, self.dt_s = model, dt_s
-        self.layout = Layout.of(model.nv, q=model.nv, v=model.nv)
+        super().__init__(model, Layout.kinematic(model.nv), dt_s)
         self.acceleration_sd = acceleration_sd
         variance = acceleration_sd**2
         self.position_noise = variance * dt_s**4 / 4.0
         self.cross_noise = variance * dt_s**3 / 2.0
         self.velocity_noise = variance * dt_s**2
-        blocks = [[self.position_noise, self.cross_noise], [self.cross_noise, self.velocity_noise]]
-        self._noise = np.array(blocks)
+        self._diagonals = np.array(
+            [[self.position_noise, self.cross_noise], [self.cross_noise, self.velocity_noise]]
+        )
+        self._noise = np.block([[np.diag(own) for own in row] for row in self._diagonals])
         self._joints = joint_ranges(joint.v for joint in model.joints.values())
         self._push, self._rates = np.array([dt_s]), np.ones((1, 1))
         self._kernel = library()
 
-    def begin(self) -> None:
-        """The noise is constant."""
-
     def noise(self, memory: None) -> Array:
-        """(nv,) σ_a."""
-        del memory
-        return self.acceleration_sd
+        """(2 nv, 2 nv) Q, the same in every step."""
+        return self._noise
 
-    def remember(self, posterior: KinematicState, notes: Notes, memory: None) -> None:
-        """The noise is constant."""
-
-    def difference(self, origin: KinematicState, state: KinematicState) -> Array:
-        """(2 nv,) tangent vector from one state's mean to another's."""
-        return np.concatenate([self.model.difference(origin.q, state.q), state.v - origin.v])
-
-    def retract(self, state: KinematicState, step: Array, P: Array) -> KinematicState:
-        """The state moved by a tangent vector (2 nv,), with another covariance."""
-        nv = self.model.nv
-        return KinematicState(self.model.integrate(state.q, step[:nv]), state.v + step[nv:], P)
+    def move(self, state: KinematicState) -> KinematicState:
+        """The state at steady velocity: q ⊕ v Δt, v."""
+        return replace(state, q=self.model.integrate(state.q, state.v * self.dt_s))
 
     def transition(self, state: KinematicState) -> Array:
         """(2 nv, 2 nv) Φ at a state."""
-        return self.transition_parts(state).matrix(2 * self.model.nv)
+        return self._parts(state).matrix(self.layout.size)
 
-    def transition_parts(self, state: KinematicState) -> RateTransition:
-        """Φ at a state, by its parts."""
+    def step_transition(self, before: KinematicState, predicted: KinematicState) -> RateTransition:
+        """Φ of a step, by its parts."""
+        return self._parts(before)
+
+    def _parts(self, state: KinematicState) -> RateTransition:
         A, B = self.model.integration_derivatives(state.q, state.v * self.dt_s)
         return RateTransition(A, B, self._joints, self._push, self._rates)
 
     def predict(self, state: KinematicState, noise: Array | None = None) -> KinematicState:
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric and in Fortran order."""
-        del noise
-        transition = self.transition_parts(state)
-        if self._kernel is not None:
-            P = self._kernel.propagate_velocities(
-                state.P,
-                np.ascontiguousarray(transition.A),
-                np.ascontiguousarray(transition.B),
-                self._joints,
-                self.dt_s,
-                self._noise,
-            )
-        else:
-            phi = transition.matrix(len(state.P))
-            P = phi @ state.P @ phi.T
-            P = 0.5 * (P + P.T)
-            diagonals = block_diagonals(P, 2, self.model.nv)
-            diagonals += self._noise
-        return KinematicState(self.model.integrate(state.q, state.v * self.dt_s), state.v, P.T)
+        if self._kernel is None:
+            return super().predict(state, self._noise)
+        step = state.v * self.dt_s
+        A, B = map(np.ascontiguousarray, self.model.integration_derivatives(state.q, step))
+        P = self._kernel.propagate_velocities(state.P, A, B, self._joints, self.dt_s, self._diagonals)
+        return KinematicState(self.model.integrate(state.q, step), state.v, P.T)

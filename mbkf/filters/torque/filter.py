@@ -17,7 +17,6 @@ from mbkf.filters.filter import Filter, Memory, Step
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.torque.noise import ForceNoise
 from mbkf.filters.torque.plant import ForcedState, TorquePlant
-from mbkf.filters.torque.report import TorqueState, reported
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.filters.torque.start import TorqueStart
 from mbkf.model.human_dynamics import HumanDynamics
@@ -97,7 +96,7 @@ def _scale(body: HumanDynamics) -> float:
 
 
 class FirstState(NamedTuple):
-    """A first state, the memory for the step after it, and what the feet were found to stand on."""
+    """A first state, the memory for the step after it, and the support of the feet."""
 
     state: ForcedState
     memory: Memory
@@ -146,7 +145,7 @@ class TorqueFilter(Filter[ForcedState]):
                 "a torque-state filter needs one block FootPlates and takes no block that adds states of its own; "
                 "the dynamic filter does"
             )
-        plant = TorquePlant(body, dt_s, ForceNoise(body, dt_s, settings), settings.scheme, wrenches=12)
+        plant = TorquePlant(body, dt_s, ForceNoise(body, dt_s, settings), settings.scheme, wrenches=True)
         super().__init__(plant, blocks, informed_whole)
         self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
         self.noise_m = noise_m * settings.tracking.marker_noise_scale
@@ -211,7 +210,3 @@ class TorqueFilter(Filter[ForcedState]):
     def _with_plates(self, memory: Memory, plates: PlateMemory) -> Memory:
         blocks = zip(self.blocks, memory.blocks, strict=True)
         return memory._replace(blocks=tuple(plates if one is self.plates else kept for one, kept in blocks))
-
-    def report(self, state: ForcedState) -> TorqueState:
-        """What a mean and covariance of (q, v, u) say of motion and forces."""
-        return reported(self.body, self.plates.sensor, state)

@@ -9,18 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 import scipy.linalg
 
 from mbkf.conventions import Array
-from mbkf.filters.filter import Plant
+from mbkf.filters.plant import Plant
 from mbkf.filters.torque.integrators import Motion, integrator
+from mbkf.model.body import Body
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
-from mbkf.sensors.block import Notes
-from mbkf.sensors.layout import WRENCH, Layout
+from mbkf.numerics.transition import DenseTransition
+from mbkf.sensors.layout import Layout
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,23 @@ class ForcedState:
     v: Array
     u: Array
     P: Array
+
+    def retracted(self, model: Body, step: Array, P: Array) -> ForcedState:
+        """The state moved by a tangent vector.
+
+        Args:
+            model: The body.
+            step: (n,) tangent vector.
+            P: (n, n) covariance of the moved state.
+        """
+        nv = model.nv
+        return ForcedState(
+            model.integrate(self.q, step[:nv]), self.v + step[nv : 2 * nv], self.u + step[2 * nv :], P
+        )
+
+    def minus(self, model: Body, origin: ForcedState) -> Array:
+        """(n,) tangent vector from the mean of another state to this one's."""
+        return np.concatenate([model.difference(origin.q, self.q), self.v - origin.v, self.u - origin.u])
 
 
 @dataclass(frozen=True)
@@ -48,8 +67,8 @@ class Scheme:
         integrator: "FE", "HE", "TF", "TN" or "RK4" (thesis eqs. 3.32–3.35).
         propagation: "first", "second" or "exponential" (thesis eqs. 3.51, 3.52, 2.39).
         covariance: "series" or "van_loan" (thesis eqs. 2.45, 2.43).
-        complete: Whether F keeps all derivatives (thesis eq. 3.40) or ∂z̈/∂T_e alone (thesis eq. 4.15).
-        mean_slope: Whether F is the mean of those at both ends of a step rather than the one at its beginning.
+        complete: F keeps all derivatives (thesis eq. 3.40), else ∂z̈/∂T_e alone (thesis eq. 4.15).
+        mean_slope: F is the mean of those at both ends of a step, else the one at its beginning.
         substeps: Equal parts a frame is cut into.
     """
 
@@ -65,7 +84,7 @@ NoiseDensity = Callable[[ForcedState], Array]
 """The spectral density (n, n) of w̃ at a state: G Σᴾ Gᵀ of thesis eq. 2.46."""
 
 
-class TorquePlant(Plant[ForcedState]):
+class TorquePlant(Plant[ForcedState, None, None]):
     """Predicts mean and covariance of a forced body over one frame.
 
     Attributes:
@@ -86,7 +105,7 @@ class TorquePlant(Plant[ForcedState]):
         scheme: Scheme,
         drift: Array | None = None,
         *,
-        wrenches: int = 0,
+        wrenches: bool = False,
     ) -> None:
         """Makes the plant.
 
@@ -96,13 +115,13 @@ class TorquePlant(Plant[ForcedState]):
             density: Noise density at a state.
             scheme: How the plant is discretised.
             drift: (nu, nu) A of u̇ = A u + w̃; None for 0.
-            wrenches: How many of the last forces are the feet's wrenches.
+            wrenches: The last forces are the feet's wrenches.
         """
-        layout = Layout.of(body.nv, q=body.nv, v=body.nv, u=body.nu)
-        self.layout = layout.with_last(WRENCH, wrenches) if wrenches else layout
-        self.body, self.dt_s, self.density, self.scheme = body, dt_s, density, scheme
-        if isinstance(body, HumanDynamics):  # a filter binds its blocks to the model; a pendulum has none
-            self.model = body.model
+        layout = Layout.forced(body.nv, body.nu, wrenches)
+        # A pendulum is its own manifold; blocks are for bodies with a model.
+        model = body.model if isinstance(body, HumanDynamics) else cast("Body", body)
+        super().__init__(model, layout, dt_s)
+        self.body, self.density, self.scheme = body, density, scheme
         self.drift = drift
         self._advance = integrator(scheme.integrator)
         step_s = dt_s / max(1, scheme.substeps)
@@ -114,48 +133,38 @@ class TorquePlant(Plant[ForcedState]):
         On the manifold the zero block ∂ż/∂z becomes the turning of the tangent space with the motion, which is
         kinematics and belongs to the simplified F as well.
         """
-        nv, nu = self.body.nv, self.body.nu
-        F = np.zeros((2 * nv + nu, 2 * nv + nu))
-        F[:nv, :nv] = self.body.transport(v)
-        F[:nv, nv : 2 * nv] = np.eye(nv)
-        F[nv : 2 * nv, 2 * nv :] = slope.by_u
+        q, v_, u = self.layout.q, self.layout.v, self.layout["u"]
+        F = np.zeros((self.layout.size, self.layout.size))
+        F[q, q] = self.body.transport(v)
+        F[q, v_] = np.eye(self.body.nv)
+        F[v_, u] = slope.by_u
         if self.scheme.complete:
-            F[nv : 2 * nv, :nv], F[nv : 2 * nv, nv : 2 * nv] = slope.by_q, slope.by_v
+            F[v_, q], F[v_, v_] = slope.by_q, slope.by_v
         if self.drift is not None:
-            F[2 * nv :, 2 * nv :] = self.drift
+            F[u, u] = self.drift
         return F
 
-    def begin(self) -> None:
-        """The noise depends on the state alone."""
-
     def noise(self, memory: None) -> None:
-        """The noise depends on the state alone."""
+        """No memory: the noise depends on the state alone, and :meth:`predict` computes it there."""
 
-    def remember(self, posterior: ForcedState, notes: Notes, memory: None) -> None:
-        """The noise depends on the state alone."""
-
-    def difference(self, origin: ForcedState, state: ForcedState) -> Array:
-        """(n,) tangent vector from one state's mean to another's."""
-        return np.concatenate(
-            [self.body.difference(origin.q, state.q), state.v - origin.v, state.u - origin.u]
-        )
-
-    def retract(self, state: ForcedState, step: Array, P: Array) -> ForcedState:
-        """The state moved by a tangent vector (n,), with another covariance."""
-        nv = self.body.nv
-        q = self.body.integrate(state.q, step[:nv])
-        return ForcedState(q, state.v + step[nv : 2 * nv], state.u + step[2 * nv :], P)
+    def move(self, state: ForcedState) -> ForcedState:
+        """Motion and forces one frame later."""
+        now, u, _ = self._advanced(state)
+        return ForcedState(now.q, now.v, u, state.P)
 
     def transition(self, state: ForcedState) -> Array:
         """(n, n) Φ at a state; a :class:`ForcedPrediction` holds that of its own step."""
         return self._advanced(state)[2].phi
 
+    def step_transition(self, before: ForcedState, predicted: ForcedState) -> DenseTransition:
+        """Φ that the prediction was made with."""
+        return DenseTransition(cast("ForcedPrediction", predicted).phi)
+
     def predict(self, state: ForcedState, noise: None = None) -> ForcedPrediction:
         """The state one frame later (thesis eqs. 2.48, 2.49)."""
-        del noise
         now, u, whole = self._advanced(state)
         P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
-        return ForcedPrediction(now.q, now.v, u, P, whole.phi)
+        return ForcedPrediction(now.q, now.v, u, P.T, whole.phi)
 
     def _advanced(self, state: ForcedState) -> tuple[Motion, Array, Discrete]:
         """Motion and forces one frame later, and the step of their error."""

@@ -1,15 +1,27 @@
-"""What a mean and covariance of (q, v, u) say of motion and forces, with standard deviations."""
+"""Report of the torque-state filter: motion and forces with standard deviations from (q, v, u) and its covariance."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import cast
 
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.estimate import Posterior, Prediction, Record
+from mbkf.filters.filter import Memory
+from mbkf.filters.report import FirstMotion, StateReport
+from mbkf.filters.spread import Spread, root
+from mbkf.filters.torque.filter import TorqueFilter, TorqueStep
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.sensors.block import Frame
+from mbkf.sensors.contact.records import ContactDecision
 from mbkf.sensors.foot_wrench import FootWrenchSensor
+from mbkf.sensors.layout import FEET
+from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 @dataclass(frozen=True)
@@ -24,7 +36,6 @@ class TorqueState:
         foot_wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
         tau_sd: (nv,) standard deviations of ``tau``; NaN for dofs whose torque is no state.
         foot_wrench_sd: (2, 6) standard deviations of ``foot_wrench``.
-        filtered: The filter's own mean and covariance (n, n).
     """
 
     q: Array
@@ -34,41 +45,136 @@ class TorqueState:
     foot_wrench: Array
     tau_sd: Array
     foot_wrench_sd: Array
-    filtered: ForcedState
 
     @property
     def finite(self) -> bool:
-        """Whether all of motion and torques could be computed."""
+        """True where all of motion and torques could be computed."""
         return bool(np.isfinite(self.q).all() and np.isfinite(self.tau).all())
 
+    @classmethod
+    def of(cls, body: HumanDynamics, wrenches: FootWrenchSensor, state: ForcedState) -> TorqueState:
+        """Motion, torques and wrenches of a state.
 
-def reported(body: HumanDynamics, wrenches: FootWrenchSensor, state: ForcedState) -> TorqueState:
-    """Motion, torques and wrenches of a state.
+        Args:
+            body: The forced body.
+            wrenches: Its wrench states carried to points in the world.
+            state: Mean and covariance.
+        """
+        every = np.arange(len(state.P))
+        a = body.acceleration(state.q, state.v, state.u)
+        tau = body.generalised(state.q, state.v, a, state.u)
+        at_origin = wrenches.reading(state.q, state.u[-FEET:], np.zeros((2, 3)))
+        columns = np.concatenate([every[: body.nv], every[-FEET:]])
+        H = np.hstack([at_origin.by_q, at_origin.by_state])
+        spread = ((H @ state.P[np.ix_(columns, columns)]) * H).sum(axis=1)
+        tau_sd = np.full(body.nv, np.nan)
+        torque = body.joint_forces(state.q, state.v, state.u)
+        T = np.hstack([torque.by_q, torque.by_v, torque.by_u])
+        tau_sd[body.torque_dofs] = root(((T @ state.P) * T).sum(axis=1))
+        tau_sd[body.fixed] = np.nan
+        found = at_origin.wrench.reshape(2, 6), tau_sd, root(spread).reshape(2, 6)
+        return cls(state.q, state.v, a, tau, *found)
+
+
+class TorqueReport(StateReport[ForcedState]):
+    """Reads a :class:`TorqueFilter`."""
+
+    kalman: TorqueFilter
+
+    def first(self, motion: FirstMotion, frame: Frame) -> Posterior:
+        """The motion with torques by inverse dynamics under the frame's plates."""
+        first = self.kalman.first(motion.state, motion.accelerations.mean(axis=0), frame)
+        read = self._read(first.state)
+        found = self._without_step(first.state, read, first.memory, first.contact, frame)
+        return found._replace(tracked=True, started=True)
+
+    def posterior(self, step: TorqueStep, before: Posterior, frame: Frame) -> Posterior:
+        """The estimate that a step led to.
+
+        Raises:
+            numpy.linalg.LinAlgError: The filter has diverged so far that motion or torques are not finite.
+        """
+        read, contact = self._read(step.state), step.decisions.notes.contact
+        if not read.finite:
+            raise np.linalg.LinAlgError("motion or torques are not finite")
+        feet = None if contact is None else contact.contacts
+        record, seen = Record(step.state, step, None, read), (step.refused, step.tracked, False)
+        return Posterior(read.q, read.v, read.a, read.foot_wrench, feet, *seen, record)
+
+    def unsolved(self, error: Exception, before: Posterior, frame: Frame) -> Posterior:
+        """The state before, untracked: the thesis's filter may diverge until no step can be computed.
+
+        Args:
+            error: The numerical error.
+            before: Estimate of the frame before.
+            frame: The readings, of which contact is decided.
+        """
+        was = before.record
+        stayed = self.kalman.stayed(was.state, was.memory, frame)
+        return self._without_step(was.state, _read(before), stayed.memory, stayed.contact, frame)
+
+    def _without_step(
+        self, state: ForcedState, read: TorqueState, memory: Memory, contact: ContactDecision, frame: Frame
+    ) -> Posterior:
+        """A posterior that no step led to.
+
+        Args:
+            state: The filter's state.
+            read: Motion and forces there.
+            memory: For the next step.
+            contact: Support of the feet.
+            frame: The readings.
+        """
+        record, refused = Record(state, None, memory, read), np.zeros(len(frame.markers_m), dtype=bool)
+        seen = contact.contacts, refused, False, False
+        return Posterior(read.q, read.v, read.a, read.foot_wrench, *seen, record)
+
+    def moved(self, estimate: Posterior, state: ForcedState, before: ForcedState | None) -> Posterior:
+        """An estimate whose state later frames have corrected."""
+        if state is estimate.record.state:
+            return estimate
+        read = self._read(state)
+        record = estimate.record._replace(state=state, detail=read)
+        return estimate._replace(q=read.q, v=read.v, a=read.a, wrench=read.foot_wrench, record=record)
+
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+        """Standard deviations; torques are states of this filter."""
+        P, layout, read = estimate.record.state.P, self.kalman.layout, _read(estimate)
+        variance, q = np.diagonal(P), layout.q
+        parts = partial(self.reader.parts, read.q, P[q, q])
+        return Spread(self.reader, read.q, variance[q], variance[layout.v], read.tau_sd**2, parts)
+
+    def wrench_sd(self, estimate: Posterior) -> Array:
+        """(2, 6) of the state's wrenches, carried to the world's origin."""
+        return _read(estimate).foot_wrench_sd
+
+    def predict(self, before: Posterior) -> Prediction:
+        """By steady motion: the filter's own plant waits for the plates, which show how the torques change."""
+        return steady_motion(before, self.covariance(before), self.kalman.sensor, self.kalman.plant.dt_s)
+
+    def _read(self, state: ForcedState) -> TorqueState:
+        return TorqueState.of(self.kalman.body, self.kalman.plates.sensor, state)
+
+
+def _read(estimate: Posterior) -> TorqueState:
+    return cast("TorqueState", estimate.record.detail)
+
+
+def steady_motion(estimate: Posterior, covariance: Array, sensor: MarkerSensor, dt_s: float) -> Prediction:
+    """The frame after an estimate by steady velocity (thesis eqs. 3.1–3.3).
+
+    P⁻ = P_qq + Δt (P_qv + P_vq) + Δt² P_vv + Δt⁴/4 σ_a², with the body's own table of accelerations.
 
     Args:
-        body: The forced body.
-        wrenches: Its wrench states carried to points in the world.
-        state: Mean and covariance.
+        estimate: A posterior.
+        covariance: (2 nv, 2 nv) its covariance P of (q, v).
+        sensor: The markers on the body.
+        dt_s: Time step Δt.
     """
-    nv = body.nv
-    a = body.acceleration(state.q, state.v, state.u)
-    tau = body.generalised(state.q, state.v, a, state.u)
-    at_origin = wrenches.reading(state.q, state.u[-12:], np.zeros((2, 3)))
-    columns = np.concatenate([np.arange(nv), np.arange(len(state.P) - 12, len(state.P))])
-    H = np.hstack([at_origin.by_q, at_origin.by_state])
-    spread = ((H @ state.P[np.ix_(columns, columns)]) * H).sum(axis=1)
-    tau_sd = np.full(nv, np.nan)
-    torque = body.joint_forces(state.q, state.v, state.u)
-    T = np.hstack([torque.by_q, torque.by_v, torque.by_u])
-    tau_sd[body.torque_dofs] = np.sqrt(np.maximum(((T @ state.P) * T).sum(axis=1), 0.0))
-    tau_sd[body.fixed] = np.nan
-    return TorqueState(
-        state.q,
-        state.v,
-        a,
-        tau,
-        at_origin.wrench.reshape(2, 6),
-        tau_sd,
-        np.sqrt(np.maximum(spread, 0.0)).reshape(2, 6),
-        state,
-    )
+    model, P = sensor.model, covariance
+    nv = model.nv
+    cross = dt_s * P[:nv, nv:]
+    predicted: Array = P[:nv, :nv] + cross + cross.T + dt_s**2 * P[nv:, nv:]
+    predicted[np.arange(nv), np.arange(nv)] += 0.25 * dt_s**4 * model.acceleration_sd**2
+    q = model.integrate(estimate.q, dt_s * estimate.v)
+    return Prediction(q, MarkerPrediction(sensor.reading(q), predicted), None)

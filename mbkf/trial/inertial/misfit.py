@@ -8,14 +8,12 @@ that should rest is least for the true mounting.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.dynamic.tracking import DynamicStep
-from mbkf.filters.dynamic.worn_tracking import WornTracking
 from mbkf.filters.estimate import Recording
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
 from mbkf.sensors.block import AnyBlock, Rows
 from mbkf.sensors.standing_feet import StandingFeet
@@ -31,7 +29,7 @@ SETTLED_S = 0.3
 """The first frames still find out how fast the body moves."""
 
 
-def misfit(filter: WornTracking, recording: Recording) -> float:
+def misfit(filter: TrackingFilter, recording: Recording) -> float:
     """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand; inf: implausible.
 
     Args:
@@ -44,7 +42,8 @@ def misfit(filter: WornTracking, recording: Recording) -> float:
         if t >= last:
             break
         if t >= first:
-            parts = cast(DynamicStep, posterior.inner).readings.parts
+            assert posterior.record.step is not None
+            parts = posterior.record.step.readings.parts
             rates.append(_of(filter, parts, WornSensors).reshape(-1, 2, 3)[:, 0].ravel())
             feet.append(_of(filter, parts, StandingFeet))
     if not rates:
@@ -60,7 +59,7 @@ def looked_at(recording: Recording) -> int:
     return min(len(recording), begin + max(2, round(LOOKED_AT_S / recording.dt_s)))
 
 
-def _of(filter: WornTracking, parts: Sequence[Sequence[Rows]], kind: type[AnyBlock]) -> Array:
+def _of(filter: TrackingFilter, parts: Sequence[Sequence[Rows]], kind: type[AnyBlock]) -> Array:
     """(k,) whitened innovations of a filter's first block of a kind."""
     for block, own in zip(filter.kalman.blocks, parts, strict=True):
         if isinstance(block, kind):

@@ -10,12 +10,13 @@ import numpy as np
 
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic.worn_tracking import FirstPosture, WornTracking
 from mbkf.filters.estimate import Recording
 from mbkf.filters.fixed_lag import SmoothingSettings
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.mount_errors import MountErrors
 from mbkf.filters.record import Track
 from mbkf.filters.tracking import track
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.imu.frames import conjugate, multiply, rotate
 from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.imu.orientation import OrientSettings, orientations
@@ -220,7 +221,7 @@ def _worn(plan: _Plan) -> SensorMounts:
     return worn_mounts(*known, plan.settings.mounts, plan.turned, plan.derived)
 
 
-def _filter(plan: _Plan, worn: SensorMounts | None = None) -> tuple[WornTracking, Recording]:
+def _filter(plan: _Plan, worn: SensorMounts | None = None) -> tuple[TrackingFilter, Recording]:
     """The filter and its readings.
 
     Args:
@@ -299,7 +300,7 @@ def _dt(plan: _Plan) -> float:
     return float(plan.times_s[1] - plan.times_s[0])
 
 
-def _first(plan: _Plan, worn: SensorMounts) -> FirstPosture:
+def _first(plan: _Plan, worn: SensorMounts) -> KinematicState:
     """The first posture: that of standing, or by the sensors' orientations at a start in motion."""
     dt, s = _dt(plan), plan.settings
     if plan.from_standing:

@@ -9,12 +9,14 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.posture_start import PostureStart
+from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.dynamic.worn_tracking import FirstPosture, WornTracking
 from mbkf.filters.estimate import Recording
-from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.imu.worn_mounts import SensorMounts
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
@@ -172,10 +174,10 @@ def _rest(
 def worn_filter(
     inputs: FilterInputs,
     worn: SensorMounts,
-    first: FirstPosture,
+    first: KinematicState,
     settings: MotionSettings,
     standing_q: Array | None = None,
-) -> WornTracking:
+) -> TrackingFilter:
     """The filter.
 
     Args:
@@ -202,9 +204,9 @@ def worn_filter(
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
         JointLimits(posture, unobservable, s.limits),
     ]
-    known = inputs.sensor, inputs.noise_m, dt, unobservable
-    kalman = DynamicFilter(*known, s, blocks)
-    return WornTracking(kalman, KinematicFilter(*known, inputs.kinematic), first)
+    kalman = DynamicFilter(inputs.sensor, inputs.noise_m, dt, unobservable, s, blocks)
+    start = PostureStart(first, unobservable, inputs.kinematic.restart_after_s)
+    return TrackingFilter(DynamicReport(kalman), start)
 
 
 def _ground(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.dynamic.worn_tracking import FirstPosture
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.model.human import HumanModel
 from mbkf.sensors.contact.feet import FeetOnBody
 
@@ -47,7 +47,7 @@ def first_posture(
     dt_s: float,
     standing: bool,
     settings: StartSettings = StartSettings(),
-) -> FirstPosture:
+) -> KinematicState:
     """The posture of a first guess, its root over the floor's origin, its lower foot on the floor and at rest.
 
     Args:
@@ -72,7 +72,7 @@ def first_posture(
     covariance = np.zeros((2 * model.nv, 2 * model.nv))
     covariance[: model.nv, : model.nv] = _posture_covariance(model, segments, q, s)
     covariance[model.nv :, model.nv :] = np.diag(sd**2)
-    return FirstPosture(q, v, covariance)
+    return KinematicState(q, v, covariance)
 
 
 def _posture_covariance(model: HumanModel, segments: Sequence[str], q: Array, s: StartSettings) -> Array:

@@ -10,8 +10,10 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
 from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.warm_start import WarmStart
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.labelling.assignment import Indices
@@ -55,12 +57,11 @@ class LabelBody:
         """Of the M markers."""
         return tuple(m.name for m in self.markers)
 
-    def tracking_filter(self, dt_s: float) -> KinematicTracking:
+    def tracking_filter(self, dt_s: float) -> TrackingFilter:
         """A kinematic filter of the body."""
         unobservable = ~self.sensor.model.supports[self.sensor.joint_ids].any(axis=0)
-        return KinematicTracking(
-            KinematicFilter(self.sensor, self.noise_m, dt_s, unobservable, KinematicSettings())
-        )
+        kalman = KinematicFilter(self.sensor, self.noise_m, dt_s, unobservable, KinematicSettings())
+        return TrackingFilter(KinematicReport(kalman), WarmStart(kalman))
 
     def labeller(self, dt_s: float) -> RunningLabeller:
         """A labeller that knows nothing yet."""

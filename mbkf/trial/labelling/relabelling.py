@@ -111,7 +111,7 @@ def smoothed_markers(
     positions, dt = markers.positions_m, 1.0 / markers.rate_hz
     filter, sensor = body.tracking_filter(dt), body.sensor
     recording = Recording(positions, np.zeros((len(positions), 0, 6)), dt)
-    smoother = FixedLagSmoother(filter, recording, SmoothingSettings())
+    smoother = FixedLagSmoother(filter, SmoothingSettings())
     places = SmoothedMarkers(
         np.full(positions.shape, np.nan),
         np.full((*positions.shape, 3), np.nan),

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled_points
 from mbkf.labelling.running import RunningLabeller

@@ -17,9 +17,10 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
-from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
-from mbkf.filters.kinematic.tracking import warm_up_frames
+from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.kinematic.warm_start import warm_up_frames
 from mbkf.filters.lag import FixedLag
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import TrackingLoop
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
@@ -194,8 +195,8 @@ class LiveFilter:
             if self.loop.again:
                 self._predicting_s = time.perf_counter() - begin
                 return None
-            if self.loop.no_person:
-                raise ArithmeticError("the estimate is no person")
+            if self.loop.implausible:
+                raise ArithmeticError("the estimate is implausible: check units and marker names")
         except NUMERICAL as error:
             self._waiting.popleft()
             self.loop.forget()

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.dynamic.worn_tracking import WornTracking
 from mbkf.filters.mount_errors import MountErrors
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.imu.segments import segment_of
 from mbkf.imu.worn_mounts import MountSettings, SensorMounts, worn_mounts
 from mbkf.io.imu.readings import ImuReadings
@@ -61,7 +61,7 @@ class LiveWorn:
     segments: tuple[str, ...]
     worn: SensorMounts
     inputs: FilterInputs
-    filter: WornTracking
+    filter: TrackingFilter
     body: MountErrors
     settings: LiveWornSettings
 

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
+from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.dynamic.tracking import DynamicTracking
-from mbkf.filters.estimate import TrackingFilter
 from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.warm_start import WarmStart
+from mbkf.filters.plant import PlantMaker
+from mbkf.filters.report import AnyReport
 from mbkf.filters.torque.filter import TorqueFilter
+from mbkf.filters.torque.report import TorqueReport
 from mbkf.filters.torque.settings import TorqueSettings
-from mbkf.filters.torque.tracking import TorqueTracking
+from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.records import PlateReadings
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.contact.causal import ContactDetector
@@ -26,6 +30,13 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 
 Blocks = Sequence[AnyBlock] | None
 """Blocks of the dynamic filter; None for the standard ones."""
+
+
+class OwnParts(NamedTuple):
+    """Parts of a user's own in place of the dynamic filter's; None for the standard ones."""
+
+    blocks: Blocks = None
+    plant: PlantMaker | None = None
 
 
 @dataclass(frozen=True)
@@ -41,9 +52,9 @@ class FilterInputs:
         kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
         spread_m: (M,) spread of one reading where noise stays for a while, None where no marker's does.
-        remarks: What was refused of the plates' readings, in words.
-        other_contacts: Whether parts besides the feet bear load somewhere in the trial.
-        body: What estimates err by because the person's body is not known exactly; None where that is not told.
+        remarks: Remarks on plate readings that were refused.
+        other_contacts: Parts besides the feet bear load somewhere in the trial.
+        body: Errors of the estimates because the person's body is not known exactly; None where they are not reported.
     """
 
     sensor: MarkerSensor
@@ -61,34 +72,28 @@ class FilterInputs:
     body: BodyErrors | None = None
 
 
-def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
-    if blocks is not None:
-        raise InvalidInput(
-            "blocks of one's own are for the dynamic filter; the kinematic filter reads markers only"
-        )
-    return KinematicTracking(_starter(inputs))
+def _kinematic(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
+    _refuse(own, "the kinematic filter reads markers only")
+    return _started(KinematicReport(_starter(inputs)), inputs)
 
 
 def motion_filter(inputs: FilterInputs) -> TrackingFilter:
     """The kinematic filter where its motion alone is wanted: its covariances are not smoothed."""
-    return KinematicTracking(_starter(inputs), smoothed_covariances=False)
+    return _started(KinematicReport(_starter(inputs), smoothed_covariances=False), inputs)
 
 
-def _dynamic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
-    known = inputs.sensor, inputs.noise_m
-    if blocks is None:
-        blocks = standard(inputs)
-    kalman = DynamicFilter(*known, inputs.dt_s, inputs.unobservable, inputs.dynamic, blocks, inputs.spread_m)
-    return DynamicTracking(kalman, _starter(inputs))
+def _dynamic(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
+    known = inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.unobservable, inputs.dynamic
+    blocks = standard(inputs) if own.blocks is None else own.blocks
+    return _started(DynamicReport(DynamicFilter(*known, blocks, inputs.spread_m, own.plant)), inputs)
 
 
 def standard(inputs: FilterInputs) -> list[AnyBlock]:
     """The dynamic filter's standard blocks."""
-    detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
-    known = inputs.sensor, inputs.noise_m
     return dynamic_blocks(
-        *known,
-        detector,
+        inputs.sensor,
+        inputs.noise_m,
+        ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s),
         inputs.dt_s,
         inputs.unobservable,
         inputs.dynamic,
@@ -98,22 +103,27 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
     )
 
 
-def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
-    if blocks is not None:
-        raise InvalidInput(
-            "blocks of one's own are for the dynamic filter; the torque filter is the thesis's"
-        )
+def _torque(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
+    _refuse(own, "the torque filter is the thesis's")
     detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
-    known = inputs.sensor, inputs.noise_m
-    kalman = TorqueFilter.standard(*known, detector, inputs.dt_s, inputs.unobservable, inputs.torque)
-    return TorqueTracking(kalman, _starter(inputs))
+    known = inputs.sensor, inputs.noise_m, detector, inputs.dt_s, inputs.unobservable, inputs.torque
+    return _started(TorqueReport(TorqueFilter.standard(*known)), inputs)
+
+
+def _started(report: AnyReport, inputs: FilterInputs) -> TrackingFilter:
+    return TrackingFilter(report, WarmStart(_starter(inputs)))
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:
     return KinematicFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.unobservable, inputs.kinematic)
 
 
-_MAKERS: dict[str, Callable[[FilterInputs, Blocks], TrackingFilter]] = {
+def _refuse(own: OwnParts, reason: str) -> None:
+    if own != OwnParts():
+        raise InvalidInput(f"your own blocks and plants are for the dynamic filter; {reason}")
+
+
+_MAKERS: dict[str, Callable[[FilterInputs, OwnParts], TrackingFilter]] = {
     "kinematic": _kinematic,
     "torque": _torque,
     "dynamic": _dynamic,
@@ -123,18 +133,21 @@ FILTERS = tuple(_MAKERS)
 """Names of the filters."""
 
 
-def tracking_filter(name: str, inputs: FilterInputs, blocks: Blocks = None) -> TrackingFilter:
+def tracking_filter(
+    name: str, inputs: FilterInputs, blocks: Blocks = None, plant: PlantMaker | None = None
+) -> TrackingFilter:
     """The filter of that name.
 
     Args:
         name: One of :data:`FILTERS`.
-        inputs: What it is built from.
+        inputs: Body, markers, plates and settings.
         blocks: Blocks of the dynamic filter; None for the standard ones.
+        plant: Makes the plant of the dynamic filter; None for the Singer plant.
 
     Raises:
-        UnknownName: There is none.
-        InvalidInput: Blocks are given for another filter.
+        UnknownName: There is no such filter.
+        InvalidInput: Blocks or a plant are given for another filter.
     """
     if name not in _MAKERS:
         raise UnknownName("filter", name, FILTERS)
-    return _MAKERS[name](inputs, blocks)
+    return _MAKERS[name](inputs, OwnParts(blocks, plant))

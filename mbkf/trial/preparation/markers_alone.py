@@ -38,7 +38,7 @@ def markers_alone(
         for t, posterior in found:
             q[t], v[t] = posterior.q, posterior.v
 
-    smoother = FixedLagSmoother(filter, recording, SmoothingSettings())
+    smoother = FixedLagSmoother(filter, SmoothingSettings())
     for t, fresh, _ in followed(filter, recording):
         keep(smoother.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):

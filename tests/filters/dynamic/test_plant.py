@@ -10,8 +10,8 @@ import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
-from tests.dynamics import DT, random_state
+from mbkf.filters.dynamic.plant import DynamicState, SingerSettings
+from tests.dynamics import DT, random_state, singer
 from tests.motions import assert_near, random_model, reference_model, worst
 
 MODEL = reference_model()
@@ -20,7 +20,7 @@ N = 3 * NV + 12
 
 
 def plant_of(decay_s, dt_s=DT, model=MODEL):
-    return SingerPlant(model, dt_s, np.zeros(model.nv, dtype=bool), SingerSettings(decay_s=decay_s))
+    return singer(model, settings=SingerSettings(decay_s=decay_s), dt_s=dt_s)
 
 
 def rates(decay_s):
@@ -138,7 +138,7 @@ def test_mean_follows_its_accelerations():
 
 def test_a_dof_without_acceleration_stays_as_well_known_as_it_is():
     still = np.arange(NV) == 40
-    plant = SingerPlant(MODEL, DT, still, SingerSettings(decay_s=0.05))
+    plant = singer(MODEL, held=still, settings=SingerSettings(decay_s=0.05))
     s = random_state(MODEL, np.random.default_rng(6))
     own = np.array([40, NV + 40, 2 * NV + 40])
     phi = plant.transition(s)
@@ -150,7 +150,7 @@ def test_a_dof_without_acceleration_stays_as_well_known_as_it_is():
 def test_a_busy_joint_s_noise_follows_its_acceleration_up_to_its_share_of_the_table():
     """The pelvis's translation, which gravity and the ground move together, is bounded sooner than all else."""
     s = SingerSettings(quiet_share=0.1, activity_gain=6.0, busy_shares=(2.0, 8.0))
-    plant = SingerPlant(MODEL, DT, np.zeros(NV, dtype=bool), s)
+    plant = singer(MODEL, settings=s)
     table = MODEL.movement_sd
     assert_near(plant.noise(np.zeros(NV)), 0.1 * table, 1e-12)
     assert_near(plant.noise((0.1 * table) ** 2), np.hypot(0.1, 0.6) * table, 1e-12)

@@ -1,12 +1,11 @@
 """What parts besides the feet carry, and the torques that makes: against the body's own inverse dynamics."""
 
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.support_loads import SupportLoads
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.model.newton_euler import NewtonEuler
@@ -14,7 +13,7 @@ from mbkf.sensors.block import NO_DOFS
 from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.supports.block import Supports
 from mbkf.sensors.supports.sharing import shares
-from tests.dynamics import DT, random_state
+from tests.dynamics import DT, random_state, singer
 from tests.motions import reference_model
 from tests.supported import part
 
@@ -29,7 +28,7 @@ SOME = [(SEAT,), (RIGHT,), (RIGHT, LEFT), (SEAT, RIGHT, LEFT), (RIGHT, LEFT, KNE
 def scene():
     """A reader of loads, and a state with a wrench on all parts besides the feet, as uncertain as the rest."""
     block = Supports(MODEL, DT)
-    layout = SingerPlant(MODEL, DT, np.zeros(NV, dtype=bool), extras=block.states()).layout
+    layout = singer(MODEL, block.states()).layout
     rng = np.random.default_rng(1)
     s = random_state(MODEL, rng)
     size = layout.size
@@ -37,16 +36,11 @@ def scene():
     return SupportLoads(MODEL, layout), layout, DynamicState(s.q, s.v, s.a, s.w, A @ A.T / size, WHOLE)
 
 
-def step(parts):
-    """What of a filter's step is looked at."""
-    return SimpleNamespace(state=scene()[2], decisions=SimpleNamespace(notes=SimpleNamespace(supports=parts)))
-
-
 def made(parts):
     """The loads, torques with derivatives and variance by the sharing."""
     reader, _, s = scene()
     balance = NewtonEuler(MODEL)
-    torque, loads = balance.torques(s.q, s.v, s.a, s.w), reader.of(step(parts))
+    torque, loads = balance.torques(s.q, s.v, s.a, s.w), reader.of(parts, s)
     by_state, shared = reader.torques(balance, torque, loads)
     return torque, loads, by_state, shared
 
@@ -95,7 +89,7 @@ def test_the_spread_by_sharing_is_that_of_its_covariance_and_leaves_the_root_alo
 def test_loads_come_from_the_state():
     reader, _, s = scene()
     points = reader.bearings.at(s.q, s.v).points_m
-    found = reader.of(step((SEAT, LEFT)))
+    found = reader.of((SEAT, LEFT), s)
     expected = shares(WHOLE, points[[SEAT, LEFT]], reader.bearings.levers_m[[SEAT, LEFT]], [False, True])
     np.testing.assert_allclose(found.shares.wrench, expected.wrench, atol=1e-12)
     told = reader.wrench(found)
@@ -106,12 +100,12 @@ def test_loads_come_from_the_state():
 
 def errors(state):
     """Errors of the filter's own covariance alone."""
-    return ErrorCovariance(state.P, np.eye(NV), NO_DOFS, 0.0, 1.0, 0.0)
+    return ErrorCovariance(scene()[1], state.P, np.eye(NV), NO_DOFS, 0.0, 1.0, 0.0)
 
 
 def test_one_part_has_the_states_spread():
     reader, layout, s = scene()
-    found = reader.sd(reader.of(step((SEAT,))), errors(s))
+    found = reader.sd(reader.of((SEAT,), s), errors(s))
     np.testing.assert_allclose(found[SEAT], np.sqrt(np.diag(s.P)[layout[SUPPORT]]), rtol=1e-6)
     np.testing.assert_array_equal(np.delete(found, SEAT, axis=0), 0.0)
 
@@ -119,7 +113,7 @@ def test_one_part_has_the_states_spread():
 def test_several_parts_have_the_spread_of_their_sharing_besides():
     """Diagonal of D P Dᵀ + C."""
     reader, layout, s = scene()
-    loads = reader.of(step((RIGHT, LEFT)))
+    loads = reader.of((RIGHT, LEFT), s)
     own = layout[SUPPORT]
     D, C = loads.shares.by_whole.reshape(12, 6), loads.shares.covariance
     expected = np.sqrt(np.diag(D @ s.P[own, own] @ D.T + C))
@@ -139,7 +133,7 @@ def test_where_only_feet_bear_nothing_is_added():
 
 
 def test_a_filter_without_the_state_tells_nothing():
-    layout = SingerPlant(MODEL, DT, np.zeros(NV, dtype=bool)).layout
+    layout = singer(MODEL).layout
     reader = SupportLoads(MODEL, layout)
-    assert reader.of(step((SEAT,))) is None
+    assert reader.of((SEAT,), scene()[2]) is None
     assert reader.wrench(None) is None

@@ -218,7 +218,7 @@ def test_covariance_is_what_the_errors_are():
 def test_a_state_and_its_tangent_vector():
     """Difference undoes retraction; wrenches are the end of the forces."""
     body, now, u = loaded_body("inertial")
-    plant, nv = TorquePlant(body, DT, lambda _: density_of(body), Scheme(), wrenches=12), body.nv
+    plant, nv = TorquePlant(body, DT, lambda _: density_of(body), Scheme(), wrenches=True), body.nv
     state = ForcedState(now.q, now.v, u, np.eye(plant.layout.size))
     step = 0.1 * np.random.default_rng(7).normal(size=plant.layout.size)
     moved = plant.retract(state, step, 2.0 * state.P)

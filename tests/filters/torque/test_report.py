@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.filters.torque.plant import ForcedState
-from mbkf.filters.torque.report import reported
+from mbkf.filters.torque.report import TorqueState
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from tests.dynamics import trial
@@ -30,12 +30,12 @@ def scene():
 
 def test_motion_and_wrenches_are_given_back(scene):
     body, a, wrench, state = scene
-    found = reported(body, FootWrenchSensor(body), state)
+    found = TorqueState.of(body, FootWrenchSensor(body), state)
     assert_near(found.a, a, 1e-8)
     assert_near(found.foot_wrench, wrench, 1e-9)
     expected = body.joint_forces(state.q, state.v, state.u).torque
     assert_near(found.tau[body.torque_dofs], expected, 1e-6)
-    assert found.filtered is state and found.finite
+    assert found.finite
     assert not replace(found, tau=np.full_like(found.tau, np.nan)).finite
 
 
@@ -43,10 +43,10 @@ def test_spreads_are_those_of_small_errors(scene):
     """Standard deviations of torques and wrenches against errors drawn from the covariance."""
     body, _, _, state = scene
     plant, wrenches = torque_plant(body), FootWrenchSensor(body)
-    found = reported(body, wrenches, state)
+    found = TorqueState.of(body, wrenches, state)
     rng = np.random.default_rng(0)
     drawn = [
-        reported(body, wrenches, plant.retract(state, 1e-3 * rng.normal(size=len(state.P)), state.P))
+        TorqueState.of(body, wrenches, plant.retract(state, 1e-3 * rng.normal(size=len(state.P)), state.P))
         for _ in range(300)
     ]
     free = body.torque_dofs[~body.fixed[body.torque_dofs]]

@@ -21,7 +21,7 @@ PLATE_SD = np.tile(np.repeat([5.0, 2.0], 3), 2)
 def made(settings, sd):
     m = trial("squat")
     body = HumanDynamics(m.model, None, settings.wrench_frame, settings.force_state)
-    plant = TorquePlant(body, DT, ForceNoise(body, DT, settings), settings.scheme, wrenches=12)
+    plant = TorquePlant(body, DT, ForceNoise(body, DT, settings), settings.scheme, wrenches=True)
     motion = m.motion
     P = np.diag(np.repeat([0.003, 0.1], body.nv) ** 2)
     known = KinematicState(motion.q[FRAME], motion.v[FRAME], P)

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbkf.filters.torque.tracking import steady_motion
+from mbkf.filters.torque.report import steady_motion
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made
 
@@ -24,7 +24,7 @@ def test_covariance_is_the_kinematic_plants_own():
     tracking, found = estimates("kinematic")
     ours = steady_motion(found[30], tracking.covariance(found[30]), inputs().sensor, DT).markers.covariance
     nv = made().model.nv
-    theirs = tracking.kalman.plant.predict(found[30].inner.state).P[:nv, :nv]
+    theirs = tracking.kalman.plant.predict(found[30].record.state).P[:nv, :nv]
     assert np.allclose(ours, theirs, atol=2e-2 * np.abs(theirs).max())
     assert np.allclose(ours, ours.T)
     assert np.linalg.eigvalsh(ours).min() > 0.0

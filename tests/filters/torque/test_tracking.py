@@ -33,7 +33,7 @@ def rms(values):
 
 def test_a_start_agrees_with_the_plates_and_newton():
     _, found = estimates("torque")
-    first = found[0].inner.state
+    first = found[0].record.detail
     assert worst(first.foot_wrench[:, :3] - recording().plates[0][:, :3]) < 10.0
     assert worst(first.tau[:3]) < 15.0
     assert found[0].contact == (Contact.MEASURED, Contact.MEASURED)
@@ -42,9 +42,9 @@ def test_a_start_agrees_with_the_plates_and_newton():
 def test_torques_are_states_with_their_spread():
     tracking, found = estimates("torque")
     for one in (found[0], found[5]):
-        np.testing.assert_array_equal(tracking.spread(one).torque, one.inner.state.tau_sd)
-        np.testing.assert_array_equal(tracking.wrench_sd(one), one.inner.state.foot_wrench_sd)
-        np.testing.assert_array_equal(one.wrench, one.inner.state.foot_wrench)
+        np.testing.assert_array_equal(tracking.spread(one).torque, one.record.detail.tau_sd)
+        np.testing.assert_array_equal(tracking.wrench_sd(one), one.record.detail.foot_wrench_sd)
+        np.testing.assert_array_equal(one.wrench, one.record.detail.foot_wrench)
 
 
 def test_reactions_and_torques_follow_the_truth():
@@ -61,16 +61,16 @@ def test_its_torques_are_inverse_dynamics_of_its_own_motion():
     again = torques(tracked("torque"))
     known = np.isfinite(tracked("torque").torque_sd[1])
     for t in (1, 20, 50):
-        np.testing.assert_allclose(again[t][known], found[t].inner.state.tau[known], rtol=0, atol=1e-5)
+        np.testing.assert_allclose(again[t][known], found[t].record.detail.tau[known], rtol=0, atol=1e-5)
 
 
 def test_smoothed_estimates_obey_newton_too():
     found = tracked("torque", WHOLE)
     tracking, before = estimates("torque")
-    smoothed = tracking.smooth(before, recording(), 0, len(before))
+    smoothed = tracking.smooth(before, len(before))
     known = np.isfinite(found.torque_sd[1])
     for t in (0, 20, 59):
-        assert np.abs(torques(found)[t][known] - smoothed[t].inner.state.tau[known]).max() < 1e-5
+        assert np.abs(torques(found)[t][known] - smoothed[t].record.detail.tau[known]).max() < 1e-5
 
 
 def test_a_foot_without_a_plate_is_inferred():
@@ -99,25 +99,25 @@ def test_a_loss_of_markers_leaves_the_plates():
 def test_what_cannot_be_computed_is_untracked():
     """The state stays, contact is still decided, and a smoother passes over the frame."""
     tracking, found = estimates("torque")
-    record = found[20].inner
-    filtered = replace(record.state.filtered, P=-1e3 * np.eye(166))
-    broken = found[20]._replace(inner=replace(record, state=replace(record.state, filtered=filtered)))
+    record = found[20].record
+    broken = found[20]._replace(
+        record=record._replace(state=replace(record.state, P=-1e3 * np.eye(len(record.state.P))))
+    )
     step = tracking.step(broken, recording(), 21)
     assert not step.tracked and not step.started
-    assert step.q is broken.inner.state.q
+    assert step.q is broken.record.detail.q
     assert step.contact == found[21].contact
     assert not step.refused.any()
     assert tracking.innovations(step) is None
-    smoothed = tracking.smooth(
-        [found[20], step._replace(inner=replace(step.inner, state=record.state))], recording(), 20, 2
-    )
+    passed = step._replace(record=step.record._replace(state=record.state))
+    smoothed = tracking.smooth([found[20], passed], 2)
     np.testing.assert_allclose(smoothed[0].q, found[20].q, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("keep", [1, 5])
 def test_smoothing_a_few_frames(keep):
     tracking, found = estimates("torque")
-    smoothed = tracking.smooth(found[:keep], recording(), 0, keep)
+    smoothed = tracking.smooth(found[:keep], keep)
     np.testing.assert_allclose(smoothed[-1].q, found[keep - 1].q, rtol=0, atol=1e-12)
     assert len(smoothed) == keep
 

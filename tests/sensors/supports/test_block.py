@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.sensors.block import Frame, Notes
 from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.supports.block import BEARING, Supports, SupportSettings
-from tests.dynamics import DT, about, prepared_at, random_covariance, standing
+from tests.dynamics import DT, about, prepared_at, random_covariance, singer, standing
 from tests.followed import made_filter, recording
 from tests.motions import reference_model
 from tests.supported import part
@@ -27,7 +27,7 @@ LOAD = np.array([10.0, -20.0, 450.0, 30.0, -200.0, 15.0])
 def scene(**changes):
     """The block, bound; a state on a seat; where the parts are."""
     block = Supports(MODEL, DT, SupportSettings(**changes))
-    plant = SingerPlant(MODEL, DT, NOWHERE, extras=block.states())
+    plant = singer(MODEL, block.states())
     block.bind(plant.layout, plant.model)
     rng = np.random.default_rng(0)
     P = np.zeros((plant.layout.size, plant.layout.size))
@@ -165,7 +165,7 @@ def test_a_filter_that_asks_for_contacts_that_never_come_is_the_plain_one():
         runs.append((one, found))
     (plain, before), (asking, after) = runs
     for one, two in zip(before, after, strict=True):
-        np.testing.assert_allclose(two.inner.state.extra, 0.0, atol=1e-3)
+        np.testing.assert_allclose(two.record.state.extra, 0.0, atol=1e-3)
         for name, scale in (("q", 1e-6), ("v", 1e-5), ("a", 1e-3), ("wrench", 1e-4)):
             np.testing.assert_allclose(getattr(two, name), getattr(one, name), rtol=0, atol=scale)
         assert one.support is None

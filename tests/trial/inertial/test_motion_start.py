@@ -31,7 +31,7 @@ def test_tilts_and_headings_of_segments_are_known_as_stated():
     nv = walk.model.nv
     for name in SEGMENTS[1:]:
         turns = spatial[3:] * walk.model.supports[walk.model.joint(name).joint_id]
-        sd = np.sqrt(np.diag(turns @ first.covariance[:nv, :nv] @ turns.T))
+        sd = np.sqrt(np.diag(turns @ first.P[:nv, :nv] @ turns.T))
         assert (sd <= np.array([s.tilt_sd_rad, s.tilt_sd_rad, s.heading_sd_rad]) * 1.0001).all()
         assert sd[2] > 0.5 * s.heading_sd_rad
     assert not first.v.any()

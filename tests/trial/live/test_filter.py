@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError, NotObservable
-from mbkf.filters.kinematic.tracking import warm_up_frames
+from mbkf.filters.kinematic.warm_start import warm_up_frames
 from mbkf.filters.record import FrameRecorder, blank
 from mbkf.filters.tracking import track, track_of
 from mbkf.filters.tracking_loop import followed

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from mbkf.errors import UnknownName
+from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.torque.report import TorqueReport
 from mbkf.filters.torque.settings import preset
-from mbkf.filters.torque.tracking import TorqueTracking
 from mbkf.sensors.foot_contact import FootContact
 from mbkf.sensors.foot_plates import FootPlates
 from mbkf.sensors.markers import MarkerSettings
@@ -19,19 +19,19 @@ from mbkf.trial.preparation.filters import FILTERS, tracking_filter
 from tests.dynamics import DT
 from tests.followed import inputs, made
 
-CLASSES = {"kinematic": KinematicTracking, "torque": TorqueTracking, "dynamic": DynamicTracking}
+REPORTS = {"kinematic": KinematicReport, "torque": TorqueReport, "dynamic": DynamicReport}
 every_filter = pytest.mark.parametrize("name", FILTERS)
 
 
 def test_there_are_three_filters():
-    assert set(FILTERS) == set(CLASSES)
+    assert set(FILTERS) == set(REPORTS)
 
 
 @every_filter
 def test_a_name_is_a_filter_of_this_body(name):
     known = inputs()
     found = tracking_filter(name, known)
-    assert type(found) is CLASSES[name]
+    assert type(found.report) is REPORTS[name]
     assert found.model is made().model
     assert found.dt_s == DT
     assert found.kalman.sensor is known.sensor

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.tracking import track
 from mbkf.model.newton_euler import NewtonEuler
@@ -44,7 +44,7 @@ def followed(smooth):
     """The trial through the filter."""
     inputs, recording = prepared("sit_to_stand")[3]
     filter = tracking_filter("dynamic", inputs)
-    assert isinstance(filter, DynamicTracking)
+    assert isinstance(filter.report, DynamicReport)
     return track(filter, recording, smoothing=SmoothingSettings() if smooth else None)
 
 

@@ -1,4 +1,4 @@
-"""A value that is made when it is first asked for, and kept: what the answer to a frame need not wait for."""
+"""A value that is computed when it is first asked for: work that the answer to a frame need not wait for."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Generic, TypeVar, cast
 T = TypeVar("T")
 
 
-class Once(Generic[T]):
+class Cached(Generic[T]):
     """Calls a function at most once. A plain object: ``functools.cache`` costs more to make than most such values."""
 
     __slots__ = ("_make", "_value")
@@ -20,6 +20,6 @@ class Once(Generic[T]):
     def __call__(self) -> T:
         """The value."""
         if self._make is not None:
-            # What the function was made from is let go with it.
+            # The function is dropped, and with it the arrays that it refers to.
             self._value, self._make = self._make(), None
         return cast(T, self._value)

@@ -1,13 +1,13 @@
-"""What later readings tell of a frame while it moves on: the backward pass over a window of frames after it.
+"""Information of a window of later frames on one frame, while the window moves on: the backward pass, kept joined.
 
 The gradient is carried back frame by frame (:mod:`mbkf.numerics.smoothing`), with products of matrix and vector that
-cost next to nothing. The curvature L is not: but over one frame, with P its posterior covariance, Λ its readings, Φ the
+cost next to nothing. The curvature L costs more: over one frame, with P its posterior covariance, Λ its readings, Φ the
 transition into it and E = Φ − P Λ Φ,
 
     L ← Eᵀ L E + Eᵀ Λ Φ
 
-and such passages over neighbouring frames join into one, in any grouping (Särkkä 2021). A window that gains a frame at
-its end and loses one at its beginning is therefore kept joined with few products per frame, however long it is
+and such transitions over neighbouring frames join into one, in any grouping (Särkkä 2021). A window that gains a frame
+at its end and loses one at its beginning is therefore kept joined with few products per frame, however long it is
 (Tangwongsan 2015): from each of its older frames to a boundary, and over all frames after the boundary.
 """
 
@@ -36,7 +36,7 @@ class LinearStep(NamedTuple):
     transition: Array
 
 
-class Passage(NamedTuple):
+class CurvatureTransition(NamedTuple):
     """From after the readings of a frame to after those of an earlier one: L ← Eᵀ L E + M.
 
     Attributes:
@@ -48,41 +48,41 @@ class Passage(NamedTuple):
     curvature: Array
 
     @classmethod
-    def over(cls, step: LinearStep) -> Passage:
+    def over(cls, step: LinearStep) -> CurvatureTransition:
         """Over one frame."""
-        told = step.information @ step.transition
-        matrix = step.transition - step.P @ told
-        return cls(matrix, matrix.T @ told)
+        known = step.information @ step.transition
+        matrix = step.transition - step.P @ known
+        return cls(matrix, matrix.T @ known)
 
-    def after(self, earlier: Passage) -> Passage:
+    def after(self, earlier: CurvatureTransition) -> CurvatureTransition:
         """This one and then, further back, an earlier one."""
-        return Passage(self.matrix @ earlier.matrix, earlier.carried(self.curvature))
+        return CurvatureTransition(self.matrix @ earlier.matrix, earlier.applied(self.curvature))
 
-    def carried(self, curvature: Array) -> Array:
+    def applied(self, curvature: Array) -> Array:
         """(N, N) a curvature after its frames, brought before them."""
         return self.matrix.T @ curvature @ self.matrix + self.curvature
 
 
 class _Joined:
-    """Passages over the frames of a window, in two parts: up to a boundary, and after it."""
+    """Transitions over the frames of a window, in two parts: up to a boundary, and after it."""
 
     def __init__(self) -> None:
-        self._to_boundary: list[Passage] = []
+        self._to_boundary: list[CurvatureTransition] = []
         """From each frame before the boundary, the first frame's last."""
-        self._single: list[Passage] = []
-        self._beyond: Passage | None = None
+        self._single: list[CurvatureTransition] = []
+        self._beyond: CurvatureTransition | None = None
 
-    def append(self, passage: Passage) -> None:
-        self._single.append(passage)
-        self._beyond = passage if self._beyond is None else passage.after(self._beyond)
+    def append(self, one: CurvatureTransition) -> None:
+        self._single.append(one)
+        self._beyond = one if self._beyond is None else one.after(self._beyond)
 
     def drop(self) -> None:
         if self._to_boundary:
             self._to_boundary.pop()
             return
-        total: Passage | None = None
-        for passage in self._single[:0:-1]:
-            total = passage if total is None else total.after(passage)
+        total: CurvatureTransition | None = None
+        for one in self._single[:0:-1]:
+            total = one if total is None else total.after(one)
             self._to_boundary.append(total)
         self._single, self._beyond = [], None
 
@@ -92,25 +92,22 @@ class _Joined:
         if first is None or self._beyond is None:
             only = first or self._beyond
             return None if only is None else only.curvature
-        return first.carried(self._beyond.curvature)
+        return first.applied(self._beyond.curvature)
 
 
-class LaterWindow:
-    """The frames that follow one frame, which moves on as they come."""
+class LaterFrames:
+    """The frames that follow one frame, a window that moves on as they come."""
 
     def __init__(self, covariances: bool = True) -> None:
-        """Args: whether covariances are wanted, too; they cost several times as much."""
+        """Args: True to carry covariances, too; they cost several times as much."""
         self._steps: deque[LinearStep] = deque()
         self._joined = _Joined() if covariances else None
-
-    def __len__(self) -> int:
-        return len(self._steps)
 
     def append(self, step: LinearStep) -> None:
         """A frame more at the end."""
         self._steps.append(step)
         if self._joined is not None:
-            self._joined.append(Passage.over(step))
+            self._joined.append(CurvatureTransition.over(step))
 
     def drop(self) -> None:
         """The first frame leaves."""
@@ -118,8 +115,8 @@ class LaterWindow:
         if self._joined is not None:
             self._joined.drop()
 
-    def told(self) -> BackwardPass | None:
-        """What all its frames tell of the frame before them; None where there is none."""
+    def backward(self) -> BackwardPass | None:
+        """The pass over all its frames, at the frame before them; None where there are no frames."""
         if not self._steps:
             return None
         back = BackwardPass(len(self._steps[0].vector), covariances=False)

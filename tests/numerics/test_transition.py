@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.numerics.rate_transition import RateTransition
+from mbkf.numerics.transition import DenseTransition, RateTransition
 from tests.motions import worst
 
 DOFS = 5
@@ -34,3 +34,9 @@ def test_the_parts_are_the_matrix(orders, rest):
     assert worst(parts.forward(x) - phi @ x) <= 1e-14 * worst(phi) * worst(x) * size
     assert worst(parts.backward(x) - phi.T @ x) <= 1e-14 * worst(phi) * worst(x) * size
     np.testing.assert_array_equal(x, kept)
+    dense = DenseTransition(phi)
+    np.testing.assert_array_equal(dense.matrix(size), dense.phi)
+    np.testing.assert_allclose(dense.forward(x), parts.forward(x), atol=1e-13 * worst(phi) * worst(x) * size)
+    np.testing.assert_allclose(
+        dense.backward(x), parts.backward(x), atol=1e-13 * worst(phi) * worst(x) * size
+    )

@@ -1,4 +1,4 @@
-"""Estimates that are no person: told by their numbers, and never given for smoothed ones."""
+"""Implausible estimates are recognised by their numbers, and never given as smoothed ones."""
 
 import warnings
 from dataclasses import replace
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
-from mbkf.filters.person import DOUBT, MOST_RAD_S, corrected_or_own, departed, is_person
+from mbkf.filters.plausibility import DOUBT, MOST_RAD_S, moved_away, plausible, smoothed_or_filtered
 from mbkf.filters.tracking import track
 from mbkf.sensors.contact.possible import MOST_WEIGHTS
 from mbkf.trial.preparation.filters import FILTERS
@@ -23,29 +23,29 @@ def one(name="dynamic"):
 
 
 @every_filter
-def test_a_squat_is_a_person(name):
+def test_a_squat_is_plausible(name):
     _, model = one(name)
-    assert all(is_person(estimate, model) for estimate in estimates(name)[1])
+    assert all(plausible(estimate, model) for estimate in estimates(name)[1])
 
 
 @pytest.mark.parametrize("field", ["q", "v", "a"])
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_what_is_no_number_is_no_person(field, value):
+def test_numbers_that_are_not_finite_are_implausible(field, value):
     estimate, model = one()
     wrong = getattr(estimate, field).copy()
     wrong[7] = value
-    assert not is_person(estimate._replace(**{field: wrong}), model)
+    assert not plausible(estimate._replace(**{field: wrong}), model)
 
 
 def test_no_joint_is_too_fast_and_no_force_too_large():
     estimate, model = one()
-    for share, person in ((0.99, True), (1.01, False)):
+    for share, possible in ((0.99, True), (1.01, False)):
         v, wrench = np.zeros_like(estimate.v), np.zeros((2, 6))
         v[9] = -share * MOST_RAD_S
-        assert is_person(estimate._replace(v=v), model) is person
+        assert plausible(estimate._replace(v=v), model) is possible
         wrench[1, 2] = share * DOUBT * MOST_WEIGHTS * 9.80665 * model.mass_kg
-        assert is_person(estimate._replace(wrench=wrench), model) is person
-    assert is_person(estimate._replace(wrench=np.full((2, 6), np.nan)), model)
+        assert plausible(estimate._replace(wrench=wrench), model) is possible
+    assert plausible(estimate._replace(wrench=np.full((2, 6), np.nan)), model)
 
 
 def test_a_body_is_elsewhere_when_most_joints_are_though_markers_showed_it():
@@ -53,40 +53,38 @@ def test_a_body_is_elsewhere_when_most_joints_are_though_markers_showed_it():
     away, arm = estimate.q.copy(), estimate.q.copy()
     away[1] += 0.11
     arm[model.joint("left_upper_arm").q] = [1.0, 0.0, 0.0, 0.0]
-    assert departed(estimate, estimate._replace(q=away), model)
-    assert not departed(estimate, estimate._replace(q=arm), model)
-    assert not departed(estimate._replace(tracked=False), estimate._replace(q=away), model)
-    assert not departed(estimate._replace(placed=False), estimate._replace(q=away), model)
+    assert moved_away(estimate, estimate._replace(q=away), model)
+    assert not moved_away(estimate, estimate._replace(q=arm), model)
+    assert not moved_away(estimate._replace(tracked=False), estimate._replace(q=away), model)
+    assert not moved_away(estimate._replace(placed=False), estimate._replace(q=away), model)
     away[1] -= 0.02
-    assert not departed(estimate, estimate._replace(q=away), model)
+    assert not moved_away(estimate, estimate._replace(q=away), model)
 
 
-def test_all_of_a_window_is_the_filter_s_own_where_one_frame_is_no_person():
+def test_all_of_a_window_is_the_filter_s_own_where_one_frame_is_implausible():
     estimate, model = one()
     own = [estimate] * 4
     fast = estimate._replace(v=estimate.v + 1e9)
-    assert corrected_or_own(own, lambda: own, model) == own
+    assert smoothed_or_filtered(own, lambda: own, model) == own
     for found in ([estimate, fast, estimate, estimate], [fast] * 4):
-        kept = corrected_or_own(own, lambda found=found: found, model)
+        kept = smoothed_or_filtered(own, lambda found=found: found, model)
         assert [each.uncorrected for each in kept] == [True] * 4
         assert all(np.array_equal(each.v, estimate.v) for each in kept)
 
 
-def test_a_correction_that_cannot_be_computed_is_none():
+def test_a_failed_smoother_leaves_the_filtered_estimate():
     estimate, model = one()
 
     def singular():
         raise np.linalg.LinAlgError("singular")
 
-    (kept,) = corrected_or_own([estimate], singular, model)
+    (kept,) = smoothed_or_filtered([estimate], singular, model)
     assert kept.uncorrected
 
 
 @every_filter
 @pytest.mark.parametrize("lag_s", [0.0, 0.05])
-def test_smoothing_that_makes_no_person_leaves_the_filter_s_own_estimates_and_is_marked(
-    name, lag_s, monkeypatch
-):
+def test_implausible_smoothing_leaves_the_filtered_estimates_and_is_marked(name, lag_s, monkeypatch):
     """The smoother overflows in the frames from 0.2 s on; those before are smoothed as they were."""
     filter, plain = made_filter(name), track(made_filter(name), recording())
     asked = {"lag_s": lag_s} if lag_s else {"smoothing": WINDOWS}
@@ -96,9 +94,9 @@ def test_smoothing_that_makes_no_person_leaves_the_filter_s_own_estimates_and_is
     def wrong(estimate):
         return estimate._replace(q=estimate.q * np.float64(1e200) ** 2)
 
-    def smoothed(run, recording, first, wanted):
-        found = smooth(run, recording, first, wanted)
-        return [wrong(each) for each in found] if first else found
+    def smoothed(run, wanted):
+        found = smooth(run, wanted)
+        return found if run[0].started else [wrong(each) for each in found]
 
     def lagged(estimate, later, before):
         found = corrected(estimate, later, before)
@@ -117,23 +115,23 @@ def test_smoothing_that_makes_no_person_leaves_the_filter_s_own_estimates_and_is
     assert found.smoothed == right.smoothed
 
 
-def test_a_trial_that_no_window_of_is_a_person_is_not_smoothed(monkeypatch):
+def test_a_trial_without_a_plausible_window_is_not_smoothed(monkeypatch):
     filter = made_filter("kinematic")
     monkeypatch.setattr(filter, "smooth", lambda run, *_: [e._replace(v=e.v + 1e9) for e in run])
     found = track(filter, recording(), smoothing=replace(WINDOWS, window_s=10.0))
     assert found.uncorrected.all() and not found.smoothed
 
 
-def test_windows_go_on_after_one_that_is_no_person(monkeypatch):
+def test_windows_go_on_after_an_implausible_one(monkeypatch):
     filter = made_filter("kinematic")
     smooth = filter.smooth
 
-    def thrown(run, recording, first, wanted):
-        found = smooth(run, recording, first, wanted)
-        return found if first else [each._replace(v=each.v + 1e9) for each in found]
+    def thrown(run, wanted):
+        found = smooth(run, wanted)
+        return [each._replace(v=each.v + 1e9) for each in found] if run[0].started else found
 
     monkeypatch.setattr(filter, "smooth", thrown)
-    smoother, given = FixedLagSmoother(filter, recording(), WINDOWS), []
+    smoother, given = FixedLagSmoother(filter, WINDOWS), []
     for t, estimate in enumerate(estimates("kinematic")[1]):
         given += smoother.push(t, estimate)
     given += smoother.finish()

@@ -1,8 +1,8 @@
-"""Whether an estimate is a person: finite, no faster than bodies move, on the ground with no more than bodies bear.
+"""Bounds on estimates: finite numbers, joint rates and ground forces that bodies can have.
 
 Readings that contradict each other (a plate in other units, of another person, of another time) may drive a filter or a
 smoother to numbers that solve its equations and are no motion. Newton's law is not linear: a smoother, which follows
-linearisations back in time, leaves the person earlier and further than the filter does.
+linearisations back in time, leaves the possible states earlier and further than the filter does.
 """
 
 from __future__ import annotations
@@ -25,13 +25,8 @@ DOUBT = 2.0
 """An estimated force may exceed the largest known one, :data:`mbkf.sensors.contact.possible.MOST_WEIGHTS`, by this."""
 
 
-def is_person(estimate: Posterior, model: Body) -> bool:
-    """Whether an estimate's numbers are those of a moving person.
-
-    Args:
-        estimate: The estimate.
-        model: The body.
-    """
+def plausible(estimate: Posterior, model: Body) -> bool:
+    """True where an estimate is finite, no joint turns faster than :data:`MOST_RAD_S`, and forces can be borne."""
     if not (np.isfinite(estimate.q).all() and np.isfinite(estimate.a).all()):
         return False
     if not np.abs(estimate.v).max(initial=0.0) <= MOST_RAD_S:  # NaN is not
@@ -40,37 +35,37 @@ def is_person(estimate: Posterior, model: Body) -> bool:
     return not (np.abs(estimate.wrench[:, :3]) > most).any()
 
 
-def departed(causal: Posterior, corrected: Posterior, model: Body) -> bool:
-    """Whether later frames move most joints further than a track may be off, though markers showed the body at once.
+def moved_away(filtered: Posterior, smoothed: Posterior, model: Body) -> bool:
+    """True where smoothing moves most joints further than a track may be off, though markers showed the body at once.
 
     Args:
-        causal: The filter's own estimate.
-        corrected: The same in the light of later frames.
+        filtered: The filter's own estimate.
+        smoothed: The same in the light of later frames.
         model: The body.
     """
-    if not (causal.tracked and causal.placed) or causal.started:
+    if not (filtered.tracked and filtered.placed) or filtered.started:
         return False
-    places = (model.placements(one.q)[1] for one in (causal, corrected))
+    places = (model.placements(one.q)[1] for one in (filtered, smoothed))
     moved = np.linalg.norm(np.subtract(*places), axis=1)
     return bool(2 * np.count_nonzero(moved > TRACK_LOSS_M) > len(moved))
 
 
-def corrected_or_own(
-    own: Sequence[Posterior], correct: Callable[[], Sequence[Posterior]], model: Body
+def smoothed_or_filtered(
+    filtered: Sequence[Posterior], smooth: Callable[[], Sequence[Posterior]], model: Body
 ) -> list[Posterior]:
-    """Estimates in the light of later frames; the filter's own, marked as such, where one of those is no person.
+    """Smoothed estimates; where one of them is implausible, the filtered ones, marked as ``uncorrected``.
 
     Args:
-        own: The filter's estimates.
-        correct: Makes the corrected ones, as many.
+        filtered: The filter's estimates.
+        smooth: Makes the smoothed ones, as many.
         model: The body.
     """
     try:
-        with np.errstate(all="ignore"):  # what comes of it is looked at
-            found = list(correct())
-            pairs = zip(own, found, strict=True)
-            if all(is_person(b, model) and not departed(a, b, model) for a, b in pairs):
+        with np.errstate(all="ignore"):  # the result is checked
+            found = list(smooth())
+            pairs = zip(filtered, found, strict=True)
+            if all(plausible(b, model) and not moved_away(a, b, model) for a, b in pairs):
                 return found
     except np.linalg.LinAlgError:
         pass
-    return [one._replace(uncorrected=True) for one in own]
+    return [one._replace(uncorrected=True) for one in filtered]

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.passage import LaterWindow, LinearStep, Passage
+from mbkf.numerics.later_frames import CurvatureTransition, LaterFrames, LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from tests.motions import worst
 from tests.numerics.test_smoothing import Problem, assert_same, batch, filtered, problem
@@ -35,20 +35,20 @@ def cut(p, frames):
 
 def lagged(p, lag, covariances=True):
     """Mean and covariance of every frame from the readings of the ``lag`` frames after it, by the moving window."""
-    window, found, passed = LaterWindow(covariances), [], filtered(p)
+    window, found, passed = LaterFrames(covariances), [], filtered(p)
     for t, step in enumerate(steps(p), start=1):
         window.append(step)
-        if len(window) == lag:
+        if t - len(found) == lag:
             (_, _, x, P), (correction, covariance) = (
                 passed[t - lag],
-                window.told().corrected(passed[t - lag][3]),
+                window.backward().corrected(passed[t - lag][3]),
             )
             found.append((x + correction, covariance))
             window.drop()
     for _, _, x, P in passed[len(found) :]:
-        correction, covariance = (window.told() or BackwardPass(len(x))).corrected(P)
+        correction, covariance = (window.backward() or BackwardPass(len(x))).corrected(P)
         found.append((x + correction, covariance))
-        if len(window):
+        if window.backward() is not None:
             window.drop()
     return found
 
@@ -89,7 +89,7 @@ def test_passages_join_in_any_grouping(grouped):
     p, root = mild(5, 4, 7), np.random.default_rng(0).normal(size=(4, 4))
     back = BackwardPass(4)
     back.curvature = root @ root.T
-    last = Passage(np.zeros((4, 4)), back.curvature)
+    last = CurvatureTransition(np.zeros((4, 4)), back.curvature)
     for step in reversed(steps(p)):
         back.through_readings(step.P, step.information, step.vector)
         back.through_plant(step.transition)
@@ -100,16 +100,16 @@ def test_passages_join_in_any_grouping(grouped):
             total = total.after(part)
         return total
 
-    parts = [*map(Passage.over, steps(p)), last]
+    parts = [*map(CurvatureTransition.over, steps(p)), last]
     total = joined([joined(parts[:grouped]), joined(parts[grouped:])])
     assert worst(total.curvature - back.curvature) < 1e-10 * worst(back.curvature)
 
 
 @pytest.mark.parametrize("covariances", [True, False])
 def test_an_empty_window_tells_nothing(covariances):
-    window = LaterWindow(covariances)
-    assert window.told() is None
+    window = LaterFrames(covariances)
+    assert window.backward() is None
     window.append(steps(problem(1, 3, 1, 3, 3))[0])
-    assert window.told() is not None and len(window) == 1
+    assert window.backward() is not None
     window.drop()
-    assert window.told() is None and len(window) == 0
+    assert window.backward() is None

@@ -1,4 +1,4 @@
-"""Transition Φ of positions on a manifold, of their rates, and of what stays, by its parts.
+"""Transition Φ of an error from one frame to the next: dense, or by its parts where rates move positions on a manifold.
 
 A state (q, v, a …, rest) with k orders of rates moves by q' = q ⊕ s, a step s that the rates add up to, while rates
 carry one another dof by dof:
@@ -10,11 +10,42 @@ with the derivatives A and B of the retraction by q and by s, which couple the d
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from mbkf.conventions import Array, Int32Array
+
+
+class Transition(Protocol):
+    """Φ (N, N) of one step, in any form."""
+
+    def matrix(self, size: int) -> Array:
+        """(N, N) Φ of a state of ``size`` components."""
+
+    def forward(self, vector: Array) -> Array:
+        """(N,) Φ times a tangent vector (N,)."""
+
+    def backward(self, gradient: Array) -> Array:
+        """(N,) Φᵀ times a gradient (N,)."""
+
+
+class DenseTransition(NamedTuple):
+    """Φ (N, N) as a matrix."""
+
+    phi: Array
+
+    def matrix(self, size: int) -> Array:  # noqa: ARG002, the matrix knows its size
+        """(N, N) Φ."""
+        return self.phi
+
+    def forward(self, vector: Array) -> Array:
+        """(N,) Φ times a tangent vector (N,)."""
+        return self.phi @ vector
+
+    def backward(self, gradient: Array) -> Array:
+        """(N,) Φᵀ times a gradient (N,)."""
+        return gradient @ self.phi
 
 
 class RateTransition(NamedTuple):

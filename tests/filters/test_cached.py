@@ -5,12 +5,12 @@ import weakref
 
 import pytest
 
-from mbkf.filters.once import Once
+from mbkf.filters.cached import Cached
 
 
 def test_a_value_is_made_once_and_only_when_asked_for():
     made = []
-    value = Once(lambda: made.append(1) or len(made))
+    value = Cached(lambda: made.append(1) or len(made))
     assert made == []
     assert value() == 1
     assert value() == 1
@@ -19,7 +19,7 @@ def test_a_value_is_made_once_and_only_when_asked_for():
 
 def test_none_is_a_value_like_any_other():
     made = []
-    value = Once(lambda: made.append(1))
+    value = Cached(lambda: made.append(1))
     assert value() is None
     assert value() is None
     assert made == [1]
@@ -31,7 +31,7 @@ def test_what_it_was_made_from_is_let_go():
             return "told"
 
     source = Source()
-    gone, value = weakref.ref(source), Once(source.told)
+    gone, value = weakref.ref(source), Cached(source.told)
     assert value() == "told"
     del source
     gc.collect()
@@ -47,7 +47,7 @@ def test_a_failure_is_no_value():
             raise ValueError("not yet")
         return "made"
 
-    value = Once(fails_at_first)
+    value = Cached(fails_at_first)
     with pytest.raises(ValueError, match="not yet"):
         value()
     assert value() == "made"

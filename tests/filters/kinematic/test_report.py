@@ -1,44 +1,14 @@
-"""The kinematic filter on trials: its warm start, its accelerations, and its smoother against a dense one."""
+"""The kinematic filter on trials: its accelerations, and its smoother against a dense one."""
 
 import numpy as np
 import pytest
 
-from mbkf.filters.kinematic.tracking import SETTLING_S, WARM_UP_S, warm_start
+from mbkf.filters.kinematic.warm_start import SETTLING_S, WarmStart
 from tests.dynamics import DT
-from tests.followed import FRAMES, WHOLE, estimates, made, made_filter, recording, tracked, without
+from tests.followed import FRAMES, WHOLE, estimates, made, made_filter, recording, tracked
 from tests.motions import worst
 
 SETTLED = round(SETTLING_S / DT)
-
-
-def test_a_warm_start_knows_velocities_and_a_few_accelerations():
-    kalman = made_filter("kinematic").kalman
-    found = warm_start(kalman, recording(), 0, None)
-    cold = kalman.start(recording().markers_m[0])
-    truth, nv = made().motion.v[FRAMES.start], made().model.nv
-    assert found.accelerations.shape == (SETTLED, nv)
-    np.testing.assert_array_equal(cold.v, 0.0)
-    assert truth[2] < -0.6
-    assert abs(found.state.v[2] - truth[2]) < 0.1
-    assert worst((found.state.v - truth) / np.sqrt(np.diag(found.state.P)[nv:])) < 4.0
-    assert (np.diag(found.state.P)[nv:] < np.diag(cold.P)[nv:]).all()
-
-
-@pytest.mark.parametrize("left", [1, 2, round(WARM_UP_S / DT) - 1])
-def test_a_warm_start_near_the_end_makes_do_with_what_is_left(left):
-    tracking, t = made_filter("kinematic"), len(FRAMES) - left
-    found = tracking.start(recording(), t, None)
-    assert found.started
-    assert np.isfinite(np.r_[found.q, found.v, found.a]).all()
-    if left == 1:
-        np.testing.assert_array_equal(found.v, 0.0)
-        np.testing.assert_array_equal(found.a, 0.0)
-
-
-def test_a_warm_start_without_markers_ahead_starts_at_rest():
-    last = round(WARM_UP_S / DT)
-    found = made_filter("kinematic").start(without(recording(), slice(last, None)), 0, None)
-    np.testing.assert_array_equal(found.v, 0.0)
 
 
 def test_accelerations_are_differences_once_it_has_settled():
@@ -48,7 +18,7 @@ def test_accelerations_are_differences_once_it_has_settled():
 
 
 def test_while_it_settles_they_are_those_of_the_backward_run():
-    ahead = warm_start(made_filter("kinematic").kalman, recording(), 0, None).accelerations
+    ahead = WarmStart(made_filter("kinematic").kalman)(recording(), 0, None).accelerations
     np.testing.assert_array_equal(tracked("kinematic").a[:SETTLED], ahead)
 
 
@@ -62,13 +32,13 @@ def test_smoothed_accelerations_are_central_differences():
 
 def dense_smoother(plant, found):
     """Corrections (T, 2 nv) and covariances by Rauch, Tung and Striebel, from the filter's own transitions."""
-    step, P = np.zeros_like(found[-1].inner.state.P[0]), found[-1].inner.state.P
+    step, P = np.zeros_like(found[-1].record.state.P[0]), found[-1].record.state.P
     steps, covariances = [step], [P]
     for k in range(len(found) - 2, -1, -1):
-        done, here = found[k + 1].inner.step, found[k].inner.state
+        done, here = found[k + 1].record.step, found[k].record.state
         prior = done.prior.state.P
         gain = np.linalg.solve(prior, plant.transition(here) @ here.P).T
-        correction = found[k + 1].inner.state.P @ done.readings.whole_vector
+        correction = found[k + 1].record.state.P @ done.readings.whole_vector
         step = gain @ (correction + step)
         P = here.P + gain @ (P - prior) @ gain.T
         steps.append(step)
@@ -79,7 +49,7 @@ def dense_smoother(plant, found):
 def test_the_smoother_is_the_dense_one():
     tracking, found = estimates("kinematic")
     found = found[:12]
-    smoothed = tracking.smooth(found, recording(), 0, len(found))
+    smoothed = tracking.smooth(found, len(found))
     steps, covariances = dense_smoother(tracking.kalman.plant, found)
     model, nv = made().model, made().model.nv
     for one, before, step, P in zip(smoothed, found, steps, covariances, strict=True):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.filters.dynamic.tracking import ROUNDS
+from mbkf.filters.dynamic.report import ROUNDS
 from mbkf.sensors.contact.records import Contact
 from tests.dynamics import settings_with
 from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_filter, recording, torques, tracked
@@ -38,7 +38,7 @@ def test_a_start_agrees_with_the_plates():
 def test_torques_come_with_the_spread_of_the_whole_state():
     """T P Tᵀ with T the derivative of the torques, here by finite differences along the state."""
     tracking, found = estimates("dynamic")
-    state: DynamicState = found[5].inner.state
+    state: DynamicState = found[5].record.state
     model, nv = made().model, made().model.nv
     balance = tracking.kalman.balance
 
@@ -49,13 +49,13 @@ def test_torques_come_with_the_spread_of_the_whole_state():
 
     h = 1e-6
     T = np.array([(tau(h * e) - tau(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
-    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, tracking.errors(found[5]).covariance(), T))
+    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, tracking.report.errors(found[5]).covariance(), T))
     np.testing.assert_allclose(tracking.spread(found[5]).torque, expected, rtol=1e-5)
 
 
 def test_wrenches_and_motion_come_with_the_states_spread():
     tracking, found = estimates("dynamic")
-    nv, stated = made().model.nv, tracking.errors(found[5]).covariance()
+    nv, stated = made().model.nv, tracking.report.errors(found[5]).covariance()
     np.testing.assert_allclose(
         tracking.wrench_sd(found[5]).ravel() ** 2, np.diag(stated)[3 * nv :], rtol=1e-12
     )
@@ -66,7 +66,7 @@ def test_where_only_white_noise_is_expected_the_spread_is_the_filters():
     tracking = made_filter("dynamic")
     tracking.kalman.settings = settings_with(innovation_share=0.0)
     estimate = estimates("dynamic")[1][5]
-    np.testing.assert_array_equal(tracking.errors(estimate).covariance(), estimate.inner.state.P)
+    np.testing.assert_array_equal(tracking.report.errors(estimate).covariance(), estimate.record.state.P)
 
 
 def test_reactions_and_torques_follow_the_truth():
@@ -92,7 +92,7 @@ def test_smoothing_moves_wrenches_and_shrinks_their_spread_where_a_plate_is_with
     found = [tracking.start(read, 0, None)]
     for t in range(1, 40):
         found.append(tracking.step(found[-1], read, t))
-    smoothed = tracking.smooth(found, read, 0, 30)
+    smoothed = tracking.smooth(found, 30)
     middle = slice(15, 30)
     before, after = (
         np.array([tracking.wrench_sd(one)[LEFT, 2] for one in run[middle]]) for run in (found, smoothed)
@@ -111,7 +111,7 @@ def test_smoothing_moves_wrenches_and_shrinks_their_spread_where_a_plate_is_with
 def test_smoothing_keeps_decisions(t):
     """What was refused and what the feet stood on is the filter's word."""
     tracking, found = estimates("dynamic")
-    smoothed = tracking.smooth(found, recording(), 0, len(found))
+    smoothed = tracking.smooth(found, len(found))
     assert smoothed[t].contact == found[t].contact
     np.testing.assert_array_equal(smoothed[t].refused, found[t].refused)
     assert smoothed[t].started == found[t].started
@@ -124,24 +124,27 @@ def test_markers_on_skin_with_a_memory_leave_the_spreads_their_places():
     found = [one.start(recording(), 0, None)]
     for t in range(1, 6):
         found.append(one.step(found[-1], recording(), t))
-    P, nv = found[-1].inner.state.P, made().model.nv
+    P, nv = found[-1].record.state.P, made().model.nv
     np.testing.assert_allclose(one.covariance(found[-1]), P[: 2 * nv, : 2 * nv], rtol=1e-12)
     spread = one.spread(found[-1])
     assert np.isfinite(spread.torque[6:]).all()
     assert (spread.torque[6:] > 0).all()
-    smoothed = one.smooth(found, recording(), 0, len(found))
+    smoothed = one.smooth(found, len(found))
     assert worst(smoothed[0].q - found[0].q) < 0.2
 
 
 def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_one():
     tracking, found = estimates("dynamic")
-    quiet = found[30]._replace(plate_noise=replace(tracking._plate_noise, sd=0.3))
-    contact = quiet.inner.decisions.notes.contact
+    record = found[30].record
+    noise = replace(record.detail.plate_noise, sd=0.3)
+    quiet = found[30]._replace(record=record._replace(detail=record.detail._replace(plate_noise=noise)))
+    notes = record.step.decisions.notes
+    contact = notes.contact
     assert contact.contacts == (Contact.MEASURED, Contact.MEASURED)
     sd = tracking.wrench_sd(quiet)
-    notes = replace(quiet.inner.decisions.notes, contact=replace(contact, contacts=(Contact.SHARED,) * 2))
-    decisions = quiet.inner.decisions._replace(notes=notes)
-    shared = tracking.wrench_sd(quiet._replace(inner=quiet.inner._replace(decisions=decisions)))
-    own = np.sqrt(np.diag(quiet.inner.state.P)[tracking.kalman.layout.wrench]).reshape(2, 6)
+    notes = replace(notes, contact=replace(contact, contacts=(Contact.SHARED,) * 2))
+    step = record.step._replace(decisions=record.step.decisions._replace(notes=notes))
+    shared = tracking.wrench_sd(quiet._replace(record=quiet.record._replace(step=step)))
+    own = np.sqrt(np.diag(quiet.record.state.P)[tracking.kalman.layout.wrench]).reshape(2, 6)
     assert (shared >= own).all()
     assert (sd[:, 2] < 0.5 * own[:, 2]).all()

@@ -1,0 +1,281 @@
+"""Report of the dynamic filter: loads, torques and their errors; smoothed until Newton's law holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.dynamic.filter import DynamicFilter, DynamicStep
+from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.dynamic.smoother import smooth
+from mbkf.filters.dynamic.support_loads import SupportLoads
+from mbkf.filters.error_covariance import ErrorCovariance
+from mbkf.filters.estimate import Posterior, Record
+from mbkf.filters.report import FirstMotion, StateReport
+from mbkf.filters.spread import ConfigurationParts, Spread, root
+from mbkf.filters.state_variances import StateVariances, state_variances
+from mbkf.sensors.block import NO_DOFS, Frame
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.layout import FEET
+from mbkf.sensors.white_noise import WhiteNoise
+
+LATER_FADES_S = 0.1
+"""Time in which a later frame's influence fades; without later frames an estimate is as late as a causal one."""
+
+LEAST_PLATE_NOISE_N = 0.1
+"""Least noise of a plate's forces: readings are stored in steps of such a size."""
+
+ROUNDS = 2
+"""Linearisations of a smoothed window; a third round changes the residual by less than 0.1 N."""
+
+
+class Changes(NamedTuple):
+    """Further record of a frame, for standard deviations.
+
+    Attributes:
+        lag: (nv + 12 or more,) lag of accelerations, the feet's wrenches and those on other parts behind a change;
+            None where that is not stated.
+        wrench: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
+            at once; None where they are not.
+        plate_noise: Noise of the plates' forces, N; None at a start.
+        smoothed: Later frames have corrected the estimate and its covariance.
+    """
+
+    lag: Array | None
+    wrench: Array | None
+    plate_noise: WhiteNoise | None
+    smoothed: bool = False
+
+
+class DynamicReport(StateReport[DynamicState]):
+    """Reads a :class:`DynamicFilter`.
+
+    Attributes:
+        loads: Reads the wrenches on parts besides the feet.
+    """
+
+    kalman: DynamicFilter
+
+    def __init__(self, kalman: DynamicFilter) -> None:
+        super().__init__(kalman)
+        self.loads = SupportLoads(self.model, kalman.layout)
+        self._plate_noise = WhiteNoise(kalman.settings.contact.plate_force_n, LEAST_PLATE_NOISE_N)
+        self._unobservable = np.flatnonzero(kalman.unobservable)
+        self._anywhere = self.model.posture_sd[self._unobservable] ** 2
+        self._read: tuple[Posterior, StateVariances, bool] | None = None
+        self._no_torques = np.zeros((0, kalman.layout.wrench.stop))
+        self._smoothing: list[Array] = []  # memory that windows share
+
+    def first(self, motion: FirstMotion, frame: Frame) -> Posterior:
+        """The motion, corrected by the frame's plates and Newton's law."""
+        state, a = motion.state, motion.accelerations.mean(axis=0)
+        step = self.kalman.first(state.q, state.v, a, state.P, frame)
+        found = self._estimate(step, Changes(None, None, None))
+        return found._replace(tracked=True, started=True, lost=False)
+
+    def posterior(self, step: DynamicStep, before: Posterior, frame: Frame) -> Posterior:
+        """The estimate that a step led to."""
+        was, state, last = before.record.state, step.state, _changes(before)
+        wrench = np.zeros((2, 2, 6))
+        np.subtract(state.w.reshape(2, 6), before.wrench, out=wrench[0])
+        if last.wrench is not None:
+            np.subtract(wrench[0], last.wrench[0], out=wrench[1])
+        noise = (last.plate_noise or self._plate_noise).after(frame.plates[:, :3])
+        steps = self.kalman.settings.errors.lag_s / self.kalman.plant.dt_s
+        return self._estimate(step, Changes(self._lag(was, state, steps), wrench, noise))
+
+    def _estimate(self, step: DynamicStep, changes: Changes) -> Posterior:
+        state, contact = step.state, step.decisions.notes.contact
+        return Posterior(
+            state.q,
+            state.v,
+            state.a,
+            state.w.reshape(2, 6),
+            None if contact is None else contact.contacts,
+            step.refused,
+            step.tracked,
+            False,
+            Record(state, step, None, changes),
+            self.loads.wrench(self.loads.of(step.decisions.notes.supports, state)),
+            lost=step.lost,
+        )
+
+    def _lag(self, before: DynamicState, state: DynamicState, steps: float) -> Array:
+        """(nv + 12 or more,) change of accelerations and wrenches in so many time steps."""
+        change = (state.a - before.a, state.w - before.w, self.loads.change(before, state))
+        return steps * np.concatenate(change)
+
+    def moved(
+        self,
+        estimate: Posterior,
+        state: DynamicState,
+        before: DynamicState | None,
+        ahead_s: float = np.inf,
+    ) -> Posterior:
+        """An estimate whose state later frames have corrected.
+
+        Args:
+            estimate: The filter's own.
+            state: The corrected state.
+            before: That of the frame before; None at a start.
+            ahead_s: Time over which later frames are known; at the end of a trial there are none.
+        """
+        own: DynamicState = estimate.record.state
+        if state is own:
+            return estimate
+        s, notes = self.kalman.settings.errors, _step(estimate).decisions.notes
+        unknown = float(np.exp(-ahead_s / LATER_FADES_S))
+        steps = (s.smoothed_lag_s + unknown * (s.lag_s - s.smoothed_lag_s)) / self.kalman.plant.dt_s
+        lag = self._lag(state if before is None else before, state, steps)
+        changes = _changes(estimate)._replace(lag=lag, smoothed=state.P is not own.P)
+        return estimate._replace(
+            q=state.q,
+            v=state.v,
+            a=state.a,
+            wrench=state.w.reshape(2, 6),
+            record=estimate.record._replace(state=state, detail=changes),
+            support=self.loads.wrench(self.loads.of(notes.supports, state)),
+        )
+
+    def smooth(self, run: Sequence[Posterior], wanted: int) -> list[Posterior]:
+        """By an iterated smoother (:mod:`mbkf.filters.dynamic.smoother`).
+
+        Args:
+            run: Estimates of consecutive frames without a restart among them.
+            wanted: Number of estimates to return.
+        """
+        steps = [_step(estimate) for estimate in run]
+        states = list(smooth(self.kalman, steps, ROUNDS, wanted, self._smoothing))
+        ahead_s = self.kalman.plant.dt_s * np.arange(len(run) - 1, -1, -1)
+        return [self.moved(*one) for one in zip(run, states, [None, *states], ahead_s, strict=False)]
+
+    def covariance(self, estimate: Posterior) -> Array:
+        """(2 nv, 2 nv) of (q, v); dofs that no marker moves with may be anywhere a posture is."""
+        motion = self.kalman.layout.motion
+        P = self.errors(estimate).covariance()[motion, motion]
+        P[self._unobservable, self._unobservable] += self._anywhere
+        return P
+
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+        """Standard deviations; torques' from the whole state through Newton–Euler."""
+        found = self._variances(estimate, torques)
+        parts, q = ConfigurationParts(found.height, found.blocks), estimate.record.state.q
+        return Spread(self.reader, q, found.position, found.velocity, found.torque, lambda: parts)
+
+    def wrench_sd(self, estimate: Posterior) -> Array:
+        """(2, 6) standard deviations of the feet's wrenches."""
+        return root(self._variances(estimate, torques=False).wrench).reshape(2, 6)
+
+    def support_sd(self, estimate: Posterior) -> Array:
+        """(B, 6) from the state's covariance, and from how the parts that bear share their load."""
+        loads = self.loads.of(_step(estimate).decisions.notes.supports, estimate.record.state)
+        return self.loads.sd(loads, self.errors(estimate) if loads is not None else None)
+
+    def _variances(self, estimate: Posterior, torques: bool = True) -> StateVariances:
+        """Variances of all quantities of an estimate; kept, since they are asked for one after the other.
+
+        Args:
+            estimate: The estimate.
+            torques: False where those of the torques may be NaN.
+        """
+        if self._read is not None and self._read[0] is estimate and (self._read[2] or not torques):
+            return self._read[1]
+        q, dofs = estimate.record.state.q, self.reader.coordinates.dofs
+        by_state, shared = self._torques(estimate) if torques else (self._no_torques, None)
+        rise = self.reader.rise_jacobian(q)
+        found = state_variances(self.errors(estimate), by_state, rise, dofs)
+        if not torques:
+            found = found._replace(torque=np.full(self.model.nv, np.nan))
+        if shared is not None:
+            found.torque[:] += shared
+        if len(self._unobservable):
+            anywhere = np.zeros(self.model.nv)
+            anywhere[self._unobservable] = self._anywhere
+            found.position[:] += anywhere
+            found.height[:] += rise**2 @ anywhere
+            np.einsum("bii->bi", found.blocks)[:] += anywhere[dofs]
+        self._read = estimate, found, torques
+        return found
+
+    def _torques(self, estimate: Posterior) -> tuple[Array, Array | None]:
+        """(nv, n) derivative of the torques by the state, and the variance that sharing a load adds to them."""
+        state, balance = estimate.record.state, self.kalman.balance
+        loads = self.loads.of(_step(estimate).decisions.notes.supports, state)
+        return self.loads.torques(balance, balance.torques(state.q, state.v, state.a, state.w), loads)
+
+    def errors(self, estimate: Posterior) -> ErrorCovariance:
+        """Errors of the whole state; the filter's own P where it knows how the noise is correlated."""
+        state, step = estimate.record.state, _step(estimate)
+        s, notes, changes = self.kalman.settings, step.decisions.notes, _changes(estimate)
+        layout, q = self.kalman.layout, self.kalman.layout.q
+        # Markers whose skin has a memory inform velocities and further states, too.
+        information = step.readings.matrix[q, q]
+        share = s.markers.innovation_share
+        if share <= 0.0 or s.markers.skin_memory_s > 0.0 or self.kalman.spread_m is not None:
+            return ErrorCovariance(layout, state.P, information, NO_DOFS, 0.0, 1.0, 0.0)
+        known = ~self.kalman.unobservable
+        known[notes.unmarked] = False
+        seen = np.flatnonzero(known)
+        # A pose takes up part of its markers' errors, so innovations show less than that.
+        readings = 3 * int(np.count_nonzero(notes.trusted))
+        over = max(readings - len(seen), readings // 4)
+        skin = s.errors.skin_share * notes.lasting * share * readings / max(over, 1)
+        # A limb out of sight errs as P says, and so does a reaction that rests on its acceleration.
+        all_seen = len(seen) + len(self._unobservable) == self.model.nv
+        contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
+        free = tuple(foot for foot, on in enumerate(contacts) if on == Contact.UNMEASURED)
+        unread = bool(free) and not {Contact.MEASURED, Contact.SHARED} & set(contacts)
+        return ErrorCovariance(
+            layout,
+            state.P,
+            information,
+            seen,
+            skin,
+            s.errors.new_share,
+            s.errors.skin_rate_rad_s,
+            free,
+            s.errors.sharing_scale,
+            changes.lag if unread or notes.supports else None,
+            self._edges(estimate, free),
+            self.loads.slice if notes.supports and all_seen else None,
+            s.errors.smoothed_new_rates if changes.smoothed else s.errors.new_rates,
+            self._plates(changes, contacts),
+        )
+
+    def _plates(self, changes: Changes, contacts: Sequence[Contact]) -> float:
+        """Noise of plates over the filter's assumption; where two feet share a plate, no reading shows their shares."""
+        if changes.plate_noise is None or Contact.SHARED in contacts:
+            return 1.0
+        return min(1.0, changes.plate_noise.sd / self.kalman.settings.contact.plate_force_n)
+
+    def _edges(self, estimate: Posterior, free: tuple[int, ...]) -> Array:
+        """(n, 12) wrenches that feet may carry or not: see :mod:`mbkf.filters.error_covariance`."""
+        contact = _step(estimate).decisions.notes.contact
+        if contact is None:
+            return np.zeros((0, FEET))
+        s, change = self.kalman.settings.errors, _changes(estimate).wrench
+        edges = np.zeros((4, 2, 6))
+        for foot in (0, 1):
+            if foot in free:
+                size = 0.0
+                if s.edge_force_n > 0.0:
+                    size = float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * s.edge_force_n)) ** 2))
+                x, y, _ = contact.centres_m[foot]
+                edges[foot, foot] = s.edge_force_n * size * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
+            elif contact.contacts[foot] == Contact.AIR:
+                edges[foot, foot] = 0.0 if contact.below is None else contact.below
+            elif change is not None:
+                edges[foot, foot] = s.frame_share[0] * change[0, foot]
+                edges[2 + foot, foot] = s.frame_share[1] * change[1, foot]
+        return edges.reshape(4, FEET)
+
+
+def _step(estimate: Posterior) -> DynamicStep:
+    return cast("DynamicStep", estimate.record.step)
+
+
+def _changes(estimate: Posterior) -> Changes:
+    return cast("Changes", estimate.record.detail)

@@ -1,0 +1,127 @@
+"""One driver of every filter, frame by frame: start, prediction, step, and correction by later frames."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.innovations import Innovations
+from mbkf.filters.report import AnyReport, FirstMotion
+from mbkf.numerics.later_frames import LinearStep
+from mbkf.numerics.smoothing import BackwardPass
+
+
+class Start(Protocol):
+    """Finds the motion from which a filter starts.
+
+    Attributes:
+        restart_after_s: Time without enough readings after which the filter starts anew.
+        placed: Instruments show at once where the body is.
+    """
+
+    restart_after_s: float
+    placed: bool
+
+    def __call__(self, recording: Recording, t: int, guess: Array | None) -> FirstMotion | None:
+        """The motion at a frame, with a velocity known from the next frames.
+
+        Args:
+            recording: The readings.
+            t: The frame.
+            guess: (nq,) configuration near which the body may be; None where it may be anywhere.
+
+        Returns:
+            None where the frame's markers do not fit the body.
+        """
+
+
+class TrackingFilter:
+    """A filter as trials, streams and smoothers drive it.
+
+    Attributes:
+        report: Reads the filter's states.
+        kalman: The filter.
+        model: The body; ``clinical``: its clinical coordinates.
+        dt_s: Time between frames.
+        restart_after_s: Time without enough readings after which the filter starts anew.
+        covariance, spread, wrench_sd, support_sd, smooth, predict: Methods of the report.
+    """
+
+    def __init__(self, report: AnyReport, start: Start) -> None:
+        self.report, self.kalman, self.model = report, report.kalman, report.model
+        self.clinical, self.dt_s = report.reader.clinical, report.kalman.plant.dt_s
+        self.restart_after_s, self._start, self._placed = start.restart_after_s, start, start.placed
+        self.covariance, self.spread, self.smooth = report.covariance, report.spread, report.smooth
+        self.wrench_sd, self.support_sd, self.predict = report.wrench_sd, report.support_sd, report.predict
+
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
+        """An estimate at a frame that already knows its velocity.
+
+        Args:
+            recording: The readings.
+            t: The frame.
+            guess: (nq,) configuration near which the body may be; None where it may be anywhere.
+
+        Returns:
+            None where the frame's markers do not fit the body.
+        """
+        motion = self._start(recording, t, guess)
+        return None if motion is None else self.report.first(motion, recording.frame(t))
+
+    def step(
+        self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Posterior:
+        """The estimate of frame t from that of the frame before.
+
+        Args:
+            before: Estimate of the frame before.
+            recording: The readings.
+            t: The frame.
+            prediction: Result of :meth:`predict` for ``before``, where it is known; good for one step.
+        """
+        was, frame = before.record, recording.frame(t)
+        prior = None if prediction is None else prediction.prior
+        try:
+            step = self.kalman.step(was.state, was.memory, frame, prior)
+            found = self.report.posterior(step, before, frame)
+        except (np.linalg.LinAlgError, ValueError) as error:
+            found = self.report.unsolved(error, before, frame)
+        return found if self._placed else found._replace(placed=False)
+
+    def innovations(self, estimate: Posterior) -> Innovations | None:
+        """Innovations of an estimate's frame against their expected spread; None at a start."""
+        step = estimate.record.step
+        return None if estimate.started or step is None else step.innovations
+
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """The step into a frame, linearised as the filter did; identity where no step could be computed.
+
+        Args:
+            before: Estimate of the frame before.
+            estimate: The frame's own, not a start.
+        """
+        state, step = estimate.record.state, estimate.record.step
+        N = len(state.P)
+        if step is None:
+            return LinearStep(state.P, np.zeros((N, N)), np.zeros(N), np.eye(N))
+        transition = self.kalman.plant.step_transition(before.record.state, step.prior.state)
+        known = step.readings
+        return LinearStep(state.P, known.whole_matrix, known.whole_vector, transition.matrix(N))
+
+    def corrected(
+        self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
+    ) -> Posterior:
+        """An estimate in the light of later frames, by one linear pass.
+
+        Args:
+            estimate: The filter's own.
+            later: Information of the later frames; None where there are none.
+            before: Corrected estimate of the frame before, None at a start; for differences over time.
+        """
+        state = estimate.record.state
+        if later is not None:
+            state = self.kalman.plant.retract(state, *later.corrected(state.P))
+        return self.report.moved(estimate, state, None if before is None else before.record.state)
