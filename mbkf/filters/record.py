@@ -79,7 +79,8 @@ def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
     def length(axis: str) -> int:
         return len(AXES[axis].labels) or sizes[axis]
 
-    return np.dtype([(f.name, f.kind, tuple(map(length, f.axes))) for f in FIELDS])
+    flags_last = sorted(FIELDS, key=lambda one: one.kind == "?")  # so that the numbers of a row are aligned
+    return np.dtype([(f.name, f.kind, tuple(map(length, f.axes))) for f in flags_last])
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:

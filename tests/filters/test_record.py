@@ -26,9 +26,15 @@ SIZES = {"marker": 3, "configuration": 8, "dof": 7, "coordinate": 7, "part": 2, 
 
 def test_every_field_has_its_type_and_shape():
     dtype = record_dtype(SIZES)
-    assert dtype.names == tuple(field.name for field in FIELDS)
+    assert set(dtype.names) == {field.name for field in FIELDS} and len(dtype.names) == len(FIELDS)
     assert dtype["measured_m"].shape == (3, 3)
     assert dtype["q"].shape == (8,) and dtype["wrench"].shape == (2, 6) and dtype["nis"].shape == ()
+
+
+def test_numbers_of_a_row_are_aligned():
+    """The kernel takes no others."""
+    row = blank(record_dtype(SIZES), 1)[0]
+    assert all(row[field.name].flags.aligned for field in FIELDS if field.kind != "?")
 
 
 def test_arrays_of_a_trial_are_fields_of_the_record():
