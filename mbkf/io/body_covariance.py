@@ -1,4 +1,4 @@
-"""What scaling leaves unknown of a person's body: the covariance of scale factors and marker places."""
+"""Uncertainty that scaling leaves in a person's body: the covariance of scale factors and marker places."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import ShapeError
-from mbkf.io.text import toml_text
 
 DIGITS = 6
 """Significant digits of a number in a subject file."""
@@ -86,27 +85,19 @@ class BodyCovariance:
                 rows[mine, first : first + 3] = unseen_sd_m[name] * np.eye(3)
         return rows
 
-    def as_toml(self) -> list[str]:
-        """Lines of a TOML table ``[covariance]``: names, and the lower triangle row by row."""
-        rows = [", ".join(f"{x:.{DIGITS}g}" for x in row[: n + 1]) for n, row in enumerate(self.root)]
-        return [
-            "[covariance]",
-            "# Lower triangular L; L Lᵀ is the covariance of scale factors and marker places (m).",
-            f"factors = [{', '.join(toml_text(name) for name in self.factors)}]",
-            f"markers = [{', '.join(toml_text(name) for name in self.markers)}]",
-            "root = [",
-            *(f"  [{row}]," for row in rows),
-            "]",
-        ]
+    def as_table(self) -> CovarianceTable:
+        """The table of a subject file: names, and the lower triangle row by row."""
+        rows = [[float(f"{x:.{DIGITS}g}") for x in row[: n + 1]] for n, row in enumerate(self.root)]
+        return CovarianceTable(factors=list(self.factors), markers=list(self.markers), root=rows)
 
 
 def read_covariance(table: CovarianceTable) -> BodyCovariance:
-    """The record of a TOML table that :meth:`BodyCovariance.as_toml` wrote.
+    """The record of a table that :meth:`BodyCovariance.as_table` made.
 
     Raises:
         KeyError: An entry is missing.
-        ValueError: A row has not as many numbers as its place asks for, or one is not finite.
-        ShapeError: There are not as many rows as names ask for.
+        ValueError: Row n does not have n + 1 finite numbers.
+        ShapeError: The number of rows is not that of the names' parameters.
     """
     rows = [[float(x) for x in row] for row in table["root"]]
     root = np.zeros((len(rows), len(rows)))

@@ -1,4 +1,4 @@
-"""A person's own inertial parameters in the subject file: how segments differ from the reference body's table."""
+"""A person's own inertial parameters in the subject file: differences of segments from the reference body's table."""
 
 from __future__ import annotations
 
@@ -36,21 +36,6 @@ class SegmentInertia:
             raise InvalidInput(f"a segment's mass_factor must be positive, got {self.mass_factor:g}")
 
 
-def inertia_lines(inertia: Mapping[str, SegmentInertia]) -> list[str]:
-    """The subject file's lines: one table per segment; none where there are none."""
-    lines = []
-    for name, own in inertia.items():
-        lines += [
-            "",
-            f"[inertia.{name}]",
-            f"mass_factor = {float(own.mass_factor)!r}",
-            f"mass_factor_sd = {float(own.mass_factor_sd)!r}",
-            f"centre_shift_m = {_numbers(own.centre_shift_m)}",
-            f"centre_shift_sd_m = {_numbers(own.centre_shift_sd_m)}",
-        ]
-    return lines
-
-
 def parse_inertia(table: Mapping[str, Mapping[str, object]]) -> dict[str, SegmentInertia]:
     """The segments of the subject file's table.
 
@@ -68,10 +53,6 @@ def parse_inertia(table: Mapping[str, Mapping[str, object]]) -> dict[str, Segmen
         )
         for name, entry in table.items()
     }
-
-
-def _numbers(values: Array) -> str:
-    return f"[{', '.join(repr(float(x)) for x in values)}]"
 
 
 def _number(value: Any) -> float:

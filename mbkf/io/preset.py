@@ -1,24 +1,22 @@
-"""Preset files: settings of a filter under a name, with where they come from (TOML, written by ``mbkf tune``)."""
+"""Preset files: settings of a filter under a name, with their origin (TOML, written by ``mbkf tune``)."""
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mbkf.errors import FileFormatError, UnknownName
-from mbkf.io.atomic import replacing
+from mbkf.errors import UnknownName
 from mbkf.io.plain_data import read_toml
+from mbkf.io.toml import one_line_errors, write_toml
 
 FOLDER_VARIABLE = "MBKF_PRESETS"
 """Environment variable that names the folder of named presets."""
 
 SUFFIX = ".toml"
-_HINT = "make it with 'mbkf tune'"
 _KEYS = ("name", "filter", "version", "note", "tuned_on", "held_out", "values", "found", "likelihood")
 
 
@@ -28,12 +26,12 @@ class Preset:
 
     Attributes:
         name: Its name.
-        filter: Which filter they are for.
+        filter: The filter they are for.
         values: Settings by name, those that differ from the defaults or were tried.
         version: Of mbkf when they were found.
         note: Remark for the user.
-        tuned_on, held_out: Trials they were found on, and judged on.
-        found: Result of the search, where it was no better on the held-out trials and ``values`` stayed.
+        tuned_on, held_out: Trials of the search, and of its validation.
+        found: Result of the search, where it did no better on the held-out trials and ``values`` stayed.
         likelihood: Log-likelihoods per reading by name, in nats.
     """
 
@@ -49,7 +47,7 @@ class Preset:
 
 
 def preset_folder() -> Path:
-    """Where named presets live: ``$MBKF_PRESETS``, else ``mbkf/presets`` in ``$XDG_CONFIG_HOME`` or ``~/.config``."""
+    """Folder of named presets: ``$MBKF_PRESETS``, else ``mbkf/presets`` in ``$XDG_CONFIG_HOME`` or ``~/.config``."""
     named = os.environ.get(FOLDER_VARIABLE)
     if named:
         return Path(named)
@@ -63,21 +61,10 @@ def saved_presets() -> dict[str, Path]:
 
 def write_preset(preset: Preset, path: str | Path) -> None:
     """Writes a preset as TOML, whole or not at all."""
-    lines = [
-        "# Settings of a filter of mbkf; use them with 'mbkf reconstruct --preset'.",
-        f"name = {_text(preset.name)}",
-        f"filter = {_text(preset.filter)}",
-        f"version = {_text(preset.version)}",
-        f"note = {_text(preset.note)}",
-        f"tuned_on = [{', '.join(map(_text, preset.tuned_on))}]",
-        f"held_out = [{', '.join(map(_text, preset.held_out))}]",
-    ]
-    tables = {"values": preset.values, "found": preset.found, "likelihood": preset.likelihood}
-    for title, table in tables.items():
-        if table or title == "values":
-            lines += ["", f"[{title}]", *(f"{key} = {float(value)!r}" for key, value in table.items())]
-    with replacing(path) as partial:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    table = asdict(preset)
+    values = {key: table.pop(key) for key in ("values", "found", "likelihood")}
+    full = {**table, **{key: value for key, value in values.items() if value or key == "values"}}
+    write_toml(path, "Settings of a filter of mbkf; use them with 'mbkf reconstruct --preset'.", full)
 
 
 def read_preset(path: str | Path) -> Preset:
@@ -88,7 +75,7 @@ def read_preset(path: str | Path) -> Preset:
         UnknownName: It has an entry that presets do not have.
     """
     source = Path(path)
-    try:
+    with one_line_errors(source, "a preset file", "make it with 'mbkf tune'"):
         table = read_toml(source)
         unknown = [key for key in table if key not in _KEYS]
         if unknown:
@@ -104,27 +91,16 @@ def read_preset(path: str | Path) -> Preset:
             found=_numbers(table.get("found", {})),
             likelihood=_numbers(table.get("likelihood", {})),
         )
-    except FileNotFoundError as error:
-        raise FileFormatError(source, f"no such file; {_HINT}") from error
-    except (OSError, UnicodeError) as error:
-        raise FileFormatError(source, f"cannot be read ({error})") from error
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(source, f"not a preset file ({error}); {_HINT}") from error
 
 
 def _string(value: Any) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{value!r} is no text")
+        raise ValueError(f"{value!r} is not a text")
     return value
 
 
 def _numbers(table: Mapping[str, Any]) -> dict[str, float]:
     for key, value in table.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise ValueError(f"{key} = {value!r} is no finite number")
+            raise ValueError(f"{key} = {value!r} is not a finite number")
     return {key: float(value) for key, value in table.items()}
-
-
-def _text(value: str) -> str:
-    """A TOML basic string: JSON's, with DEL escaped, too."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

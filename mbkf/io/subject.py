@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.atomic import replacing
+from mbkf.errors import InvalidInput
 from mbkf.io.body_covariance import BodyCovariance, read_covariance
-from mbkf.io.inertia import SegmentInertia, inertia_lines, parse_inertia
+from mbkf.io.inertia import SegmentInertia, parse_inertia
 from mbkf.io.plain_data import number_between, parse_json, read_toml
 from mbkf.io.plausible import MASSES_KG
-from mbkf.io.text import toml_text
+from mbkf.io.toml import one_line_errors, write_toml
 
 FARTHEST_M, SCALES, HEIGHTS_M = 3.0, (0.05, 20.0), (0.3, 2.8)
-"""Marker places in their segments, factors to the reference body and heights are within these."""
+"""Bounds of marker places in their segments, of factors to the reference body and of heights."""
 
 STANDING_KEY = "standing_q"
-"""Key of a subject's report under which the posture of the static trial stands: its configuration, nq numbers."""
+"""Key of a subject's report for the posture of the static trial: its configuration, nq numbers."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +34,11 @@ class SubjectMarker:
         segment: Segment that carries it.
         position_m: (3,) position in the segment's frame, m.
         noise_m: Measurement noise with skin movement, per coordinate, m.
-        session_sd_m: How far it may sit from there in another trial, per coordinate, m.
+        session_sd_m: Standard deviation of its place in another trial, per coordinate, m.
         aliases: Other names for it in captures.
-        correlated_m: The part of the noise that stays for a while, per coordinate, m; 0 for a marker on skin, whose
-            slow movement the filters know by themselves.
-        correlation_s: Time after which a share 1/e of that part is left, s.
+        correlated_m: Correlated part of the noise, per coordinate, m; 0 for a marker on skin, whose slow movement the
+            filters model by themselves.
+        correlation_s: Time constant of that part, s.
     """
 
     name: str
@@ -64,10 +63,10 @@ class Subject:
         markers: The markers that follow this subject, with corrected positions.
         protocol: Name of the marker protocol.
         height_m: Body height where it was given.
-        report: Plain data about how the subject was found (see ``mbkf.scaling``).
-        inertia: By segment, how its mass and centre of mass differ from the table; none: the table's.
-        covariance: What scaling left unknown of scale factors and marker places; None for a body that counts as known
-            exactly, or that an older version scaled.
+        report: Plain data about the scaling (see ``mbkf.scaling``).
+        inertia: By segment, the difference of its mass and centre of mass from the table.
+        covariance: Uncertainty of scale factors and marker places; None for a body that counts as known exactly, or
+            that an older version scaled.
     """
 
     body: str
@@ -114,14 +113,9 @@ Marker = TypeVar("Marker", bound=Named)
 
 
 def match_names(names: Iterable[str], markers: Iterable[Marker]) -> dict[str, Marker]:
-    """Which of a capture's names belong to which marker, each marker once: by its own name, else by an alias.
+    """The marker of each name of a capture that has one, in the order of the names: by its own name, else by an alias.
 
-    Args:
-        names: Names in the capture.
-        markers: Markers to look for.
-
-    Returns:
-        The marker of each name that has one, in the order of the names.
+    Each marker is found once.
     """
     present, known = tuple(names), tuple(markers)
     own = {marker.name: marker for marker in known}
@@ -140,48 +134,27 @@ def match_names(names: Iterable[str], markers: Iterable[Marker]) -> dict[str, Ma
 
 def write_subject(subject: Subject, path: str | Path) -> None:
     """Writes a subject as TOML, whole or not at all."""
-    lines = [
-        "# A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame.",
-        f"body = {toml_text(subject.body)}",
-        f"mass_kg = {float(subject.mass_kg)!r}",
-    ]
-    if subject.height_m is not None:
-        lines.append(f"height_m = {float(subject.height_m)!r}")
-    lines += [f"protocol = {toml_text(subject.protocol)}", "", "[scale_factors]"]
-    lines += [f"{name} = {float(value)!r}" for name, value in subject.scale_factors.items()]
-    lines += inertia_lines(subject.inertia)
-    for marker in subject.markers:
-        position = ", ".join(repr(float(x)) for x in marker.position_m)
-        lines += [
-            "",
-            "[[marker]]",
-            f"name = {toml_text(marker.name)}",
-            f"segment = {toml_text(marker.segment)}",
-            f"position_m = [{position}]",
-            f"noise_m = {float(marker.noise_m)!r}",
-            f"session_sd_m = {float(marker.session_sd_m)!r}",
-            f"aliases = [{', '.join(toml_text(alias) for alias in marker.aliases)}]",
-        ]
-        if marker.correlated_m:
-            lines += [
-                f"correlated_m = {float(marker.correlated_m)!r}",
-                f"correlation_s = {float(marker.correlation_s)!r}",
-            ]
-    if subject.covariance is not None:
-        lines += ["", *subject.covariance.as_toml()]
-    if subject.report:
-        lines += [
-            "",
-            "# How it was found: one JSON object.",
-            f"report = {toml_text(json.dumps(subject.report))}",
-        ]
-        lines.insert(1, lines.pop())
-        lines.insert(1, lines.pop())
-    if subject.body_text:
-        lines.insert(1, f"body_text = {_long_text(subject.body_text)}")
-        lines.insert(1, "# The reference body, word for word.")
-    with replacing(path) as partial:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    table = {
+        "body": subject.body,
+        "body_text": subject.body_text or None,  # the user's own reference body, word for word
+        "report": json.dumps(subject.report) if subject.report else None,
+        "mass_kg": float(subject.mass_kg),
+        "height_m": None if subject.height_m is None else float(subject.height_m),
+        "protocol": subject.protocol,
+        "scale_factors": {name: float(value) for name, value in subject.scale_factors.items()},
+        "inertia": {name: asdict(own) for name, own in subject.inertia.items()} or None,
+        "marker": [_marker_table(marker) for marker in subject.markers],
+        "covariance": None if subject.covariance is None else subject.covariance.as_table(),
+    }
+    comment = "A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame."
+    write_toml(path, comment, table)
+
+
+def _marker_table(marker: SubjectMarker) -> dict[str, object]:
+    table = asdict(marker)
+    if not marker.correlated_m:
+        del table["correlated_m"], table["correlation_s"]
+    return table
 
 
 def read_subject(path: str | Path) -> Subject:
@@ -192,7 +165,7 @@ def read_subject(path: str | Path) -> Subject:
         InvalidInput: The mass is not positive.
     """
     source = Path(path)
-    try:
+    with one_line_errors(source, "a subject file", "make it with 'mbkf scale'"):
         table = read_toml(source)
         return Subject(
             body=table["body"],
@@ -208,24 +181,13 @@ def read_subject(path: str | Path) -> Subject:
             inertia=parse_inertia(table.get("inertia", {})),
             covariance=read_covariance(table["covariance"]) if "covariance" in table else None,
         )
-    except FileNotFoundError as error:
-        raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
-    except IsADirectoryError as error:
-        reason = "cannot be read, it is a folder; name a file that 'mbkf scale' wrote"
-        raise FileFormatError(source, reason) from error
-    except InvalidInput as error:
-        raise InvalidInput(f"{source}: {error}") from error
-    except (OSError, UnicodeError) as error:
-        raise FileFormatError(source, f"cannot be read ({error})") from error
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(source, f"not a subject file ({error}); make it with 'mbkf scale'") from error
 
 
 def _mass_kg(stated: Any) -> float:
-    """A mass that a person may have; one that is not positive is refused with the person."""
+    """A possible body mass; one that is not positive is refused by :class:`Subject`."""
     value = float(stated)
     if isinstance(stated, bool):
-        raise ValueError("mass_kg is no number")
+        raise ValueError("mass_kg is not a number")
     if value > 0.0 and not MASSES_KG[0] <= value <= MASSES_KG[1]:
         raise InvalidInput(f"mass_kg must be between {MASSES_KG[0]:g} and {MASSES_KG[1]:g}, got {value:g}")
     return value
@@ -245,9 +207,3 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
         number_between(entry, "correlated_m", 0.0, FARTHEST_M, 0.0),
         float(entry.get("correlation_s", 0.0)),
     )
-
-
-def _long_text(value: str) -> str:
-    """A text of several lines, as it stands where TOML can hold that."""
-    plain = "'''" not in value and value.replace("\n", "").replace("\t", "").isprintable()
-    return f"'''\n{value}'''" if plain and not value.endswith("'") else toml_text(value)

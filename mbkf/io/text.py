@@ -1,9 +1,8 @@
-"""What text files share: lines, numbers in cells, counts and rates that disagree with the rows, TOML's strings."""
+"""Common parts of text files: lines, numbers in cells, counts and rates that disagree with the rows."""
 
 from __future__ import annotations
 
 import csv
-import json
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -170,8 +169,3 @@ def even_rate(path: Path, times_s: Array) -> float:
         worst = times_s[int(np.argmax(off))]
         raise FileFormatError(path, f"times are not evenly spaced near {worst:.4f} s; resample them first")
     return round(rate_hz, 6)
-
-
-def toml_text(value: str) -> str:
-    """A TOML basic string: JSON's, with DEL escaped, too."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

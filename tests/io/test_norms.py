@@ -50,7 +50,7 @@ def test_what_is_written_comes_back(tmp_path_factory, name, mean, sd):
         ("mean = [1.25]", "mean = [nan]", "mean must be 1 numbers"),
         ("mean = [1.25]", 'mean = ["a"]', "mean must be 1 numbers"),
         ("sd = [0.1]", "sd = [-0.1]", "sd must not be negative"),
-        ("[[measure]]", "[measure]", "must be tables"),
+        ("[[measure]]", "[measure]", "must be a list of tables"),
     ],
 )
 def test_damaged_files_are_refused(tmp_path, old, new, fragment):

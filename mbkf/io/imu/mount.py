@@ -1,4 +1,4 @@
-"""Where inertial sensors sit on a body, as a TOML file."""
+"""Places of inertial sensors on a body, as a TOML file."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.atomic import replacing
+from mbkf.errors import InvalidInput
 from mbkf.io.plain_data import read_toml
+from mbkf.io.toml import one_line_errors, write_toml
 
 FARTHEST_M, LONGEST = 3.0, 1e6
-"""No sensor sits further from the origin of its segment, and no quaternion is so far from length one."""
+"""Largest coordinate of a sensor in its segment, and of a quaternion before it is normalised."""
 
 
 @dataclass(frozen=True)
@@ -55,22 +55,12 @@ def write_mounts(mounts: Sequence[ImuMount], path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    lines = [
-        "# Inertial sensors on a body; positions in the segment's frame, quaternions sensor -> segment (x, y, z, w)."
+    entries = [
+        {"name": one.name, "segment": one.segment, "position_m": one.position_m, "rotation": one.rotation}
+        for one in mounts
     ]
-    for mount in mounts:
-        position = ", ".join(repr(float(x)) for x in mount.position_m)
-        rotation = ", ".join(repr(float(x)) for x in mount.rotation)
-        lines += [
-            "",
-            "[[imu]]",
-            f'name = "{mount.name}"',
-            f'segment = "{mount.segment}"',
-            f"position_m = [{position}]",
-            f"rotation = [{rotation}]",
-        ]
-    with replacing(path) as partial:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    frames = "positions in the segment's frame, quaternions sensor -> segment (x, y, z, w)"
+    write_toml(path, f"Inertial sensors on a body; {frames}.", {"imu": entries})
 
 
 def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
@@ -78,10 +68,12 @@ def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
 
     Raises:
         FileFormatError: The file is missing or lacks an entry.
+        InvalidInput: A place is impossible.
     """
     source = Path(path)
-    try:
-        table = read_toml(source)
+    with one_line_errors(
+        source, "a file of sensor mounts", "'mbkf imu synth' and 'mbkf imu angles' write one"
+    ):
         return tuple(
             ImuMount(
                 entry["name"],
@@ -89,13 +81,5 @@ def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
                 np.array(entry["position_m"], dtype=float),
                 np.array(entry["rotation"], dtype=float),
             )
-            for entry in table["imu"]
+            for entry in read_toml(source)["imu"]
         )
-    except (FileNotFoundError, IsADirectoryError) as error:
-        raise FileFormatError(
-            source, "no such file; 'mbkf imu synth' and 'mbkf imu angles' write one"
-        ) from error
-    except InvalidInput as error:
-        raise FileFormatError(source, str(error)) from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(source, f"not a file of sensor mounts ({error})") from error

@@ -124,7 +124,7 @@ CASES = [
     ("protocol", 'name = "P"', 'name = "P"\nbody = "' + "x" * 200 + '"', "unknown body"),
     ("preset", "gate = 5.0", "gate = nan", "gate"),
     ("preset", "gate = 5.0", 'gate = "5"', "gate"),
-    ("preset", 'name = "own"', "name = 1", "no text"),
+    ("preset", 'name = "own"', "name = 1", "not a text"),
     ("preset", 'filter = "dynamic"', 'fliter = "dynamic"', "fliter"),
     ("list", "mass_kg = 70.0", "mass_kg = 1e300", "mass_kg"),
     ("list", '["a.c3d"]', "[1]", "a trial is a file"),
