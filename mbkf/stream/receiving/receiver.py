@@ -1,13 +1,17 @@
-"""The receiving side of a live run: a thread reads the source, aligns its frames and fills the ring buffer."""
+"""The receiving side of a live run: a thread reads the source, aligns its frames and fills the ring buffer.
+
+Errors of the source do not end the thread; any other error does, and is reported to the run, which cannot go on.
+"""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import NamedTuple
 
 from mbkf.conventions import Array
 from mbkf.stream.receiving.alignment import FrameAlignment, Note, ReadyFrame
-from mbkf.stream.receiving.reader import Reader
+from mbkf.stream.receiving.reader import next_frame
 from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.source import FrameSource, PlateSamples, StreamDescription
 
@@ -16,14 +20,14 @@ SLACK_S, START_SLACK_S = 0.25, 5.0
 
 
 class FrameCounts(NamedTuple):
-    """Frames by what became of them; ``received - late - overwritten - queued`` were taken.
+    """Frames by their fate; ``received - late - overwritten - queued`` were taken.
 
     Attributes:
-        received: Those that arrived.
-        late: Those that arrived too late, twice or out of order.
-        lost_on_the_way: Those that never arrived, or too late, by the source's count.
-        overwritten: Those that the filter was too slow for.
-        queued: Those that have not been taken.
+        received: Frames that arrived.
+        late: Frames that arrived too late, twice or out of order.
+        lost_on_the_way: Frames that never arrived, or too late, by the source's count.
+        overwritten: Frames that came faster than the filter took them.
+        queued: Frames that have not been taken.
     """
 
     received: int
@@ -58,29 +62,26 @@ class Receiver:
             columns: (M,) columns of the subject's markers in the stream; None for points without names.
             samples: Called with the plates' new samples.
             note: Called with events.
-            mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
+            mass_kg: The person's mass, by which readings of the plates are judged; None to accept all.
             failed: Called with the error that ends the thread.
         """
         self.rate_hz = stream.rate_hz
+        self._source, self._samples, self._note, self._failed = source, samples, note, failed
         self._alignment = FrameAlignment(stream, columns, note, mass_kg, live=not source.patient)
-        self._patient = source.patient
         self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient)
-        self._reader = Reader(
-            source,
-            self._alignment,
-            self._buffer,
-            samples,
-            lambda kind, what: note(kind, what, None, 1),
-            failed,
-        )
+        self._overwritten = 0
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="mbkf-reader", daemon=True)
 
     def start(self) -> None:
         """Begins to read."""
-        self._reader.start()
+        self._thread.start()
 
     def stop(self) -> None:
         """Ends the thread; frames in the buffer can still be taken."""
-        self._reader.stop()
+        self._stopping.set()
+        self._buffer.close()
+        self._thread.join(timeout=5.0)
 
     def take(self, timeout_s: float) -> ReadyFrame | None:
         """The oldest frame in the buffer; None where none comes within the time, or ever (see :attr:`ended`)."""
@@ -96,37 +97,62 @@ class Receiver:
 
     @property
     def empty(self) -> bool:
-        """Whether the buffer holds no frame."""
+        """True while the buffer holds no frame."""
         return self._buffer.empty
 
     @property
     def ended(self) -> bool:
-        """Whether no more frames come."""
+        """True when no more frames come."""
         return self._buffer.ended
 
     @property
     def lost(self) -> int:
         """Frames lost so far: on the way here, and in the ring buffer."""
-        return self._alignment.lost + self._reader.overwritten
+        return self._alignment.lost + self._overwritten
 
     def counts(self, until: int | None = None) -> FrameCounts:
-        """Numbers of frames.
+        """Numbers of frames up to the last frame asked for; ``until`` is its number, None for all.
 
-        Frames in the buffer that lie beyond the end of what was asked for, and those of a file, which still has them,
-        were not received.
-
-        Args:
-            until: Number of the last frame asked for; None where none is beyond it.
+        Frames in the buffer beyond it, and those of a file, which still has them, were not received.
         """
         queued = beyond = 0
         for frame in self._buffer.left():
             if not frame.lost:
                 queued += 1
-                beyond += self._patient or (until is not None and frame.number > until)
-        alignment, overwritten = self._alignment, self._reader.overwritten
+                beyond += self._source.patient or (until is not None and frame.number > until)
+        aligned, overwritten = self._alignment, self._overwritten
         return FrameCounts(
-            alignment.frames_in - beyond, alignment.late, alignment.lost, overwritten, queued - beyond
+            aligned.frames_in - beyond, aligned.late, aligned.lost, overwritten, queued - beyond
         )
 
     def _frames(self, seconds: float) -> int:
         return round(seconds * self.rate_hz)
+
+    def _run(self) -> None:
+        try:
+            self._read()
+        except BaseException as error:
+            if self._failed is None:
+                raise
+            self._failed(error)
+        finally:
+            self._buffer.close()
+
+    def _read(self) -> None:
+        def note(kind: str, sentence: str) -> None:
+            self._note(kind, sentence, None, 1)
+
+        while not self._stopping.is_set():
+            try:
+                frame = next_frame(self._source, note, self._stopping)
+            except EOFError:
+                return
+            if frame is None:
+                continue
+            ready, samples = self._alignment.accept(frame)
+            for one in ready:
+                gone = [old for old in self._buffer.put(one) if not old.lost]
+                if gone:
+                    self._overwritten += len(gone)
+                    note("overwritten", "the filter could not keep up; only the latest frame was kept")
+            self._samples(samples)

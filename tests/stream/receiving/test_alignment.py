@@ -10,11 +10,9 @@ from hypothesis import strategies as st
 
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.alignment import BRIDGED_S, FrameAlignment
-from mbkf.stream.receiving.reader import Reader
-from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.source import UNCOUNTED, PlateSamples, SourceFrame
 from tests.captures import made_capture
-from tests.stream.scripted import ScriptedSource, frames_of
+from tests.stream.scripted import frames_of
 
 
 def intake_of(capture, unlabelled=False):
@@ -96,50 +94,6 @@ def test_plates_follow_a_count_that_was_set_back(capture, restarted):
     np.testing.assert_array_equal(np.isnan(found).any(axis=(1, 2))[61:], False)
     np.testing.assert_allclose(found[61:], expected[61:])
     assert [kind for kind, _, _ in notes] == ["clock"]
-
-
-def test_the_reader_goes_on_after_a_failure_and_ends_with_the_source(capture, monkeypatch):
-    monkeypatch.setattr("mbkf.stream.receiving.reader.PAUSE_S", 0.001)
-    stream, frames = frames_of(capture)
-    script = [*frames[:10], RuntimeError("what now"), None, *frames[10:]]
-    notes, samples = [], []
-    buffer = RingBuffer(200)
-    reader = Reader(
-        ScriptedSource(stream, script),
-        FrameAlignment(stream, np.arange(36), lambda *_: None),
-        buffer,
-        samples.append,
-        lambda kind, what: notes.append((kind, what)),
-    )
-    reader.start()
-    numbers = []
-    while not buffer.ended:
-        frame = buffer.take(1.0)
-        if frame is not None:
-            numbers.append(frame.number)
-    reader.stop()
-    assert numbers == list(range(80))
-    assert notes == [("source", "the source failed (RuntimeError: what now)")]
-    assert sum(len(one.index) for one in samples) >= 795
-    assert reader.overwritten == 0
-
-
-def test_a_reader_whose_frames_nobody_takes_keeps_the_latest(capture):
-    stream, frames = frames_of(capture)
-    notes = []
-    buffer = RingBuffer(5)
-    reader = Reader(
-        ScriptedSource(stream, frames),
-        FrameAlignment(stream, np.arange(36), lambda *_: None),
-        buffer,
-        lambda _: None,
-        lambda kind, what: notes.append(kind),
-    )
-    reader.start()
-    reader._thread.join(5.0)
-    assert buffer.left()[-1].number == 79
-    assert reader.overwritten == 80 - len(buffer.left())
-    assert set(notes) == {"overwritten"}
 
 
 COUNTS = st.one_of(st.integers(0, 120), st.integers(-(2**63), 2**63 - 1), st.just(UNCOUNTED))

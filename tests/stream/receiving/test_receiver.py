@@ -56,3 +56,29 @@ def test_frames_that_are_not_taken_in_time_are_overwritten():
     beyond = receiver.counts(until=27)
     assert (beyond.received, counts.queued - beyond.queued) == (28, 2)
     receiver.stop()
+
+
+def test_the_receiver_goes_on_after_a_failure_and_ends_with_the_source(monkeypatch):
+    monkeypatch.setattr("mbkf.stream.receiving.reader.PAUSE_S", 0.001)
+    stream, frames = frames_of(made_capture(30))
+    script = [*frames[:10], RuntimeError("broken"), None, *frames[10:]]
+    receiver, numbers, notes, samples = received(script, stream)
+    assert numbers == list(range(30))
+    assert notes == [("source", "the source failed (RuntimeError: broken)", None, 1)]
+    assert sum(len(one.index) for one in samples) >= 295
+    assert receiver.counts().overwritten == 0
+
+
+def test_an_error_of_its_own_ends_the_thread_and_is_reported():
+    stream, frames = frames_of(made_capture(30))
+    errors = []
+
+    def fail(_samples):
+        raise ArithmeticError("no samples today")
+
+    source = ScriptedSource(stream, frames)
+    receiver = Receiver(source, stream, np.arange(5), fail, lambda *_: None, failed=errors.append)
+    receiver.start()
+    while not receiver.ended:
+        receiver.take(1.0)
+    assert [str(error) for error in errors] == ["no samples today"]

@@ -12,7 +12,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
-from mbkf.stream.run import prompting, standing
+from mbkf.stream.run import prompting, standing, still_start
 from mbkf.stream.run.report import LIVE_FILE
 from mbkf.stream.run.session import LiveSession
 from mbkf.stream.run.standing import MOST_KEPT, SUBJECT_FILE, KnownPerson, StandingStart
@@ -243,7 +243,7 @@ def test_it_can_be_stopped_at_any_time(tmp_path, visit, monkeypatch, scaling):
 
 
 def test_a_source_that_fails_or_falls_silent_is_gone_on_with(tmp_path, visit, monkeypatch):
-    monkeypatch.setattr(standing, "PAUSE_S", 0.01)
+    monkeypatch.setattr("mbkf.stream.receiving.reader.PAUSE_S", 0.01)
     stream, frames = frames_of(replace(visit, plates=()))
     broken = [*frames[: COMES + 60], OSError("unreachable"), None, *frames[COMES + 60 :]]
     found, _ = begin(tmp_path, ScriptedSource(stream, broken))
@@ -257,7 +257,7 @@ def test_patience_ends(tmp_path, visit):
             return None
 
     stream, _ = frames_of(visit)
-    with pytest.raises(InvalidInput, match="no person was scaled within 0 s: no person is seen yet"):
+    with pytest.raises(InvalidInput, match="0 s passed before a person was scaled: no person is seen yet"):
         begin(tmp_path, Silent(stream, []), patience_s=0.0)
 
 
@@ -286,7 +286,7 @@ def test_the_share_of_standing_grows_while_somebody_is_still_and_begins_anew_aft
 def test_there_is_no_share_of_standing_while_too_few_markers_are_seen_or_no_frames_come(
     tmp_path, visit, monkeypatch
 ):
-    monkeypatch.setattr(standing, "SILENT_S", 0.05)
+    monkeypatch.setattr(still_start, "SILENT_S", 0.05)
     stream, frames = frames_of(replace(visit, plates=()))
     hidden = [f.markers_m.copy() for f in frames[:30]]
     for markers in hidden:
@@ -301,7 +301,7 @@ def test_there_is_no_share_of_standing_while_too_few_markers_are_seen_or_no_fram
             time.sleep(0.01)
             return None
 
-    with pytest.raises(InvalidInput, match="no person was scaled"):
+    with pytest.raises(InvalidInput, match="passed before a person was scaled"):
         begin(tmp_path, FallingSilent(stream, few), progress=shares.append, patience_s=0.5)
     assert set(shares) == {0.0, None}
     assert shares[-1] is None
