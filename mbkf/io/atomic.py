@@ -1,4 +1,4 @@
-"""Writing so that a reader sees the old file or the whole new one, and a wrong place is refused early."""
+"""Writing so that a reader sees the old file or the whole new one; a wrong place is refused early."""
 
 from __future__ import annotations
 
@@ -14,16 +14,10 @@ from mbkf.io.leftovers import unfinished
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A temporary file beside ``path`` that takes its place when the block ends without an error.
+    """An empty temporary file beside ``path`` that takes its place when the block ends without an error.
 
     Missing folders are made. The temporary name keeps the suffix, since some writers insist on theirs. The file is on
     the disk before it takes its place, so that a power cut leaves the old one or the new one.
-
-    Args:
-        path: The file to write.
-
-    Yields:
-        Where to write instead: an empty file.
 
     Raises:
         OSError: The folder cannot be made or written to.
@@ -37,7 +31,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def flush(path: Path) -> None:
-    """Waits until a file is on the disk; nothing on systems that only flush what one may write to.
+    """Waits until a file is on the disk; does nothing on systems that only flush files open for writing.
 
     Raises:
         OSError: It cannot be opened, or not be brought onto the disk.
@@ -52,16 +46,13 @@ def flush(path: Path) -> None:
 
 
 def check_folder(folder: str | Path, files: Sequence[str] = ()) -> Path:
-    """The absolute path of a folder that can be written to; commands call it before long work, to fail early.
+    """The absolute path of a folder that can be written to, with files of these names in it.
 
-    Nothing is made, so that a command that fails later leaves no empty folder behind.
-
-    Args:
-        folder: The folder.
-        files: Names of files that are to be written into it.
+    Commands call it before long work, to fail early. Nothing is made, so that a command that fails later leaves no
+    empty folder behind.
 
     Raises:
-        FileFormatError: A file stands there or on the way, or a folder where a file is to be.
+        FileFormatError: A file stands there or on the way, or a folder in the place of a file.
         PermissionError: It may not be written to, or not be made.
     """
     target = Path(folder).absolute()

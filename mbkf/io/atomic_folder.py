@@ -1,9 +1,9 @@
 """Replacing a folder as one, so that a reader sees the old files or the new ones and never some of each.
 
-The new folder is made beside the old one, gets the files of the old one that it has none of, and the two exchange
-their names in one step of the system. Where that cannot be done (the folder is a mounted disk or the current one, or
-the system knows no such step) its files are replaced one by one; who reads them together tells by a number in each
-whether they were written together (:mod:`mbkf.io.results_folder`).
+The new folder is made beside the old one, gets the files that only the old one has, and the two exchange their names
+in one step of the system. Where that cannot be done (the folder is a mounted disk or the current one, or the system
+lacks such a step) its files are replaced one by one; a number in each of them then shows a reader whether they were
+written together (:mod:`mbkf.io.results_folder`).
 """
 
 from __future__ import annotations
@@ -26,17 +26,11 @@ _EXCHANGE = 2
 
 @contextmanager
 def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Path]:
-    """A new folder whose files take the place of those of ``folder`` when the block ends without an error.
+    """A new, empty folder whose files take the place of those of ``folder`` when the block ends without an error.
 
-    It holds files and no folders. Other files and folders of an existing folder stay. What killed processes left
-    unfinished is swept.
-
-    Args:
-        folder: The folder to write; made where missing.
-        last: The file that says that the others are whole, written last where they cannot be replaced as one.
-
-    Yields:
-        Where to write instead: an empty folder.
+    It holds files and no folders. Other files and folders of an existing folder stay. Unfinished folders of killed
+    processes are swept. ``last`` is the file that marks the others as whole, written last where they cannot be replaced
+    as one.
 
     Raises:
         FileFormatError: A file stands where a folder is needed, or a folder where a file is.
@@ -60,7 +54,7 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
 
 
 def _can_be_renamed(target: Path) -> bool:
-    """Whether a folder is no mount, its parent can be written to, and this process does not stand in it."""
+    """True unless a folder is a mount or the current one, or its parent is read-only."""
     if not target.exists():
         return True
     with suppress(OSError):
@@ -70,7 +64,7 @@ def _can_be_renamed(target: Path) -> bool:
 
 
 def _exchanged(target: Path, partial: Path) -> bool:
-    """Gives a finished folder the name of another one, and what only that one holds; false if the system cannot."""
+    """Exchanges a finished folder with an old one, whose other files it gets; false if the system cannot."""
     for old in target.iterdir():
         new = partial / old.name
         if new.exists() or new.is_symlink():

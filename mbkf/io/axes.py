@@ -51,15 +51,9 @@ def up_axis(name: str) -> str:
 
 
 def rotation_to_world(up: str) -> Array:
-    """Rotation R with ``p_world = R @ p_file``.
+    """Rotation (3, 3) R with ``p_world = R @ p_file``, for the axis of the file that points up.
 
     For a file with z up it is the identity, for y up (OpenSim) file x → x, file −z → y, file y → z.
-
-    Args:
-        up: Axis of the file that points up, as in :func:`up_axis`.
-
-    Returns:
-        (3, 3) proper rotation.
 
     Raises:
         UnknownName: ``up`` names no axis.
@@ -68,13 +62,9 @@ def rotation_to_world(up: str) -> Array:
 
 
 def axes_matrix(axes: str) -> Array:
-    """Matrix A with ``p_world = A @ p_file`` of three stored axes, ``"x,-z,y"`` for OpenSim's.
+    """Matrix (3, 3) A with ``p_world = A @ p_file`` of stored axes that point forward, left and up.
 
-    Args:
-        axes: Stored axes that point forward, left and up, each ``x``, ``y`` or ``z`` with a sign or without.
-
-    Returns:
-        (3, 3) signed permutation; its determinant is −1 where the file is mirrored.
+    It is a signed permutation, ``"x,-z,y"`` for OpenSim's axes; its determinant is −1 where the file is mirrored.
 
     Raises:
         InvalidInput: These are not three different axes.
@@ -91,11 +81,7 @@ def axes_matrix(axes: str) -> Array:
 
 
 def axes_text(matrix: Array) -> str:
-    """The text that :func:`axes_matrix` reads.
-
-    Args:
-        matrix: (3, 3) signed permutation.
-    """
+    """The text that :func:`axes_matrix` reads, of a signed permutation (3, 3)."""
     return ",".join(nearest_axis(row) for row in matrix)
 
 
@@ -109,7 +95,7 @@ def length_unit(name: str) -> str:
     """The canonical short name of a length unit, ``"mm"`` for ``"Millimeters"``.
 
     Raises:
-        UnknownName: It is no unit of length known here.
+        UnknownName: It is not a known unit of length.
     """
     word = name.strip().lower()
     word = UNIT_SPELLINGS.get(word, word)
@@ -119,42 +105,33 @@ def length_unit(name: str) -> str:
 
 
 def finite(values: Array) -> BoolArray:
-    """Whether all components along the last axis are finite; shape of ``values`` without that axis."""
+    """True where all components along the last axis are finite; shape of ``values`` without that axis."""
     return np.asarray(np.isfinite(values).all(axis=-1))
 
 
 def positions_to_world(values: Array, present: BoolArray, up: str, unit: str) -> Array:
-    """Marker positions of a file in metres and world axes.
+    """(T, M, 3) marker positions of a file in metres and world axes, NaN where missing.
 
     Args:
         values: (T, M, 3) coordinates in the file's axes and unit.
-        present: (T, M) whether the file holds a measurement there; exact (0, 0, 0) never counts as one.
+        present: (T, M) the file holds a measurement there; exact (0, 0, 0) never counts as one.
         up: Axis of the file that points up.
         unit: Length unit of the values.
-
-    Returns:
-        (T, M, 3) positions in m, NaN where missing.
 
     Raises:
         UnknownName: Unknown axis or unit.
     """
     seen = present & finite(values) & (values != 0.0).any(axis=2)
-    with np.errstate(all="ignore"):  # what is not seen may be any number, or none
+    with np.errstate(all="ignore"):  # missing points may be any number, or NaN
         metres = values @ rotation_to_world(up).T * METRES_PER_UNIT[length_unit(unit)]
     return np.where(seen[:, :, None], metres, np.nan)
 
 
 def body_extent_m(positions_m: Array) -> float:
-    """How far a capture's markers spread at one instant.
+    """Spread of a capture's markers (T, M, 3) at one instant, m; NaN where no frame has four markers.
 
     The longest side of the box around the markers of a frame without the outermost tenth on either side
     (ghosts), median over up to 200 frames spread over the trial; all markers where fewer than ten are seen.
-
-    Args:
-        positions_m: (T, M, 3) positions in m, NaN where missing.
-
-    Returns:
-        Extent in m, NaN where no frame has four markers.
     """
     chosen = spread_indices(len(positions_m), _CHECKED_FRAMES)
     extents = []
@@ -168,15 +145,12 @@ def body_extent_m(positions_m: Array) -> float:
 
 
 def check_body_size(positions_m: Array, unit: str, where: str) -> tuple[str, ...]:
-    """Refuse markers that spread like no person does, which means that the unit is wrong.
+    """Refuses markers that spread as no body does, which means that the unit is wrong; remarks on an odd spread.
 
     Args:
         positions_m: (T, M, 3) positions in m.
         unit: The length unit they were read with, for the message.
         where: The file, for the message.
-
-    Returns:
-        A remark, if the spread is odd without being impossible.
 
     Raises:
         InvalidInput: The markers spread over less than 0.3 m or more than 30 m.
@@ -185,7 +159,7 @@ def check_body_size(positions_m: Array, unit: str, where: str) -> tuple[str, ...
     low, high = BODY_EXTENT_M
     if extent < low or extent > high:
         raise InvalidInput(
-            f"{where}: read in {unit}, the markers spread over {extent:.3g} m, which no person does; "
+            f"{where}: read in {unit}, the markers spread over {extent:.3g} m, unlike any person; "
             "give the right unit with --unit (mm, cm or m)"
         )
     if extent > ODD_EXTENT_M:

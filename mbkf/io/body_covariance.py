@@ -38,7 +38,7 @@ class BodyCovariance:
     root: Array
 
     def __post_init__(self) -> None:
-        """Raises: ShapeError: the root has not the size that the names ask for."""
+        """Raises: ShapeError: the root does not have the size of the names' parameters."""
         size = len(self.factors) + 3 * len(self.markers)
         object.__setattr__(self, "root", read_only(self.root))
         if self.root.shape != (size, size):
@@ -64,11 +64,11 @@ class BodyCovariance:
         return self.root @ self.root.T
 
     def rows(self, markers: Sequence[str], unseen_sd_m: Mapping[str, float]) -> Array:
-        """(K + 3 n, r) a root of the covariance of factors and the places of some markers.
+        """(K + 3 n, r) a root of the covariance of factors and the places of n markers.
 
         Args:
             markers: (n,) their names.
-            unseen_sd_m: Standard deviation of the place of one that scaling did not see, per coordinate, m.
+            unseen_sd_m: Standard deviation of the place of a marker that scaling did not see, per coordinate, m.
         """
         count, known = len(self.factors), {name: n for n, name in enumerate(self.markers)}
         unseen = [name for name in markers if name not in known]

@@ -53,7 +53,7 @@ def bvh_text(joints: Sequence[BvhJoint], root_m: Array, rotations: Array, rate_h
 
     Raises:
         ShapeError: The arrays do not belong to these joints.
-        InvalidInput: The joints are no such tree, or a name holds a blank.
+        InvalidInput: The joints do not form such a tree, or a name holds a blank.
     """
     if rotations.shape[1:] != (len(joints), 3, 3):
         raise ShapeError("rotations", f"(F, {len(joints)}, 3, 3)", rotations.shape)

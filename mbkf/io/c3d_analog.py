@@ -49,16 +49,13 @@ def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
 
 
 def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> list[RawPlate]:
-    """The force plates a file declares, checked but not yet converted.
+    """The force plates a file declares, checked but not yet converted; empty where the file has none.
 
     Args:
         path: The file, for messages.
         content: The decoded file.
         unit: The file's length unit.
-        notes: Receives which plates are skipped, because no channel belongs to them.
-
-    Returns:
-        The plates; empty where the file has none.
+        notes: Receives the plates that are skipped, because no channel belongs to them.
 
     Raises:
         FileFormatError: A plate is not usable: type, channels, corners or calibration.
@@ -104,10 +101,7 @@ def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> 
 def _calibration(parameters: C3dParameters, plate: int, kind: int) -> Array | None:
     """A plate's CAL_MATRIX; None where its type has none, or the file holds none of that shape.
 
-    Args:
-        parameters: The file's parameters; plates of different types share one array as large as the largest.
-        plate: Its number, counted from 0.
-        kind: Its type.
+    Plates count from 0; plates of different types share one array as large as the largest.
     """
     shape = CALIBRATION_OF_TYPE.get(kind)
     if shape is None:
@@ -194,7 +188,7 @@ def events(content: C3dContent) -> tuple[CaptureEvent, ...]:
 
 
 def _event_times(parameters: C3dParameters) -> Array:
-    """(2, n) minutes and seconds of EVENT:TIMES and of its continuations; as the file has them if of another shape."""
+    """(2, n) minutes and seconds of EVENT:TIMES and of its continuations; another shape is returned as it is."""
     times, number = parameters.numbers("EVENT", "TIMES"), 2
     while times.ndim == 2 and len(times) == 2:
         more = parameters.numbers("EVENT", f"TIMES{number}")

@@ -1,4 +1,4 @@
-"""What a C3D file holds, decoded from its bytes: parameters, points, analog samples and events of the header.
+"""Contents of a C3D file, decoded from its bytes: parameters, points, analog samples and events of the header.
 
 A frame is four numbers per point (x, y, z, and the residual with the cameras' mask) and then the analog samples, as
 16-bit integers or floats, in the byte order and float format of the processor that wrote them (Intel, DEC, SGI-MIPS).
@@ -29,7 +29,7 @@ MOST_EVENTS, EVENT_TIMES, EVENT_LABELS = 18, 304, 396
 """Events that a header has room for, and the bytes at which their times and labels begin."""
 
 MOST_SAMPLES = 1000
-"""More analog samples per frame no file has."""
+"""Bound of analog samples per frame."""
 
 _UNSIGNED_OFFSET = -16384
 """An analog offset below this, read with a sign, is the middle of an unsigned range."""
@@ -38,7 +38,7 @@ TAKEN_AS_UNSIGNED = "analog samples are taken as numbers without a sign, since t
 
 
 class Processor(Enum):
-    """Who wrote a file's numbers."""
+    """Processor that wrote a file's numbers."""
 
     INTEL = 84
     DEC = 85
@@ -56,12 +56,12 @@ class Processor(Enum):
     def floats(self, data: bytes) -> Array:
         """32-bit floats; DEC's have their words exchanged and an exponent that is greater by two (VAX F)."""
         if self is not Processor.DEC:
-            with np.errstate(invalid="ignore"):  # what is no number stays none
+            with np.errstate(invalid="ignore"):  # NaN stays NaN
                 return np.frombuffer(data, dtype=f"{self.order}f4").astype(np.float64)
         words = np.frombuffer(data, dtype="<u2").reshape(-1, 2)
         joined = (words[:, 0].astype(np.uint32) << 16) | words[:, 1]
         exponent = (joined >> 23) & 0xFF
-        # An exponent of zero is zero; the others reach from 2^-128, below what IEEE has at full precision.
+        # An exponent of zero is zero; the others reach from 2^-128, below the normal numbers of IEEE.
         values = np.where(exponent > 2, joined, 0).astype(np.uint32).view(np.float32) / 4.0
         return np.where(exponent == 0, 0.0, values).astype(np.float64)
 
@@ -166,7 +166,7 @@ def _text(word: bytes) -> str:
 
 
 class DataLayout(NamedTuple):
-    """Frames, analog numbers per frame, analog channels, and what is to be told of them."""
+    """Frames, analog numbers per frame, analog channels, and remarks on them."""
 
     frames: int
     analog_per_frame: int
@@ -175,31 +175,31 @@ class DataLayout(NamedTuple):
 
 
 def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> DataLayout:
-    """What header, parameters and the file's size agree on.
+    """Layout on which header, parameters and the file's size agree.
 
     Args:
         path: The file, for messages.
-        layout: What its header counts.
+        layout: The header's counts.
         parameters: Its parameters.
 
     Raises:
-        FileFormatError: The file holds fewer frames than it promises, or nothing tells how it is laid out.
+        FileFormatError: The file holds fewer frames than it promises, or its layout is ambiguous.
     """
     used = _count(parameters.number("ANALOG", "USED"))
     stated = used * _samples_per_frame(parameters)
     kinds = dict.fromkeys(
         ((layout.analog_per_frame, layout.channels), (stated, used if stated else 0), (0, 0))
     )
-    for frames in frames_told(layout, parameters):
+    for frames in stated_frames(layout, parameters):
         fits = [kind for kind in kinds if _fits(layout, frames, kind[0])]
         if len(fits) == 1 or (fits and used == layout.channels):
-            return DataLayout(frames, *fits[0], tuple(_told(layout, frames, fits[0][0])))
+            return DataLayout(frames, *fits[0], tuple(_remarks(layout, frames, fits[0][0])))
     if layout.frames_present < layout.frames:
         present = f"{layout.frames} frames promised, {layout.frames_present} present"
         raise FileFormatError(path, f"cut short: {present}; copy or export it again")
     if layout.counts_no_further:
         reason = f"its header counts {layout.frames} frames and can count no further, {layout.frames_present} are there"
-        raise FileFormatError(path, f"{reason}, and nothing else tells how many are meant; export it again")
+        raise FileFormatError(path, f"{reason}, and no other entry states their number; export it again")
     if layout.frames <= 0:
         raise FileFormatError(path, "its header counts no frames; export the trial again")
     if used != layout.channels:
@@ -209,13 +209,13 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
 
 
 def _fits(layout: C3dLayout, frames: int, per_frame: int) -> bool:
-    """Whether so many frames fill the file to its last block."""
+    """True where so many frames fill the file to its last block."""
     taken = frames * (4 * layout.points + per_frame) * layout.bytes_per_number
     return 0 <= layout.data_bytes - taken < BLOCK_BYTES
 
 
-def frames_told(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ...]:
-    """Numbers of frames that the file tells in one place or another, the likeliest first.
+def stated_frames(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ...]:
+    """Numbers of frames that the file states in one place or another, the likeliest first.
 
     That is the header's; where its words, which end at 65535, can count no further, the largest.
     """
@@ -230,15 +230,15 @@ def frames_told(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ...]
 
 def _first_frame(layout: C3dLayout, parameters: C3dParameters) -> int:
     """Number of the first frame, counted from 1; beyond the header's words by TRIAL:ACTUAL_START_FIELD."""
-    told = _two_words(parameters.numbers("TRIAL", "ACTUAL_START_FIELD"))
+    stated = _two_words(parameters.numbers("TRIAL", "ACTUAL_START_FIELD"))
     return (
-        max(layout.first_frame, told or 0)
+        max(layout.first_frame, stated or 0)
         if layout.first_frame == LAST_FRAME_OF_HEADER
         else layout.first_frame
     )
 
 
-def _told(layout: C3dLayout, frames: int, per_frame: int) -> Iterator[str]:
+def _remarks(layout: C3dLayout, frames: int, per_frame: int) -> Iterator[str]:
     if frames != layout.frames and not layout.counts_no_further:
         yield f"the header counts {layout.frames} frames, the file has {frames}"
     if per_frame != layout.analog_per_frame:
@@ -246,7 +246,7 @@ def _told(layout: C3dLayout, frames: int, per_frame: int) -> Iterator[str]:
 
 
 def _count(number: float) -> int:
-    """A number of things; 0 for what is none."""
+    """A count of frames or channels; 0 for a number that cannot be one."""
     return int(number) if 0.0 <= number < 2**31 else 0
 
 
@@ -266,19 +266,12 @@ def _says_unsigned(parameters: C3dParameters) -> bool:
 
 
 def _looks_unsigned(parameters: C3dParameters) -> bool:
-    """Whether an offset is the middle of an unsigned range."""
+    """True where an offset is the middle of an unsigned range."""
     return bool((parameters.all_numbers("ANALOG", "OFFSET") < _UNSIGNED_OFFSET).any())
 
 
 def _analogs(samples: Array, channels: int, parameters: C3dParameters, unsigned: bool) -> Array:
-    """(C, S) scaled channels of samples (T, C · samples per frame).
-
-    Args:
-        samples: As the file has them.
-        channels: Their number C.
-        parameters: With OFFSET, SCALE and GEN_SCALE, which may be missing.
-        unsigned: Whether samples and offsets are integers without a sign.
-    """
+    """(C, S) scaled channels of stored samples (T, C · samples per frame); a missing OFFSET is 0, a missing SCALE 1."""
     if not channels or not samples.size:
         return np.zeros((0, 0))
     raw = samples.reshape(-1, channels).T

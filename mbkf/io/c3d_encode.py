@@ -23,7 +23,7 @@ INTEL, KEY = 84, 0x50
 PARAMETER_BLOCK = 2
 
 MOST_ENTRIES, MOST_LETTERS, MOST_BYTES = 255, 255, 30000
-"""What a record has room for: entries of a dimension, letters of a text, and bytes."""
+"""Room of a record: entries of a dimension, letters of a text, and bytes."""
 
 MOST_PARAMETER_BLOCKS = 255
 
@@ -39,7 +39,7 @@ def encoded(
     """A file's bytes.
 
     Args:
-        groups: Parameters by group and name, with what follows from the data left out.
+        groups: Parameters by group and name, without those that follow from the data.
         points: (T, N, 3) points in the file's unit.
         residuals: (T, N) residuals, −1 where a point is missing.
         analogs: (C, S) analog channels; S is a multiple of T.
@@ -58,8 +58,8 @@ def encoded(
     numbers[:, : 4 * count] = corners.reshape(frames, -1)
     if channels:
         numbers[:, 4 * count :] = analogs.T.reshape(frames, -1)
-    told = _counts(groups, points.shape[:2], channels, (rate_hz, per_frame * rate_hz), first_frame)
-    section = _section({**groups, **told})
+    counted = _counts(groups, points.shape[:2], channels, (rate_hz, per_frame * rate_hz), first_frame)
+    section = _section({**groups, **counted})
     blocks = len(section) // BLOCK_BYTES
     header = _header(count, channels, per_frame, first_frame, frames, PARAMETER_BLOCK + blocks, rate_hz)
     data = numbers.tobytes()
@@ -73,15 +73,7 @@ def _counts(
     rates_hz: tuple[float, float],
     first_frame: int,
 ) -> dict[str, dict[str, Value]]:
-    """The groups that tell what the data are.
-
-    Args:
-        groups: Parameters so far.
-        shape: Frames and points.
-        channels: Analog channels.
-        rates_hz: Of frames and of analog samples.
-        first_frame: Number of the first frame.
-    """
+    """The groups that describe the data: parameters so far, completed for so many frames and points, and channels."""
     frames, count = shape
     point: dict[str, Value] = {
         "USED": count,
@@ -100,7 +92,7 @@ def _counts(
         "FORMAT": ["SIGNED"],
         **groups.get("ANALOG", {}),
     }
-    told = {"POINT": point, "ANALOG": analog}
+    counted = {"POINT": point, "ANALOG": analog}
     last = first_frame + frames - 1
     if last > LAST_FRAME_OF_HEADER:
         point["LONG_FRAMES"] = float(frames)
@@ -109,8 +101,8 @@ def _counts(
             name: np.array([n % 65536, n // 65536]).astype(np.uint16).view(np.int16)
             for name, n in words.items()
         }
-        told["TRIAL"] = {**groups.get("TRIAL", {}), **trial}
-    return told
+        counted["TRIAL"] = {**groups.get("TRIAL", {}), **trial}
+    return counted
 
 
 def _header(

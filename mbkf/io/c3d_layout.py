@@ -1,8 +1,7 @@
-"""Whether a C3D file is one, judged from its header and the structure of its parameters before any of it is decoded.
+"""Header and structure of the parameters of a C3D file, checked before any of it is decoded.
 
-The layout is that of the
-C3D manual (c3d.org): a 512-byte header of 16-bit words, a parameter section, then frames of points (four
-numbers each) and analog samples, two bytes a number if the point scale is positive, else four.
+The layout is that of the C3D manual (c3d.org): a 512-byte header of 16-bit words, a parameter section, then frames of
+points (four numbers each) and analog samples, two bytes a number if the point scale is positive, else four.
 """
 
 from __future__ import annotations
@@ -72,18 +71,12 @@ class C3dLayout:
 
     @property
     def counts_no_further(self) -> bool:
-        """Whether the trial reaches the last frame that the header's words can tell."""
+        """True for a trial that reaches the last frame that the header's words can count."""
         return self.first_frame + self.frames > LAST_FRAME_OF_HEADER
 
 
 def check_layout(path: Path) -> C3dLayout:
-    """Read a C3D file's header and make sure that the file is as long as it promises.
-
-    Args:
-        path: The file.
-
-    Returns:
-        The sizes in its header.
+    """The sizes in a C3D file's header, which the file's own size has to bear out.
 
     Raises:
         FileFormatError: The file is missing, empty, not a C3D file or cut short.

@@ -16,28 +16,25 @@ import numpy as np
 from mbkf.conventions import Array
 
 LOADED_N, LEAST_LOADED = 100.0, 20
-"""Load from which a sample tells where it presses, and how many of them tell anything."""
+"""Load from which a sample shows its point of pressure, and number of samples that decide."""
 
 BESIDE_M = 0.05
-"""How far beside a plate errors may place a pressure, and how far beside its middle O must lie to be told of."""
+"""Distance beside a plate at which errors may place a pressure, and of O from its middle that calls for a remark."""
 
 MOSTLY, SELDOM = 0.9, 0.1
 """Shares of samples that press on the plate."""
 
 DEEPEST_M = 0.5
-"""No plate is thicker."""
+"""Thickness of the thickest plates."""
 
 
 def turned_by_depth(stored_m: Array, name: str, notes: list[str]) -> Array:
-    """ORIGIN with its transducers below the surface.
+    """(3,) the vector O → S in plate axes, m, with its transducers below the surface: z ≤ 0.
 
     Args:
-        stored_m: (3,) as the file has it, m.
-        name: The plate, for what is told.
-        notes: Receives that it was turned, or that no plate is that thick.
-
-    Returns:
-        (3,) the vector O → S in plate axes, m; z ≤ 0.
+        stored_m: (3,) ORIGIN of the file, m.
+        name: The plate, for remarks.
+        notes: Receives the remark that it was turned, or that no plate is that thick.
     """
     depth_m = float(abs(stored_m[2]))
     if depth_m > DEEPEST_M:
@@ -54,18 +51,15 @@ def turned_by_depth(stored_m: Array, name: str, notes: list[str]) -> Array:
 def turned_by_pressure(
     origin_m: Array, force: Array, moment: Array, half_sides_m: Array, name: str, notes: list[str]
 ) -> Array:
-    """ORIGIN with the sign of x and y with which the pressure lies on the plate; as it is where loads do not tell.
+    """(3,) the vector O → S, m, with the sign of x and y that puts the pressure onto the plate, if loads decide it.
 
     Args:
-        origin_m: (3,) the vector O → S as the file has it, m.
+        origin_m: (3,) the vector O → S of the file, m.
         force: (S, 3) N, plate axes.
         moment: (S, 3) N m about O.
         half_sides_m: (2,) half the plate's sides.
-        name: The plate, for what is told.
-        notes: Receives that it was turned.
-
-    Returns:
-        (3,) the vector O → S, m.
+        name: The plate, for remarks.
+        notes: Receives the remark that it was turned.
     """
     loaded = np.abs(force[:, 2]) > LOADED_N
     if np.abs(origin_m[:2]).max() < BESIDE_M or np.count_nonzero(loaded) < LEAST_LOADED:
@@ -84,11 +78,9 @@ def turned_by_pressure(
 
 
 def pressed_m(force: Array, moment: Array) -> Array:
-    """(S, 2) where loads press, x and y in plate axes, m.
+    """(S, 2) points of pressure, x and y in plate axes, m, of forces (S, 3) N and moments (S, 3) N m.
 
-    Args:
-        force: (S, 3) N, with a normal part.
-        moment: (S, 3) about the middle of the surface, N m.
+    Moments are about the middle of the surface.
     """
     place: Array = np.column_stack([-moment[:, 1], moment[:, 0]]) / force[:, 2:]
     return place

@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 
 CONTINUATIONS = 1000
-"""More lists than this (LABELS2, LABELS3 …) no file has."""
+"""Bound of a list's continuations (LABELS2, LABELS3 …)."""
 
 
 class C3dParameters:
@@ -40,18 +40,13 @@ class C3dParameters:
         Args:
             group: Name of the group.
             name: Name of the parameter.
-            default: The value where the parameter is missing.
+            default: Value of a missing parameter.
         """
         values = self.numbers(group, name).ravel()
         return float(values[0]) if len(values) else default
 
     def all_numbers(self, group: str, name: str) -> Array:
-        """(n,) numbers of a parameter and of its continuations (NAME2, NAME3 …).
-
-        Args:
-            group: Name of the group.
-            name: Name of the parameter.
-        """
+        """(n,) numbers of a parameter and of its continuations (NAME2, NAME3 …)."""
         found = [self.numbers(group, name).ravel()]
         for number in range(2, CONTINUATIONS):
             if f"{name.upper()}{number}" not in self._groups.get(group.upper(), {}):
@@ -82,14 +77,11 @@ class C3dParameters:
         return next(iter(self.texts(group, name)), "")
 
     def per_plate(self, name: str, shape: tuple[int, ...]) -> list[Array]:
-        """An array parameter of FORCE_PLATFORM cut into one block per plate.
+        """One block per plate of an array parameter of FORCE_PLATFORM; fewer than plates where the parameter is short.
 
         Args:
             name: CORNERS, ORIGIN, CHANNEL or CAL_MATRIX.
             shape: Shape of one plate's block; −1 stands for the size in the file.
-
-        Returns:
-            The blocks; a shorter list than plates where the parameter is short.
         """
         values = self.numbers("FORCE_PLATFORM", name)
         if not values.size:

@@ -159,13 +159,8 @@ def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array)
     """1000 or 1/1000 where moments are evidently in N m instead of N mm, or the reverse; else 1.
 
     Moments that are too small press within a millimetre of one point, closer than any foot stands still; those that are
-    too large press beside the plate.
-
-    Args:
-        force: (S, 3) N, plate axes.
-        moment: (S, 3) N m as their unit says, about the transducers.
-        shift: (S, 3) moment that moving them to the surface adds, N m.
-        half_sides_m: (2,) half the plate's sides.
+    too large press beside the plate. Forces (S, 3) N, moments (S, 3) N m about the transducers and
+    their shift (S, 3) to the surface are in plate axes.
     """
     loaded = np.abs(force[:, 2]) > LOADED_N
     if np.count_nonzero(loaded) < LEAST_LOADED:
@@ -182,18 +177,16 @@ def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array)
 
 
 def _of_each_sensor(values: Array) -> Array:
-    """(S, 12) forces of four sensors from those of type 3 (S, 8), whose pairs share shear forces in equal parts."""
+    """(S, 12) forces of four sensors from channels of type 3 (S, 8), whose pairs share shear in equal parts."""
     fx12, fx34, fy14, fy23, *fz = values.T
     fx, fy = (fx12, fx12, fx34, fx34), (fy14, fy23, fy23, fy14)
     return np.column_stack([half for k in range(4) for half in (0.5 * fx[k], 0.5 * fy[k], fz[k])])
 
 
 def _of_sensors(forces: Array, places_m: Array) -> tuple[Array, Array]:
-    """(S, 3) force and (S, 3) moment about the middle of the surface of four sensors' forces.
+    """(S, 3) force and (S, 3) moment about the middle of the surface of four sensors' forces (S, 4, 3), N.
 
-    Args:
-        forces: (S, 4, 3) forces, N.
-        places_m: Half the sensors' distances along x and y, and their depth below the surface.
+    ``places_m``: half the sensors' distances along x and y, and their depth below the surface.
     """
     lever = np.column_stack([SENSORS * places_m[:2], np.full(4, places_m[2])])  # z points down
     return forces.sum(axis=1), np.cross(lever, forces).sum(axis=1)

@@ -20,7 +20,7 @@ def read_points(
     start_time_s: float,
     notes: list[str],
 ) -> tuple[MarkerTrajectories, tuple[DerivedPoint, ...]]:
-    """Markers and derived points of a file.
+    """Measured markers in m and world axes, and the derived points of a file, unchanged.
 
     Args:
         content: The decoded file.
@@ -29,17 +29,14 @@ def read_points(
         rate_hz: Frame rate in Hz.
         start_time_s: Time of the first frame in s.
         notes: Receives remarks on labels.
-
-    Returns:
-        Measured markers in m and world axes, and the derived points as the file has them.
     """
     points, parameters = content.points, content.parameters
-    # A point is not seen where its residual is negative, a coordinate is no number, or all are zero.
+    # A point is not seen where its residual is negative, a coordinate is not a number, or all are zero.
     present = finite(points) & (content.residuals >= 0.0)
     labels = point_labels(parameters, points.shape[1], notes)
     kinds = classify(labels, _listed(parameters))
-    told = parameters.texts("POINT", "DESCRIPTIONS")
-    told += [""] * (len(labels) - len(told))
+    descriptions = parameters.texts("POINT", "DESCRIPTIONS")
+    descriptions += [""] * (len(labels) - len(descriptions))
     measured = [i for i, label in enumerate(labels) if label not in kinds]
     positions = positions_to_world(points[:, measured], present[:, measured], up, unit)
     markers = MarkerTrajectories(tuple(labels[i] for i in measured), positions, rate_hz, start_time_s)
@@ -49,7 +46,7 @@ def read_points(
             kind=kinds[label],
             values=np.where(present[:, i, None], points[:, i], np.nan),
             unit=parameters.text("POINT", UNIT_PARAMETERS[kinds[label]]),
-            description=told[i],
+            description=descriptions[i],
         )
         for i, label in enumerate(labels)
         if label in kinds
@@ -67,9 +64,6 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
         parameters: The file's parameters; labels continue in POINT:LABELS2, LABELS3 ….
         count: Number of points.
         notes: Receives the changes.
-
-    Returns:
-        ``count`` labels.
     """
     labels = parameters.texts("POINT", "LABELS")[:count]
     if len(labels) < count:

@@ -18,7 +18,7 @@ _MOST_DIMENSIONS = 7
 
 @dataclass(frozen=True)
 class ParameterRecord:
-    """One parameter as it stands in the file.
+    """One parameter of the file.
 
     Attributes:
         group: Number of its group, positive.
@@ -40,14 +40,11 @@ class DamagedParameters(ValueError):
 
 
 def walk_parameters(section: bytes, order: str) -> tuple[dict[int, str], list[ParameterRecord]]:
-    """All groups and parameters of a section.
+    """Group number → name in capitals, and the parameters of a section in the file's order.
 
     Args:
         section: The bytes from the section's first record on, to the end of the section.
         order: Byte order, "<" or ">".
-
-    Returns:
-        Group number → name in capitals, and the parameters in the file's order.
 
     Raises:
         DamagedParameters: A record reaches beyond the section or contradicts itself.
@@ -66,7 +63,7 @@ def walk_parameters(section: bytes, order: str) -> tuple[dict[int, str], list[Pa
 
 
 def first_integer(parameter: ParameterRecord, order: str) -> int | None:
-    """First value of an integer parameter, read as unsigned; None where it is none."""
+    """First value of an integer parameter, read as unsigned; None for another kind."""
     if parameter.kind != 2 or len(parameter.data) < 2:
         return None
     return int(struct.unpack_from(f"{order}H", parameter.data)[0])

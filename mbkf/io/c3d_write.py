@@ -34,14 +34,10 @@ _CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 
 def write_c3d(capture: Capture, path: str | Path) -> None:
-    """Write a capture as C3D: z up, mm, plates of type 2 with their offset already removed.
+    """Writes a capture as C3D: z up, mm, plates of type 2 with their offset already removed; whole or not at all.
 
     Missing samples get residual −1. Plate and analog samples are interpolated to a whole number per frame
     where they are not; where a recording does not reach, they hold 0. C3D stores 32-bit floats.
-
-    Args:
-        capture: The capture; its markers may be labelled or unlabelled (``*0`` …).
-        path: The file, replaced whole or not at all; its suffix is ``.c3d``.
 
     Raises:
         InvalidInput: The name does not end in ``.c3d``, the capture has no frames, or more channels than fit.
@@ -65,7 +61,7 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
 
 
 def _points(capture: Capture) -> tuple[Array, BoolArray, Parameters]:
-    """(T, N, 3) measured and derived points in mm, (T, N) which are missing, and the group POINT."""
+    """(T, N, 3) measured and derived points in mm, (T, N) missing ones, and the group POINT."""
     markers, derived = capture.markers, capture.derived
     values = [markers.positions_m * _MM]
     values += [_in_file_axes(point, capture)[:, None, :] for point in derived]
@@ -83,7 +79,7 @@ def _points(capture: Capture) -> tuple[Array, BoolArray, Parameters]:
 
 
 def _lists(derived: Sequence[DerivedPoint]) -> Parameters:
-    """Which points were computed, by kind, with the units of kinds that are no places."""
+    """Lists of the computed points by kind, with the units of kinds that are not places."""
     group: Parameters = {}
     for name, kind in {**GROUP_KINDS, COMPUTED_PLACES: "point"}.items():
         listed = [point for point in derived if point.kind == kind]

@@ -212,11 +212,7 @@ def _coverage(plates: tuple[PlateReadings, ...], markers: MarkerTrajectories) ->
 
 
 def write_capture(capture: Capture, path: str | Path) -> None:
-    """Write a capture in the format of the file's suffix.
-
-    Args:
-        capture: The capture.
-        path: The file, replaced whole or not at all.
+    """Writes a capture in the format of the file's suffix, whole or not at all.
 
     Raises:
         FileFormatError: The suffix is unknown, or the format can only be read.

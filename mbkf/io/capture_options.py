@@ -1,4 +1,4 @@
-"""How a capture, or a file of ground reactions, is read: the record that every reader takes."""
+"""Options of reading a capture, or a file of ground reactions: the record that every reader takes."""
 
 from __future__ import annotations
 

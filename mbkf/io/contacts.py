@@ -14,17 +14,17 @@ FEET = ("right_foot", "left_foot")
 """The feet's names among the parts that bear load, in the order of every paired array."""
 
 INSTANT_S = 0.05
-"""A contact, a gap in it or a change of how its force is known that is shorter than this is none of its own."""
+"""Shorter contacts, gaps between contacts and changes of their source join their neighbours."""
 
 
 class Source(IntEnum):
-    """How the force on a part of the body is known.
+    """Origin of the force on a part of the body.
 
     Attributes:
-        NONE: It bears nothing.
-        MEASURED: A plate of its own reads it.
-        SHARED: One plate under both feet reads their sum; how they share it is estimated from where they stand.
-        ESTIMATED: Nothing reads it; it follows from the motion of the whole body.
+        NONE: No load.
+        MEASURED: Read by a plate of its own.
+        SHARED: One plate under both feet reads their sum; the share follows from their places.
+        ESTIMATED: Without a plate; follows from the motion of the whole body.
     """
 
     NONE = 0
@@ -54,7 +54,7 @@ class ContactInterval:
 
     @property
     def measured(self) -> bool:
-        """Whether a plate of its own reads it."""
+        """True for a part with a plate of its own."""
         return self.how == Source.MEASURED.name.lower()
 
 
@@ -67,7 +67,7 @@ class Loads:
         source: (T, P) :class:`Source` of each load.
         wrench: (T, P, 6) force N and moment N m about the world's origin.
         wrench_sd: (T, P, 6) standard deviations, NaN where not known.
-        point_m: (T, P, 3) where the force acts, NaN where there is none.
+        point_m: (T, P, 3) point of application, NaN without a load.
     """
 
     names: tuple[str, ...]
@@ -77,12 +77,7 @@ class Loads:
     point_m: Array
 
     def intervals(self, times_s: Array, rate_hz: float) -> tuple[ContactInterval, ...]:
-        """The stretches in which the parts bear load, in order of time; split where the source changes.
-
-        Args:
-            times_s: (T,) times of the frames.
-            rate_hz: Frame rate.
-        """
+        """The stretches in which the parts bear load, in order of time; split where the source changes."""
         found = [one for k in range(len(self.names)) for one in self._of_part(k, times_s, rate_hz)]
         return tuple(sorted(found, key=lambda one: one.from_s))
 
@@ -105,7 +100,7 @@ class Loads:
 
 
 def foot_sources(contact: Array | None, foot_wrench: Array) -> Array:
-    """(T, 2) :class:`Source` of the feet's forces, from what they stand on.
+    """(T, 2) :class:`Source` of the forces on the feet, by their support.
 
     Args:
         contact: (T, 2) -1 something without a reading, 0 air, 1 a plate of its own, 2 one that both share; None where
@@ -118,7 +113,7 @@ def foot_sources(contact: Array | None, foot_wrench: Array) -> Array:
 
 
 def bearing(wrench: Array) -> BoolArray:
-    """(T, B) whether a part bears load: its wrench (T, B, 6) is known and not zero."""
+    """(T, B) true for parts that bear load: their wrench (T, B, 6) is known and not zero."""
     return np.asarray(np.nan_to_num(wrench).any(axis=2))
 
 
@@ -127,7 +122,9 @@ def _stretches(kinds: Array, least: float) -> Iterator[tuple[int, slice]]:
     starts = np.flatnonzero(np.diff(kinds, prepend=-1)) if len(kinds) else np.zeros(0, dtype=int)
     lengths = np.diff(starts, append=len(kinds))
     runs = [(int(kinds[start]), int(length)) for start, length in zip(starts, lengths, strict=True)]
-    for short in range(1, int(np.ceil(least))):  # the shortest first, so that flicker does not eat what lasts
+    for short in range(
+        1, int(np.ceil(least))
+    ):  # the shortest first, so that flicker does not consume long contacts
         runs = _joined(runs, short)
     first = 0
     for kind, length in runs:
@@ -136,10 +133,7 @@ def _stretches(kinds: Array, least: float) -> Iterator[tuple[int, slice]]:
 
 
 def _joined(runs: Sequence[tuple[int, int]], short: int) -> list[tuple[int, int]]:
-    """Runs (kind, length) of which those up to a length have joined a neighbour.
-
-    That is the longer one; a contact joins another contact rather than none.
-    """
+    """Runs (kind, length) of which short ones have joined the longer neighbour; a contact prefers a contact."""
     found: list[tuple[int, int]] = []
     for k, (own, frames) in enumerate(runs):
         kind = own

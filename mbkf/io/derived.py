@@ -1,4 +1,4 @@
-"""Which points of a C3D file were measured, and which were computed by software and stored beside them.
+"""Measured points of a C3D file, told from points that software computed and stored beside them.
 
 A file states this for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
 Joint centres, segment axes and the like carry no sign but their names, so the names of Vicon Plug-in Gait and
@@ -33,7 +33,7 @@ COMPUTED_PLACES = "MODELED_MARKERS"
 """Parameter of the group POINT that lists joint centres and other computed places, as Vicon's pipelines write it."""
 
 TYPE_WORDS = {**{name: kind.upper() for name, kind in GROUP_KINDS.items()}, COMPUTED_PLACES: "MODELED_MARKER"}
-"""What POINT:TYPE_GROUPS calls the kind of each list."""
+"""Word of POINT:TYPE_GROUPS for the kind of each list."""
 
 _SIDE = r"[LR]"
 
@@ -61,14 +61,7 @@ AXIS_ENDS = "OALP"
 
 
 def group_kinds(parameters: Mapping[str, object]) -> dict[str, str]:
-    """Parameters of the group POINT that list derived points.
-
-    Args:
-        parameters: Name → value of the parameters of the group; TYPE_GROUPS holds pairs (list, kind).
-
-    Returns:
-        Name of the list → kind, the standard ones and those the file declares.
-    """
+    """Name → kind of the lists of derived points: the standard ones and those of the group's TYPE_GROUPS."""
     kinds = dict(GROUP_KINDS)
     pairs = parameters.get("TYPE_GROUPS", ())
     words = [str(word).strip() for word in pairs] if isinstance(pairs, Sequence) else []
@@ -79,14 +72,9 @@ def group_kinds(parameters: Mapping[str, object]) -> dict[str, str]:
 
 
 def classify(labels: Sequence[str], listed: Mapping[str, str]) -> dict[str, str]:
-    """The kind of every derived point.
+    """Label → kind ("angle", "force", "moment", "power", "scalar", "point") of the derived points among the labels.
 
-    Args:
-        labels: Labels of all points of a file.
-        listed: Label → kind, for the points the file itself declares derived.
-
-    Returns:
-        Label → kind ("angle", "force", "moment", "power", "scalar", "point"); measured markers are absent.
+    ``listed`` are the points that the file itself declares derived.
     """
     kinds = {label: listed[label] for label in labels if label in listed}
     axes = segment_axes(labels)
@@ -103,14 +91,7 @@ def classify(labels: Sequence[str], listed: Mapping[str, str]) -> dict[str, str]
 
 
 def segment_axes(labels: Iterable[str]) -> set[str]:
-    """Points that come as a full set of origin, anterior, lateral and proximal, like PELO, PELA, PELL, PELP.
-
-    Args:
-        labels: Labels of all points of a file.
-
-    Returns:
-        The labels that belong to such a set of four.
-    """
+    """Labels that come as a full set of origin, anterior, lateral and proximal point, like PELO, PELA, PELL, PELP."""
     known = set(labels)
     stems = {label[:-1] for label in known if len(label) >= 4 and label[-1] == "O"}
     complete = [stem for stem in stems if all(stem + end in known for end in AXIS_ENDS)]

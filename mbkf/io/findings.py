@@ -1,4 +1,4 @@
-"""What a check of a capture found: a number beside what noise explains of it, and a verdict."""
+"""Result of one check of a capture: a number beside the part of it that noise explains, and a verdict."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Literal, get_args
 from mbkf.errors import InvalidInput
 
 Judgement = Literal["inside", "doubtful", "outside", "not judged"]
-"""Within what noise explains; more than that, and less than the bound; beyond the bound; too little to tell by."""
+"""Within the spread of noise; beyond it, but below the bound; beyond the bound; too few data."""
 
 INSIDE_SD = 2.0
-"""So many expected standard deviations are what noise explains."""
+"""Expected standard deviations that noise explains."""
 
 
 @dataclass(frozen=True)
@@ -19,14 +19,14 @@ class Finding:
     """One check.
 
     Attributes:
-        name: What is checked, e.g. "mass against plates".
-        value: What was found, 0 where everything agrees; None where it cannot be judged.
-        expected_sd: The standard deviation that noise alone gives the value; None where it cannot be judged.
+        name: Name of the check, e.g. "mass against plates".
+        value: Its result, 0 where everything agrees; None where it cannot be judged.
+        expected_sd: Standard deviation that noise alone gives the value; None where it cannot be judged.
         unit: Unit of value, spread and bound.
-        bound: A value of this size or less is not called outside.
+        bound: Values up to this size are not called outside.
         verdict: One of :data:`Judgement`.
-        hint: What it means and what to do, or why it is not judged.
-        better: The quantity's better value where the capture gives one, e.g. the mass in kg; None elsewhere.
+        hint: Meaning and remedy, or the reason why it is not judged.
+        better: Better value of the quantity where the capture gives one, e.g. the mass in kg; None elsewhere.
     """
 
     name: str
@@ -39,13 +39,13 @@ class Finding:
     better: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuses a verdict that is none.
+        """Refuses an unknown verdict.
 
         Raises:
-            InvalidInput: It is so.
+            InvalidInput: It is unknown.
         """
         if self.verdict not in get_args(Judgement):
-            raise InvalidInput(f"check '{self.name}': the verdict '{self.verdict}' is none")
+            raise InvalidInput(f"check '{self.name}': unknown verdict '{self.verdict}'")
 
     def as_table(self) -> dict[str, object]:
         """As plain data."""
@@ -56,10 +56,10 @@ def not_judged(name: str, unit: str, bound: float, why: str) -> Finding:
     """A check for which the capture holds too little.
 
     Args:
-        name: What is checked.
+        name: Name of the check.
         unit: Unit of its value.
         bound: Its bound.
-        why: What is missing.
+        why: Missing data.
     """
     return Finding(name, None, None, unit, bound, "not judged", why)
 
@@ -82,9 +82,9 @@ def judgement(value: float, expected_sd: float, bound: float) -> Judgement:
     """The verdict on a value.
 
     Args:
-        value: What was found.
-        expected_sd: What noise alone gives.
-        bound: Beyond this, and beyond what noise explains, it is outside.
+        value: The result of the check.
+        expected_sd: Standard deviation by noise alone.
+        bound: Beyond this, and beyond noise, the value is outside.
     """
     size, noise = abs(value), INSIDE_SD * expected_sd
     if size <= noise:

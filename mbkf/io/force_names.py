@@ -52,7 +52,7 @@ _CHUNKS = re.compile(r"[a-z]+|\d+")
 
 @dataclass(frozen=True)
 class ForceColumn:
-    """What a column's name says.
+    """Meaning of a column's name.
 
     Attributes:
         set_name: Words that name the plate or foot, lower case, joined by "_"; "" where there are none.
@@ -85,7 +85,7 @@ class ForceSet:
 
 
 def force_column(name: str) -> ForceColumn | None:
-    """What the name of a column says, or None where it names no axis."""
+    """Meaning of a column's name, or None where it names no axis."""
     text = _BRACKETS.sub(lambda match: " " * len(match.group()), name.lower())
     quantity: Quantity | None = None
     axes: list[tuple[int, int]] = []
@@ -115,14 +115,10 @@ def force_column(name: str) -> ForceColumn | None:
 
 
 def force_sets(names: Sequence[str], where: str) -> tuple[ForceSet, ...]:
-    """Sets of force columns of a table, in the order of their first force column.
+    """Sets of force columns of a table, in the order of their first force column; ``where`` is the file, for messages.
 
     Columns that have an axis and no quantity are the point of application of a set that has a force and no point.
     Names that occur several times belong to as many sets, which are numbered.
-
-    Args:
-        names: Names of all columns.
-        where: The file, for messages.
 
     Raises:
         FileFormatError: A column of a set is missing; names it.

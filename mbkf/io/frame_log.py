@@ -97,7 +97,7 @@ class FrameLogWriter:
             left = left[self._file.write(left) :]
 
     def close(self) -> None:
-        """No more rows."""
+        """Ends the log."""
         self._file.close()
 
     def __enter__(self) -> FrameLogWriter:

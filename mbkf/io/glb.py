@@ -22,7 +22,7 @@ MAGIC, JSON_CHUNK, NUMBERS_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 FLOAT, UINT16, UINT32 = 5126, 5123, 5125
 VERTICES, INDICES = 34962, 34963
-"""Section 5.11: what a buffer view is for."""
+"""Section 5.11: purpose of a buffer view."""
 
 _TYPES = {"<f4": FLOAT, "<u2": UINT16, "<u4": UINT32}
 _SHAPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
@@ -66,7 +66,7 @@ class GlbMaterial:
 
 @dataclass(frozen=True)
 class GlbMotion:
-    """How the parts move.
+    """Motion of the parts.
 
     Attributes:
         name: Of the animation.
@@ -88,12 +88,12 @@ def glb_bytes(
 
     Args:
         nodes: N parts, the root first, each after its parent.
-        materials: What their surfaces are made of.
-        motion: How they move.
-        generator: What wrote the file.
+        materials: Materials of their surfaces.
+        motion: Their motion.
+        generator: Name of the program that writes the file.
 
     Raises:
-        ShapeError: The motion is not one of these parts.
+        ShapeError: The motion does not belong to these parts.
         InvalidInput: A part stands before its parent, or times do not increase as 32-bit numbers.
     """
     if motion.quaternions.shape != (len(motion.times_s), len(nodes), 4):
@@ -130,13 +130,13 @@ class _Numbers:
         self.accessors: list[dict[str, object]] = []
 
     def put(self, values: NDArray, kind: str, target: int | None = None, bounds: bool = False) -> int:
-        """Takes an array (n,) or (n, width) in and returns the number of its accessor.
+        """Number of the accessor of an array (n,) or (n, width) that is added.
 
         Args:
             values: The array.
             kind: Type in the file: "<f4", "<u2" or "<u4".
-            target: What its view is for; None for an animation.
-            bounds: Whether least and greatest values are told.
+            target: Purpose of its view; None for an animation.
+            bounds: Add least and greatest values.
         """
         stored = np.ascontiguousarray(values, dtype=kind)
         data = stored.tobytes()
@@ -178,14 +178,14 @@ def _nodes(nodes: Sequence[GlbNode], motion: GlbMotion) -> list[dict[str, object
     meshes = 0
     for k, node in enumerate(nodes):
         place = node.offset_m if k else motion.root_m[0]
-        told: dict[str, object] = {"name": node.name, "translation": place.tolist()}
+        entry: dict[str, object] = {"name": node.name, "translation": place.tolist()}
         children = [j for j, other in enumerate(nodes) if other.parent == k]
         if children:
-            told["children"] = children
+            entry["children"] = children
         if node.mesh is not None:
-            told["mesh"] = meshes
+            entry["mesh"] = meshes
             meshes += 1
-        found.append(told)
+        found.append(entry)
     return found
 
 
@@ -218,9 +218,9 @@ def _material(material: GlbMaterial) -> dict[str, object]:
 
 def _file(text: str, content: bytes) -> bytes:
     """Section 4.4: JSON filled up with blanks, numbers with zeros, to whole words of four bytes."""
-    told = text.encode("utf-8")
-    told += b" " * (-len(told) % 4)
+    chunk = text.encode("utf-8")
+    chunk += b" " * (-len(chunk) % 4)
     content += bytes(-len(content) % 4)
-    chunks = struct.pack("<II", len(told), JSON_CHUNK) + told
+    chunks = struct.pack("<II", len(chunk), JSON_CHUNK) + chunk
     chunks += struct.pack("<II", len(content), NUMBERS_CHUNK) + content
     return struct.pack("<III", MAGIC, 2, 12 + len(chunks)) + chunks

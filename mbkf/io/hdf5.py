@@ -1,7 +1,7 @@
 """HDF5 files that may be damaged: sealed with a checksum, since the library may end the process on damage or never end.
 
-The seal is a line of text in the file's user block, the first 512 bytes, which HDF5 leaves to whoever wants them; a
-second line may tell the run that the file was written by. Files of before have neither and are read as they are.
+The seal is a line of text in the file's user block, the first 512 bytes, which HDF5 leaves to applications; a second
+line may hold the run that wrote the file. Older files have neither and are read as they are.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from numpy.typing import NDArray
 DAMAGED = (
     OSError, RuntimeError, KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError, MemoryError,
 )  # fmt: skip
-"""What h5py, and code that works on what it gives, raise of damaged files."""
+"""Errors that h5py, and code that works on its objects, raise of damaged files."""
 
 SEAL, USER_BLOCK = b"mbkf: %d bytes after this block, CRC-32 %08x\n", 512
 """The line, and the block that it begins."""
 
 RUN = b"run "
-"""How the second line begins."""
+"""Beginning of the second line."""
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
-"""How HDF5 begins, at the start of the file or after the user block."""
+"""Beginning of HDF5, at the start of the file or after the user block."""
 
 MOST_COMPRESSED, SPARE_BYTES = 1100, 1 << 20
-"""Deflate makes nothing smaller than a thousandth; and what files may hold besides."""
+"""Deflate makes nothing smaller than a thousandth; and room for the rest of a file."""
 
 
 def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> NDArray:
@@ -50,12 +50,7 @@ def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> ND
 
 
 def sealed(made: BytesIO, run_id: str = "") -> bytes:
-    """A file with its seal.
-
-    Args:
-        made: The file, made with ``userblock_size=USER_BLOCK``.
-        run_id: What tells the files of one run from those of another.
-    """
+    """A file, made with ``userblock_size=USER_BLOCK``, with its seal and the run that it belongs to."""
     content = made.getvalue()
     body = content[USER_BLOCK:]
     run = RUN + run_id.encode() + b"\n" if run_id else b""
@@ -63,19 +58,19 @@ def sealed(made: BytesIO, run_id: str = "") -> bytes:
 
 
 def run_of(path: Path) -> str:
-    """What was given to :func:`sealed`; empty for a file without it.
+    """The run that was given to :func:`sealed`; empty for a file without one.
 
     Raises:
         OSError: The file cannot be read.
     """
     with path.open("rb") as file:
         lines = file.read(USER_BLOCK).split(b"\n")
-    told = lines[1] if len(lines) > 1 else b""
-    return told.removeprefix(RUN).decode("ascii", "replace") if told.startswith(RUN) else ""
+    line = lines[1] if len(lines) > 1 else b""
+    return line.removeprefix(RUN).decode("ascii", "replace") if line.startswith(RUN) else ""
 
 
 def check_seal(path: Path) -> None:
-    """Makes sure that a file is what was written.
+    """Makes sure that a file is as it was written.
 
     Raises:
         ValueError: It is not.

@@ -1,6 +1,6 @@
 """Readers and motions of other installed packages: modules that entry points name, imported when they may be needed.
 
-A package names a module under a group of its ``pyproject.toml``; importing the module registers what it brings::
+A package names a module under a group of its ``pyproject.toml``; importing the module registers its readers::
 
     [project.entry-points."mbkf.readers"]
     xyz = "my_laboratory.xyz_reader"

@@ -17,12 +17,7 @@ def without_subject(labels: Sequence[str]) -> list[str]:
 
 
 def unique_labels(labels: Sequence[str], notes: list[str]) -> list[str]:
-    """Labels of which repeated ones carry a number: LASI, LASI_2.
-
-    Args:
-        labels: The labels as the file has them.
-        notes: Receives which were renamed.
-    """
+    """Labels of which repeated ones carry a number: LASI, LASI_2; ``notes`` receives the renamed ones."""
     taken = set(labels)
     seen: set[str] = set()
     result, renamed = [], []

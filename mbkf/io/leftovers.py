@@ -1,7 +1,7 @@
 """Unfinished files and folders: held while their process lives, and swept by the next one if it was killed.
 
-They are called ``.NAME-`` and 32 hexadecimal digits, beside what they are to become. Whoever writes one holds a lock
-on it, which the system lets go when the process ends, however it ends.
+They are called ``.NAME-`` and 32 hexadecimal digits, beside their targets. The writing process holds a lock on them,
+which the system releases when the process ends, however it ends.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 OLDEST_S = 86_400.0
-"""What is older is swept where the system has no such locks."""
+"""Age at which an unfinished file is swept on systems without such locks."""
 
 
 @contextmanager
 def unfinished(target: Path, within: Path | None = None, *, folder: bool = False) -> Iterator[Path]:
-    """An empty file or folder that is to take the target's place; what is still there at the end is removed.
+    """An empty file or folder that is to take the target's place; it is removed at the end unless it was moved.
 
-    It keeps the target's suffix, since some writers insist on theirs. What killed processes left of the same target is
-    swept first.
+    It keeps the target's suffix, since some writers insist on theirs. Unfinished files of the same target that killed
+    processes left behind are swept first.
 
     Args:
-        target: What is to be written.
-        within: Where the unfinished one lies; beside the target by default.
-        folder: Whether it is a folder.
+        target: The file or folder to write.
+        within: Folder of the unfinished one; the target's by default.
+        folder: Make a folder.
 
     Raises:
         OSError: It cannot be made.
@@ -53,12 +53,7 @@ def unfinished(target: Path, within: Path | None = None, *, folder: bool = False
 
 
 def sweep(target: Path, within: Path | None = None) -> None:
-    """Removes what killed processes left unfinished of a file or folder.
-
-    Args:
-        target: What they were to write.
-        within: Where the unfinished ones lie; beside the target by default.
-    """
+    """Removes unfinished files of a target that killed processes left ``within`` a folder, by default the target's."""
     name = re.compile(rf"\.{re.escape(target.stem)}-[0-9a-f]{{32}}{re.escape(target.suffix)}")
     place = target.parent if within is None else within
     with suppress(OSError):
@@ -83,14 +78,14 @@ def _remove_if_left(path: Path) -> None:
 
 @contextmanager
 def _lock(path: Path, wait: bool) -> Iterator[bool | None]:
-    """Whether the lock on a path is ours; None where the system or its file system has no locks.
+    """True for a lock on a path that is ours; None where the system or its file system has no locks.
 
     Raises:
         OSError: The path is not there.
     """
     try:
         import fcntl
-    except ImportError:  # not POSIX, where what is open cannot be renamed either
+    except ImportError:  # not POSIX, where open files cannot be renamed either
         yield None
         return
     descriptor = os.open(path, os.O_RDONLY)

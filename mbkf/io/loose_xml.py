@@ -1,4 +1,4 @@
-"""XML as people leave it: read without refusing lost end tags, bare ampersands, wrong encodings or odd comments.
+"""XML with the faults of daily use: lost end tags, bare ampersands, wrong encodings and odd comments are read over.
 
 For files that hold either text or elements in an element, never both, as OpenSim's do. Nothing outside the file is
 ever read and no entity is expanded but the five of XML and numbered characters, so a file cannot make this reader
@@ -25,7 +25,7 @@ _TOKEN = re.compile(
 )
 _ATTRIBUTE = re.compile(r"(?<![\w.:-])([\w.:-]++)\s*+=\s*(?:\"([^\"]*)\"|'([^']*)'|[\"']?([^\s\"']+))")
 MOST_DEPTH = 200
-"""Elements in elements that are told apart; what is nested deeper counts as side by side."""
+"""Depth of nesting; deeper elements count as side by side."""
 
 _CHARACTER = re.compile(r"&(?:#(\d{1,7})|#x([0-9a-fA-F]{1,6})|(amp|lt|gt|quot|apos));")
 _NAMED = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
@@ -69,8 +69,8 @@ class Element:
         """Its first own child of one of these names; names that come first are preferred."""
         return next((one for tag in tags for one in self.children if one.tag == tag), None)
 
-    def said(self, *tags: str) -> str:
-        """The text of that child, "" where there is none."""
+    def child_text(self, *tags: str) -> str:
+        """The text of that child, "" without one."""
         found = self.child(*tags)
         return "" if found is None else found.text
 
@@ -78,9 +78,7 @@ class Element:
 def read_loose_xml(path: str | Path, never_nested: frozenset[str] = frozenset()) -> Element:
     """The elements of a file, below one that stands for the file itself.
 
-    Args:
-        path: The file.
-        never_nested: Elements that never stand in one of their own name: a second one ends the first.
+    A second element of a ``never_nested`` name within one of that name ends the first.
 
     Raises:
         FileFormatError: There is no such file, or no element in it.
@@ -90,23 +88,18 @@ def read_loose_xml(path: str | Path, never_nested: frozenset[str] = frozenset())
         raise FileFormatError(path, "no such file; name an OpenSim model (.osim) or a marker set (.xml)")
     root = parse_loose_xml(_decoded(path.read_bytes()), never_nested)
     if not root.children:
-        raise FileFormatError(path, "is no XML: it holds no element")
+        raise FileFormatError(path, "not XML: it holds no element")
     return root
 
 
 def parse_loose_xml(text: str, never_nested: frozenset[str] = frozenset()) -> Element:
-    """The elements of a text, below one that stands for the text itself.
-
-    Args:
-        text: The text.
-        never_nested: As for :func:`read_loose_xml`.
-    """
+    """The elements of a text, below one that stands for the text itself, as of :func:`read_loose_xml`."""
     root = Element("")
     open_: list[Element] = [root]
-    said: list[str] = []
+    pieces: list[str] = []
     for token in _TOKEN.finditer(text):
         if token["start"] or token["end"]:
-            _say(open_, said)
+            _give_text(open_, pieces)
         if token["start"]:
             _open(open_, token["start"], never_nested)
             pairs = _ATTRIBUTE.findall(token["attributes"])
@@ -117,8 +110,8 @@ def parse_loose_xml(text: str, never_nested: frozenset[str] = frozenset()) -> El
         elif token["end"]:
             _close(open_, token["end"])
         elif token["text"] or token["raw"]:
-            said.append(token["raw"] or _plain(token["text"]))
-    _say(open_, said)
+            pieces.append(token["raw"] or _plain(token["text"]))
+    _give_text(open_, pieces)
     waiting = [root]
     while waiting:
         one = waiting.pop()
@@ -127,10 +120,10 @@ def parse_loose_xml(text: str, never_nested: frozenset[str] = frozenset()) -> El
     return root
 
 
-def _say(open_: list[Element], said: list[str]) -> None:
-    """Gives the innermost element what was said in it; between elements there is white space only."""
-    text = "".join(said)
-    said.clear()
+def _give_text(open_: list[Element], pieces: list[str]) -> None:
+    """Gives the innermost element its pieces of text; between elements there is white space only."""
+    text = "".join(pieces)
+    pieces.clear()
     if len(open_) > 1 and (open_[-1].text or text.strip()):
         open_[-1].text += text
 

@@ -25,7 +25,7 @@ Variable: TypeAlias = "Array | Mapping[str, Array]"
 """An array, or a struct's arrays by field."""
 
 MOST_BYTES = 1 << 29
-"""What all packed variables of a file may unpack to; a day of a sensor at 100 Hz."""
+"""Bound of all unpacked variables of a file; a day of a sensor at 100 Hz."""
 
 MOST_DIMENSIONS, MOST_FIELD_NAME = 8, 256
 
@@ -49,7 +49,7 @@ def read_mat5(path: Path) -> dict[str, Variable]:
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: It is no such file, or a size in it does not fit.
+        ValueError: It is another kind of file, or a size in it does not fit.
     """
     content = path.read_bytes()
     if len(content) < _HEADER or content[126:128] not in (b"IM", b"MI"):
@@ -97,13 +97,7 @@ def _elements(data: memoryview, order: str) -> Iterator[_Element]:
 
 
 def _unpacked(body: memoryview, order: str, most: int) -> bytes:
-    """A packed variable, no longer than the tag at its beginning says.
-
-    Args:
-        body: The stream.
-        order: Byte order.
-        most: Bytes that may come of it.
-    """
+    """A packed variable, no longer than the tag at its beginning says and than ``most`` bytes."""
     stream = zlib.decompressobj()
     try:
         tag = stream.decompress(body, 8)
@@ -121,13 +115,7 @@ def _unpacked(body: memoryview, order: str, most: int) -> bytes:
 
 
 def _matrix(body: memoryview, order: str, within: bool) -> tuple[str, Variable | None]:
-    """Name and contents of an array; None where it is of a kind that is passed over.
-
-    Args:
-        body: Its bytes.
-        order: Byte order.
-        within: Whether it is a field of a struct, in which structs are passed over.
-    """
+    """Name and contents of an array; None for kinds that are passed over, as structs ``within`` a struct are."""
     parts = _elements(body, order)
     flags = next(parts, None)
     if flags is None:

@@ -1,7 +1,7 @@
 """Motive's CSV exports: measured markers of a take.
 
 The first line holds pairs of a name and a value (Format Version, Capture Frame Rate, Length Units …). Rows of titles
-follow: what a column is (Marker, Rigid Body, Bone …), its name, its ID, Position or Rotation; then a row Frame, Time,
+follow: kind of a column (Marker, Rigid Body, Bone …), its name, its ID, Position or Rotation; then a row Frame, Time,
 X, Y, Z …, and the frames. Only positions of type Marker are measured; those of a rigid body's or a bone's markers
 are where the solver expects them. Motive has y up unless the export chose other axes, which the file does not state.
 

@@ -7,11 +7,9 @@ from pathlib import Path
 
 
 def plate_files(path: Path, name: re.Pattern[str]) -> tuple[Path, ...]:
-    """The files of a trial's plates, in the order of their numbers.
+    """The files of a trial's plates, in the order of their numbers, beside one of them or the file of the trial's name.
 
-    Args:
-        path: A file of the trial: one of a plate, or one whose stem is the trial's name.
-        name: Matches the stem of a plate's file, with groups ``trial`` and ``plate``.
+    ``name`` matches the stem of a plate's file, with groups ``trial`` and ``plate``.
     """
     match = name.fullmatch(path.stem)
     trial = match["trial"] if match else path.stem

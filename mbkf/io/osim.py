@@ -18,7 +18,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.loose_xml import Element, read_loose_xml
 
 LARGEST = 1e6
-"""No length (m, or mm by mistake), angle or coefficient of a body's joints is larger."""
+"""Bound of lengths (m, or mm by mistake), angles and coefficients of a body's joints."""
 
 _NEVER_NESTED = frozenset({"Marker", "Body", "PhysicalOffsetFrame", "TransformAxis"})
 _ROTATIONS = ("rotation1", "rotation2", "rotation3")
@@ -83,7 +83,7 @@ def read_osim(path: str | Path) -> OsimModel:
     """Reads a model, or a marker set that stands in a file of its own.
 
     Raises:
-        FileFormatError: There is no such file, it is no file of OpenSim, or it holds no marker.
+        FileFormatError: The file is missing, not one of OpenSim, or without markers.
     """
     path = Path(path)
     root = read_loose_xml(path, _NEVER_NESTED)
@@ -92,7 +92,7 @@ def read_osim(path: str | Path) -> OsimModel:
     found = model or next(root.every("MarkerSet", "OpenSimDocument"), None)
     if found is None:
         raise FileFormatError(
-            path, "is no OpenSim model or marker set; name an .osim file or a MarkerSet .xml"
+            path, "not an OpenSim model or marker set; name an .osim file or a MarkerSet .xml"
         )
     frames = {one.name: one for one in root.every("PhysicalOffsetFrame") if one.name}
     markers: dict[str, OsimMarker] = {}
@@ -124,8 +124,8 @@ def _read_marker(
 ) -> None:
     """Puts a marker among those that could be read or those that could not."""
     name = " ".join(element.name.split())
-    place = _numbers(element.said("location"))
-    body, offset = _body_frame(element.said(*_MARKER_BODIES), frames)
+    place = _numbers(element.child_text("location"))
+    body, offset = _body_frame(element.child_text(*_MARKER_BODIES), frames)
     if not name:
         damaged.setdefault("(no name)", "a marker without a name")
     elif name in markers:
@@ -135,7 +135,7 @@ def _read_marker(
     elif not body:
         damaged[name] = "it names no body"
     else:
-        fixed = {"true": True, "1": True, "false": False, "0": False}.get(element.said("fixed").lower())
+        fixed = {"true": True, "1": True, "false": False, "0": False}.get(element.child_text("fixed").lower())
         on_body = offset[:3, :3] @ place + offset[:3, 3]
         markers[name] = OsimMarker(name, body, read_only(on_body), fixed)
 
@@ -145,14 +145,14 @@ def _joints(root: Element) -> list[OsimJoint]:
     for body in root.every("Body"):  # up to version 3 a joint stands in its child body
         holder = body.child("Joint")
         joint = holder.children[0] if holder is not None and holder.children else None
-        if joint is not None and joint.said("parent_body"):
-            into = _placed(joint.said("location_in_parent"), joint.said("orientation_in_parent"))
-            own = _placed(joint.said("location"), joint.said("orientation"))
-            found.append(_joint(joint, joint.said("parent_body"), body.name, into, own))
+        if joint is not None and joint.child_text("parent_body"):
+            into = _placed(joint.child_text("location_in_parent"), joint.child_text("orientation_in_parent"))
+            own = _placed(joint.child_text("location"), joint.child_text("orientation"))
+            found.append(_joint(joint, joint.child_text("parent_body"), body.name, into, own))
     for joint in (one for group in root.every("JointSet") for one in group.every(*_joint_tags(group))):
         frames = {one.name: one for one in joint.every("PhysicalOffsetFrame")}
-        parent, into = _body_frame(joint.said(*_PARENT_FRAMES), frames)
-        child, own = _body_frame(joint.said(*_CHILD_FRAMES), frames)
+        parent, into = _body_frame(joint.child_text(*_PARENT_FRAMES), frames)
+        child, own = _body_frame(joint.child_text(*_CHILD_FRAMES), frames)
         if parent and child:
             found.append(_joint(joint, parent, child, into, own))
     return found
@@ -173,7 +173,7 @@ def _at_zero(joint: Element) -> Array:
     transform = next(joint.every("SpatialTransform"), None)
     axes = {one.name: one for one in transform.every("TransformAxis")} if transform else {}
     for name in (*_ROTATIONS, *_TRANSLATIONS):
-        axis = _numbers(axes[name].said("axis")) if name in axes else None
+        axis = _numbers(axes[name].child_text("axis")) if name in axes else None
         if axis is None or not np.linalg.norm(axis) > 0.0:
             continue
         amount = next(
@@ -198,13 +198,16 @@ def _value_at_zero(function: Element, depth: int = 4) -> float:
     if function.tag == "function" and inner:
         return _value_at_zero(inner[0], depth - 1)
     if function.tag == "MultiplierFunction":
-        scale, value = _list(function.said("scale")), _value_at_zero(inner[0], depth - 1) if inner else 0.0
+        scale, value = (
+            _list(function.child_text("scale")),
+            _value_at_zero(inner[0], depth - 1) if inner else 0.0,
+        )
         return (scale[0] if scale else 1.0) * value
     if function.tag == "Constant":
-        return (_list(function.said("value")) or [0.0])[0]
+        return (_list(function.child_text("value")) or [0.0])[0]
     if function.tag in ("LinearFunction", "PolynomialFunction"):  # highest power first
-        return (_list(function.said("coefficients")) or [0.0])[-1]
-    x, y = _list(function.said("x")), _list(function.said("y"))
+        return (_list(function.child_text("coefficients")) or [0.0])[-1]
+    x, y = _list(function.child_text("x")), _list(function.child_text("y"))
     if len(x) < 2 or len(x) != len(y) or not np.all(np.diff(x) > 0.0):
         return 0.0
     if function.tag == "PiecewiseLinearFunction":
@@ -218,8 +221,8 @@ def _body_frame(path: str, frames: dict[str, Element], depth: int = 4) -> tuple[
     frame = frames.get(name)
     if frame is None or depth == 0:
         return name, np.eye(4)
-    own = _placed(frame.said("translation"), frame.said("orientation"))
-    body, beyond = _body_frame(frame.said(*_OFFSET_PARENTS), frames, depth - 1)
+    own = _placed(frame.child_text("translation"), frame.child_text("orientation"))
+    body, beyond = _body_frame(frame.child_text(*_OFFSET_PARENTS), frames, depth - 1)
     return body, beyond @ own
 
 
@@ -241,7 +244,7 @@ def _numbers(text: str) -> Array | None:
 
 
 def _list(text: str) -> list[float]:
-    """Numbers of a body's size, none where any word is something else."""
+    """Numbers of a body's size; empty where any word is something else."""
     try:
         found = [float(word) for word in text.replace(",", " ").split()]
     except ValueError:

@@ -47,7 +47,7 @@ def parse_toml(text: str) -> TomlTable:
     """The table of a TOML text.
 
     Raises:
-        ValueError: It is no TOML, or nested too deep, or holds a whole number of more than 64 bits.
+        ValueError: It is not TOML, or nested too deep, or holds a whole number of more than 64 bits.
     """
     long_key = _LONG_KEY.search(text)
     if long_key is not None:
@@ -65,7 +65,7 @@ def parse_json(text: str | bytes) -> JsonTable:
     """The object that a JSON text holds.
 
     Raises:
-        ValueError: It is no JSON or no object, or nested too deep, or holds a whole number of more than 64 bits.
+        ValueError: It is not a JSON object, or nested too deep, or holds a whole number of more than 64 bits.
     """
     try:
         found = json.loads(text)
@@ -87,11 +87,11 @@ def number_between(
         key: Its name.
         low: The smallest that is possible.
         high: The largest that is possible.
-        default: What holds where the table has none; None where it needs one.
+        default: Value of a missing entry; None for a required one.
 
     Raises:
-        KeyError: The table has none.
-        ValueError: It is no number, or lies elsewhere.
+        KeyError: A required entry is missing.
+        ValueError: It is not a number, or lies elsewhere.
     """
     value = table[key] if default is None else table.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:

@@ -175,14 +175,9 @@ def _best(table: PlateTable, options: CaptureOptions) -> _Reading:
 
 
 def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, threshold_n: float) -> _Reading:
-    """A plate read one way.
+    """A plate read one way: vectors in its own axes (``local``) or the laboratory's, moments about its centre or 0.
 
-    Args:
-        table: The plate.
-        local: The vectors are in the plate's axes.
-        about_centre: Moments refer to the plate's centre; else to the laboratory's origin.
-        factor: N m per unit of the moments.
-        threshold_n: Force normal to the plate from which on its centre of pressure counts.
+    ``factor`` is N m per unit of the moments; a centre of pressure counts from ``threshold_n`` normal to the plate on.
     """
     axes = plate_axes(table.corners_m)
     centre, normal = table.corners_m.mean(axis=0), axes[:, 2]

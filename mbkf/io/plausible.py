@@ -1,4 +1,4 @@
-"""What no laboratory measures is not taken for a measurement: far markers are missing, impossible forces are refused.
+"""Readings that no laboratory measures: far markers count as missing, impossible forces are refused.
 
 A damaged number, a wrong scale or an unsigned offset read with a sign gives places of a thousand kilometres and forces
 of tons; one such sample carries a filter away.
@@ -15,7 +15,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture
 
 FARTHEST_M = 1000.0
-"""No laboratory or track is larger."""
+"""Size of the largest laboratory or track."""
 
 MOST_N, MOST_NM = 1e5, 1e5
 """Plates for persons end at a fifth of this."""
@@ -30,11 +30,9 @@ _NAMED = 3
 
 
 def plausible(capture: Capture, forces: Path | None = None) -> Capture:
-    """The capture without markers that lie further away than any laboratory reaches, which is told.
+    """The capture with markers outside of any laboratory as missing, which a remark counts.
 
-    Args:
-        capture: What was read.
-        forces: The file that its plates come from, where they have one of their own.
+    ``forces`` is the file of its plates, where they have one of their own.
 
     Raises:
         InvalidInput: A frame rate, a force, a moment or the place of a plate is impossible.
@@ -46,14 +44,14 @@ def plausible(capture: Capture, forces: Path | None = None) -> Capture:
             file = forces if forces is not None and name != "the markers" else capture.path
             raise InvalidInput(f"{file}: the rate of {name} is {rate_hz:g} Hz; export the trial again")
     for plate in capture.plates:
-        for what, values, most, unit in (
+        for quantity, values, most, unit in (
             ("force", plate.force_n, MOST_N, "N"),
             ("moment", plate.moment_nm, MOST_NM, "N m"),
         ):
             largest = float(np.max(np.abs(values), initial=0.0))
             if not largest <= most:
                 raise InvalidInput(
-                    f"{forces or capture.path}: force plate {plate.name} reads a {what} of {largest:.2g} {unit}; "
+                    f"{forces or capture.path}: force plate {plate.name} reads a {quantity} of {largest:.2g} {unit}; "
                     "check its scale and offset (ANALOG:SCALE, OFFSET), or give the ground reactions with --forces"
                 )
         places = plate.origin_m if plate.corners_m is None else np.vstack([plate.origin_m, plate.corners_m])
@@ -67,9 +65,9 @@ def plausible(capture: Capture, forces: Path | None = None) -> Capture:
         return capture
     names = [name for name, any_ in zip(markers.names, far.any(axis=0), strict=True) if any_]
     more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    told = (
+    remark = (
         f"{int(far.sum())} samples lie more than {FARTHEST_M:g} m away and are taken as missing: "
         f"{', '.join(names[:_NAMED])}{more}"
     )
     positions = np.where(far[:, :, None], np.nan, markers.positions_m)
-    return replace(capture, markers=replace(markers, positions_m=positions), notes=(*capture.notes, told))
+    return replace(capture, markers=replace(markers, positions_m=positions), notes=(*capture.notes, remark))

@@ -118,11 +118,9 @@ def read_qualisys(path: str | Path, options: CaptureOptions) -> Capture:
 
 
 def read_forces_qualisys(path: str | Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
-    """The plate of a file and the trial's other plates beside it, named by the numbers of their files.
+    """The plate of a file, or those of a file of trajectories, and the trial's other plates, named by their numbers.
 
-    Args:
-        path: The file of one plate, or of the trajectories it belongs to.
-        options: Without an axis, the one that the plates face points up.
+    Without an axis in the options, the one that the plates face points up.
 
     Raises:
         FileFormatError: A file is missing, not of that kind, or broken.

@@ -13,7 +13,7 @@ from mbkf.errors import ShapeError, UnknownName
 
 
 class AxesSource(StrEnum):
-    """Where it is known from which axes of a file point forward, left and up."""
+    """Origin of the axes of a file that point forward, left and up."""
 
     PLATES = "plates"
     """The surfaces of the file's force plates face up."""

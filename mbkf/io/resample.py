@@ -64,11 +64,9 @@ def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: flo
 
 
 def window_ends(position: Array | float, half: float) -> tuple[Array, Array]:
-    """Where the windows around positions (T,), or one, begin and end, in samples.
+    """Begin and end of the windows around positions (T,), or one, in samples; rounded to a sample very near.
 
-    On a sample where only rounding is between.
-
-    Else a live stream would wait for a sample that counts for nothing, or come to other numbers without it.
+    Else a live stream would wait for a sample that counts for nothing, or get other numbers without it.
     """
     ends = np.array([position - half, position + half])
     whole = np.rint(ends)
@@ -77,19 +75,16 @@ def window_ends(position: Array | float, half: float) -> tuple[Array, Array]:
 
 
 def integrals_between(samples: Array, low: Array, high: Array, span: float) -> Array:
-    """Integrals of samples joined by straight lines: Σ f_k ∫ h(x − k) dx with the hat h of each sample.
+    """(T, n) integrals, per sample interval, of samples joined by straight lines: Σ f_k ∫ h(x − k) dx with hats h.
 
     Only samples inside a window count, and always in the same order, so that a live stream that keeps few of them
     finds the very same numbers as a whole trial does.
 
     Args:
         samples: (S, n) readings.
-        low: (T,) where the windows begin, in samples.
-        high: (T,) where they end.
-        span: No window is longer than this.
-
-    Returns:
-        (T, n) integrals, per sample interval.
+        low: (T,) begin of the windows, in samples.
+        high: (T,) their end.
+        span: Length of the longest window.
     """
     places = np.floor(low).astype(int) + np.arange(int(np.ceil(span)) + 2)[:, None]
     weights = _hat_until(high - places) - _hat_until(low - places)
@@ -105,14 +100,10 @@ def integrals_between(samples: Array, low: Array, high: Array, span: float) -> A
 
 @lru_cache(maxsize=256)
 def window_weights(low: float, high: float) -> Array:
-    """(n, 1) weights of the first n samples in the integral of one window, see :func:`integrals_between`.
+    """(n, 1) weights of the first n samples in the integral of one window that begins before sample 1.
 
-    The weighted sum of the samples, row after row, is the very same number. Windows of a stream's frames recur, so
-    weights are kept.
-
-    Args:
-        low: Where the window begins, in samples; less than 1.
-        high: Where it ends.
+    The weighted sum of the samples, row after row, is the number of :func:`integrals_between`. Windows of a stream's
+    frames recur, so weights are kept.
     """
     places = np.arange(int(np.ceil(high)) + 1.0)
     return np.asarray(_hat_until(high - places) - _hat_until(low - places))[:, None]

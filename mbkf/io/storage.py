@@ -59,14 +59,9 @@ class Table:
 
 
 def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
-    """Read a MOT or STO file of any of the header dialects OpenSim has had.
+    """Reads a MOT or STO file of any of the header dialects OpenSim has had; degrees stay degrees.
 
-    Args:
-        path: The file.
-        check_rows: Whether fewer rows than the header promises are refused.
-
-    Returns:
-        The table; degrees stay degrees (see ``in_degrees``).
+    ``check_rows`` refuses fewer rows than the header promises.
 
     Raises:
         FileFormatError: The file is missing, has no header or names, or a row is not as long as the names;
@@ -90,7 +85,7 @@ def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
     back = np.flatnonzero(~(np.diff(rows[:, 0]) >= 0.0))
     if len(back):
         raise FileFormatError(
-            path, "times go back or are no numbers; export it again", start + 2 + int(back[0]) + 1
+            path, "times go back or are not numbers; export it again", start + 2 + int(back[0]) + 1
         )
     degrees = header.get("indegrees", "no").lower() in {"yes", "true", "1"}
     table = Table(tuple(names[1:]), rows[:, 0], rows[:, 1:], degrees, title, header)
@@ -108,11 +103,7 @@ def promised_rows(table: Table) -> int | None:
 
 
 def write_storage(table: Table, path: str | Path) -> None:
-    """Write a table as OpenSim reads it.
-
-    Args:
-        table: The table; other entries of its header follow the standard ones.
-        path: The file, replaced whole or not at all.
+    """Writes a table as OpenSim reads it, whole or not at all; other header entries follow the standard ones.
 
     Raises:
         OSError: The file cannot be written.
@@ -151,7 +142,7 @@ def _header(lines: list[str]) -> tuple[str, dict[str, str]]:
 
 
 def _cells(line: str) -> list[str]:
-    """Names between tabs, or between blanks where there are no tabs."""
+    """Names between tabs, or between blanks in a line without tabs."""
     cells = line.split("\t") if "\t" in line else line.split()
     return [cell.strip() for cell in cells if cell.strip()]
 

@@ -33,11 +33,7 @@ class TextFile:
 
 
 def read_text(path: Path, kind: str) -> TextFile:
-    """Lines of a file.
-
-    Args:
-        path: The file.
-        kind: What it should be, with its article, for the message: "a TRC file".
+    """Lines of a file; ``kind`` is the expected kind with its article, for the message: "a TRC file".
 
     Raises:
         FileFormatError: There is no such file.
@@ -72,10 +68,10 @@ def csv_rows(lines: Sequence[str], path: Path, first: int = 1, delimiter: str = 
         lines: The lines.
         path: The file, for messages.
         first: Number of the first line, from 1.
-        delimiter: What stands between cells.
+        delimiter: Mark between cells.
 
     Raises:
-        FileFormatError: A cell is as long as no cell is, since a quotation mark does not end; names the line.
+        FileFormatError: A quotation mark does not end, so that a cell is too long; names the line.
     """
     rows = csv.reader(lines, delimiter=delimiter)
     try:
@@ -86,7 +82,7 @@ def csv_rows(lines: Sequence[str], path: Path, first: int = 1, delimiter: str = 
 
 
 def number(word: str) -> float | None:
-    """A finite number, or None where the word is none."""
+    """A finite number, or None for any other word."""
     try:
         value = float(word)
     except ValueError:
@@ -129,19 +125,19 @@ def compare_rate(rate_hz: float, times_s: Array) -> list[str]:
     return []
 
 
-def check_order(path: Path, counted: Array, what: str, first_line: int | None = None) -> None:
-    """Refuses rows that stand in another order than they were measured, or of which some are missing.
+def check_order(path: Path, counted: Array, name: str, first_line: int | None = None) -> None:
+    """Refuses rows in another order than they were measured, or with gaps.
 
     Args:
         path: The file, for the message.
-        counted: (T,) what goes up by the same step from row to row: times, or numbers of samples.
-        what: Its name, for the message.
+        counted: (T,) times or numbers of samples, which increase by the same step from row to row.
+        name: Their name, for the message.
         first_line: Line of the first row, where each row is a line.
 
     Raises:
         FileFormatError: A step is less than half or more than one and a half of the usual one; names the line.
     """
-    with np.errstate(invalid="ignore"):  # what is no number is no step
+    with np.errstate(invalid="ignore"):  # steps to missing numbers do not count
         steps = np.diff(counted)
     finite = steps[np.isfinite(steps)]
     usual = float(np.median(finite)) if len(finite) else 1.0
@@ -150,7 +146,7 @@ def check_order(path: Path, counted: Array, what: str, first_line: int | None = 
         row = int(np.argmax(uneven)) + 1
         line = None if first_line is None else first_line + row
         reason = (
-            f"{what} goes from {counted[row - 1]:.6g} to {counted[row]:.6g}; rows are missing or out of order"
+            f"{name} goes from {counted[row - 1]:.6g} to {counted[row]:.6g}; rows are missing or out of order"
         )
         raise FileFormatError(path, f"{reason}; export it again", line)
 

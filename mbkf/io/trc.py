@@ -90,16 +90,9 @@ def read_trc(path: str | Path, options: CaptureOptions) -> Capture:
 
 
 def _with_gaps(path: Path, times_s: Array, values: Array, rate_hz: float, notes: list[str]) -> Array:
-    """The coordinates with frames of NaN where the Time column says that rows are missing.
+    """The coordinates (T, M, 3) with frames of NaN where the Time column (T,) shows that rows are missing.
 
     Times are rounded and rates not exact, so that each step from row to row is counted for itself.
-
-    Args:
-        path: The file, for messages.
-        times_s: (T,) the Time column.
-        values: (T, M, 3) coordinates.
-        rate_hz: Frame rate of the header.
-        notes: Receives how many frames are missing.
 
     Raises:
         FileFormatError: Times go back, or jump further than the trial is long.
@@ -125,11 +118,7 @@ def _with_gaps(path: Path, times_s: Array, values: Array, rate_hz: float, notes:
 
 
 def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
-    """Write marker positions as OpenSim reads them: y up, mm, missing samples as NaN.
-
-    Args:
-        markers: Positions in m and world axes.
-        path: The file, replaced whole or not at all.
+    """Writes marker positions as OpenSim reads them: y up, mm, missing samples as NaN; whole or not at all.
 
     Raises:
         OSError: The file cannot be written.
@@ -219,14 +208,10 @@ def _rows(file: TextFile) -> _Rows:
 
 
 def _names(line: str, points: int) -> list[str]:
-    """Marker names in the order of the columns, "" for points without a name.
+    """Marker names in the order of the columns of so many points, "" for points without a name.
 
     Where every name stands over the first column of a point, its place counts; some programs put any number of
     tabs between names, which then follow one another.
-
-    Args:
-        line: Fourth line of the file.
-        points: Points that the rows hold.
     """
     cells = [cell.strip() for cell in (line.split("\t") if "\t" in line else line.split())]
     places = [i - _COLUMNS_BEFORE_MARKERS for i, cell in enumerate(cells) if cell][_COLUMNS_BEFORE_MARKERS:]

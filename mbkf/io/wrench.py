@@ -48,7 +48,7 @@ class Tare:
 def centre_of_pressure(
     force_n: Array, moment_nm: Array, origin_m: Array, normal: Array, threshold_n: float
 ) -> Array:
-    """Point of a plate's surface about which the horizontal moment vanishes.
+    """(S, 3) world points of a plate's surface about which the horizontal moment vanishes, m; NaN below the threshold.
 
     With M the moment about a point o of the surface, F the force and n the normal, r = n × M / (n · F) and
     the point is o + r.
@@ -59,9 +59,6 @@ def centre_of_pressure(
         origin_m: (3,) a point of the surface in m.
         normal: (3,) unit normal of the surface.
         threshold_n: Vertical force in N below which the point is not given.
-
-    Returns:
-        (S, 3) world points in m, NaN where the vertical force is below the threshold.
     """
     pressed = force_n @ normal
     loaded = (force_n[:, 2] >= threshold_n) & (pressed > 0.0)
@@ -97,17 +94,13 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
 
 
 def find_tare(wrench: Array, rate_hz: float) -> Tare:
-    """Offset of a plate, from the stretches in which it carries no load.
+    """Offset of a plate's wrench (S, 6), world axes (z up), from the stretches in which it carries no load.
 
     The recording is cut into windows of 30 ms. Those with a vertical force inside ``UNLOADED_RANGE_N`` and a
     small spread are candidates; the mode of their vertical force is the unloaded level, and the offset is the
     median of the candidates near it. A plate that is loaded all the time has no candidates and no offset.
     Samples in which all six readings are exactly zero were zeroed by software and carry no information on
     another level, so they only count where they prevail.
-
-    Args:
-        wrench: (S, 6) force in N and moment in N m of the plate on the body, world axes (z up).
-        rate_hz: Sample rate in Hz.
     """
     size = max(4, round(_WINDOW_S * rate_hz))
     count = len(wrench) // size

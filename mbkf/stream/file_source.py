@@ -24,7 +24,7 @@ class FileSource:
         self._begin_s: float | None = None
 
     def connect(self, timeout_s: float) -> StreamDescription:
-        """A file is always there."""
+        """The description; a file is always there."""
         del timeout_s
         return self._played.stream
 
@@ -50,8 +50,8 @@ class FileSource:
         return SourceFrame(frame.number, time.perf_counter(), markers, points, frame.plates, frame.imus)
 
     def news(self) -> list[tuple[str, str]]:
-        """Nothing happens to a file."""
+        """A file has no events."""
         return []
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """A file needs no closing."""

@@ -18,11 +18,11 @@ _configured = False
 
 
 def library(name: str, needed_for: str, extra: str) -> ModuleType:
-    """A module that an extra of mbkf brings.
+    """A module that an extra of mbkf installs.
 
     Args:
         name: Name of the module.
-        needed_for: What it is needed for, for the error message.
+        needed_for: The capability that needs it, for the error message.
         extra: The extra of mbkf that installs it.
 
     Raises:
@@ -50,6 +50,6 @@ def lsl() -> ModuleType:
 
 
 def _own_configuration() -> bool:
-    """Whether there is a configuration of liblsl, where it looks for one."""
+    """True where a configuration of liblsl lies in one of the places that it searches."""
     places = (Path("lsl_api.cfg"), Path.home() / "lsl_api" / "lsl_api.cfg", Path("/etc/lsl_api/lsl_api.cfg"))
     return LSL_CONFIG_VARIABLE in os.environ or any(place.is_file() for place in places)

@@ -1,4 +1,4 @@
-"""This computer's own address: servers bound to it need no token; and which requests other web pages caused."""
+"""This computer's own address: servers bound to it need no token; and recognition of requests from other web pages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LOOPBACK = "127.0.0.1"
 
 
 def is_loopback(address: str) -> bool:
-    """Whether an address, or the name "localhost", reaches this computer only."""
+    """True for an address, or the name "localhost", that reaches this computer only."""
     try:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
@@ -18,16 +18,16 @@ def is_loopback(address: str) -> bool:
 
 
 def own_request(host: str, origin: str | None, local: bool, any_port: bool = False) -> bool:
-    """Whether a request comes from a program or from the server's own page, and not from another web page.
+    """True for a request by a program or by the server's own page, false for one that another web page caused.
 
-    A page elsewhere that its visitor's browser lets ask this computer tells its origin; one that has given its own name
-    this computer's address (DNS rebinding) asks for that name as the host.
+    A page elsewhere that makes its visitor's browser ask this computer states its origin; one that has given its own
+    name this computer's address (DNS rebinding) asks for that name as the host.
 
     Args:
         host: The request's ``Host``.
         origin: Its ``Origin``, which browsers add; None without.
-        local: Whether the server is bound to this computer's own address, so that only that may be asked for.
-        any_port: Whether pages that another port of the same computer serves count as own, for a server without pages.
+        local: The server is bound to this computer's own address, so that only that may be asked for.
+        any_port: Pages that another port of the same computer serves count as own, for a server without pages.
     """
     try:
         named, page = urlsplit(f"//{host}").hostname or "", urlsplit(origin or "")

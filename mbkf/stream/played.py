@@ -111,11 +111,7 @@ def played(capture: Capture, unlabelled: bool = False, seed: int = 0) -> Played:
 
 
 def played_sensors(readings: Sequence[ImuReadings], trial: str) -> Played:
-    """Recorded inertial sensors as a stream, at the first one's times.
-
-    Args:
-        readings: The sensors, on one clock.
-        trial: Name of the recording.
+    """Recorded inertial sensors on one clock as a stream, at the first one's times.
 
     Raises:
         InvalidInput: There are no sensors, or fewer than two samples.

@@ -16,14 +16,14 @@ LEAD_S = 0.1
 """The first frame is sent this long after a receiver is connected."""
 
 LINGER_S = 0.5
-"""After the last frame, the stream stays open this long, so that what was sent arrives."""
+"""After the last frame, the stream stays open this long, so that all frames arrive."""
 
 
 class Player(Protocol):
     """Sends frames through a streaming protocol."""
 
     def listening(self) -> bool:
-        """Whether a receiver is connected to every part of the stream."""
+        """True once a receiver is connected to every part of the stream."""
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:
         """Sends a frame; ``age_s`` is how long ago its time was."""
@@ -34,13 +34,13 @@ class Player(Protocol):
 
 @dataclass(frozen=True)
 class ReplaySettings:
-    """How a capture is played.
+    """Settings of a replay.
 
     Attributes:
         speed: Times real time.
         jitter_s: Frames are sent late by up to this, each by another time.
         loss: Share of the frames that are not sent.
-        wait_s: How long a receiver is waited for; then the capture is played without one.
+        wait_s: Longest wait for a receiver; then the capture is played without one.
         seed: Of jitter and loss.
     """
 
@@ -53,7 +53,7 @@ class ReplaySettings:
 
 @dataclass(frozen=True)
 class Replayed:
-    """How it went.
+    """Result of a replay.
 
     Attributes:
         sent: Frames sent.
@@ -77,7 +77,7 @@ def replay(
 
     Args:
         played: The capture.
-        player: Where to.
+        player: Sends the frames.
         settings: Speed, jitter and loss.
         stop: Set to end early.
         progress: Called with frames done and in all.

@@ -13,10 +13,10 @@ from mbkf.io.imu.plausible import MOST_MPS2, MOST_RAD_S
 from mbkf.io.records import PlateReadings
 
 FARTHEST_M = 100.0
-"""A point farther from the origin than this is no measurement: no camera volume is that large."""
+"""Bound of a point's coordinates: camera volumes are smaller."""
 
 LARGEST_COUNT = 2**36
-"""A count of frames or samples beyond this, either way, is none: at 1000 Hz it is that of two years."""
+"""Bound of a count of frames or samples, either way: at 1000 Hz it is that of two years."""
 
 UNCOUNTED = -(2**62)
 """Number of a frame or a sample whose count cannot be read (NaN, infinite, absurdly large)."""
@@ -27,7 +27,7 @@ class StreamDescription:
     """A stream's description, known before its first frame.
 
     Attributes:
-        trial: Name of what it plays, or of the stream.
+        trial: Name of the played trial, or of the stream.
         marker_names: (M,) its markers; none where points come without names.
         rate_hz: Frame rate.
         start_time_s: Time of frame 0 of the source's own counting.
@@ -63,7 +63,7 @@ class PlateSamples:
 
     @classmethod
     def none(cls, plates: int) -> PlateSamples:
-        """No sample of so many plates."""
+        """An empty record for so many plates."""
         return cls(np.zeros(0, dtype=int), np.zeros((0, plates, 6)))
 
 
@@ -120,18 +120,14 @@ class FrameSource(Protocol):
 
 
 def counts(values: Array | np.float64) -> NDArray[np.int64]:
-    """(n,) whole numbers of counts that came as numbers (n,); :data:`UNCOUNTED` for what is none."""
+    """(n,) whole numbers of counts that came as numbers (n,); :data:`UNCOUNTED` for an unreadable one."""
     with np.errstate(invalid="ignore"):
         known = np.abs(values) <= LARGEST_COUNT
     return np.where(known, np.round(np.where(known, values, 0.0)), UNCOUNTED).astype(np.int64)
 
 
 def plausible(points_m: Array) -> tuple[Array, int]:
-    """Points with implausible ones replaced by NaN, and their number; points that are NaN already are not counted.
-
-    Args:
-        points_m: (N, 3) as received.
-    """
+    """Points (N, 3) with implausible ones replaced by NaN, and their number; NaN points are not counted."""
     far = np.abs(points_m) > FARTHEST_M
     missing = np.asarray(np.isnan(points_m).any(axis=1))
     if far.any():
@@ -141,7 +137,7 @@ def plausible(points_m: Array) -> tuple[Array, int]:
 
 
 def plausible_imus(imus: Array) -> tuple[Array, int]:
-    """Readings (S, 6) with impossible ones replaced by NaN, and the number of sensors that read such."""
+    """Readings (S, 6) with impossible ones replaced by NaN, and the number of sensors with such a reading."""
     wrong = np.abs(imus) > np.repeat([MOST_RAD_S, MOST_MPS2], 3)
     return (np.where(wrong, np.nan, imus), int(wrong.any(axis=1).sum())) if wrong.any() else (imus, 0)
 

@@ -100,7 +100,7 @@ def test_defaults_are_no_part_of_the_model(tmp_path):
     ("text", "reason"),
     [
         (osim_4(skeleton(), []), "holds no marker"),
-        ("<svg><rect/></svg>", "is no OpenSim model"),
+        ("<svg><rect/></svg>", "not an OpenSim model"),
         ("<MarkerSet><Marker name='B'><body>x</body></Marker></MarkerSet>", "no marker that can be read"),
     ],
 )

@@ -33,7 +33,7 @@ _NAMES = {"Accelerometer": "acc", "Gyroscope": "gyr", "Magnetometer": "mag"}
 
 
 def is_apdm(path: Path) -> bool:
-    """Whether an HDF5 file is such a recording."""
+    """True for an HDF5 file of such a recording."""
     with path.open("rb") as file:
         if file.read(len(HDF5)) != HDF5:
             return False
@@ -66,8 +66,8 @@ def _mobility_lab(file: h5py.File) -> list[Signal]:
     found = list[Signal]()
     for sensor in file["Sensors"]:
         group = f"Sensors/{sensor}"
-        told = file[group]["Configuration"].attrs if "Configuration" in file[group] else {}
-        label = _text(told.get("Label 0", "")) or sensor
+        configuration = file[group]["Configuration"].attrs if "Configuration" in file[group] else {}
+        label = _text(configuration.get("Label 0", "")) or sensor
         if label in [one.sensor for one in found]:
             label = f"{label} {sensor}"
         times = _times(file, f"{group}/Time")

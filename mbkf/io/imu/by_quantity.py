@@ -2,7 +2,7 @@
 
 phyphox ("Accelerometer.csv", "Gyroscope.csv", columns "X (m/s^2)"), x-io's x-IMU3 ("Inertial.csv", "Magnetometer.csv",
 "Quaternion.csv") and NGIMU ("sensors.csv", "quaternion.csv"), and other programs for telephones write so. The name of a
-table tells the quantity of columns that are called x, y and z only. A folder with a folder per sensor is a session.
+table is the quantity of columns that are called x, y and z only. A folder with a folder per sensor is a session.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _KINDS = {
     "quaternion": "quat", "orientation": "quat", "attitude": "quat",
     "linearacceleration": "free", "linearaccelerometer": "free", "accelerationwithoutg": "free",
 }  # fmt: skip
-"""Quantity by a table's name, in lower case and letters only; "" where the columns tell it."""
+"""Quantity by a table's name, in lower case and letters only; "" where the columns name it."""
 
 _FRAME = "orientation in the world of the maker's filter, z up"
 _MOST_BYTES = 1 << 30
 
 
 def is_by_quantity(path: Path) -> bool:
-    """Whether a folder or archive holds such tables."""
+    """True for a folder or archive with such tables."""
     if path.is_dir():
         return any(_kind(one) is not None for one in path.glob("*.csv")) or bool(_sensor_folders(path))
     if not zipfile.is_zipfile(path):
@@ -94,7 +94,7 @@ def _tables(path: Path) -> Iterator[tuple[str, str, str]]:
     if path.is_dir():
         names = [one for one in sorted(path.glob("*.csv")) if _kind(one) is not None]
         for one in sorted(names, key=lambda one: _kind(one) == "free"):
-            read_table_text(one)  # tells what is wrong with the file under its own name
+            read_table_text(one)  # so that an error names this file
             yield one.name, _kind(one) or "", decoded(one.read_bytes())
         return
     try:

@@ -19,11 +19,8 @@ from mbkf.io.imu.signals import readings_of
 def read_c3d_sensors(path: Path, units: Mapping[str, str] | None = None) -> tuple[ImuReadings, ...]:
     """The sensors of a file, on the clock of its markers: frame 1 is at 0 s.
 
-    Labels name sensor, quantity and axis ("Left Foot.ACC.X", "ACCX1"), the file's parameters the unit.
-
-    Args:
-        path: The file.
-        units: Units where the file states none, or volts.
+    Labels name sensor, quantity and axis ("Left Foot.ACC.X", "ACCX1"), the file's parameters the unit; ``units`` hold
+    where the file states no unit, or volts.
 
     Raises:
         FileFormatError: The file is missing or damaged, or has no channels of an accelerometer.

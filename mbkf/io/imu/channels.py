@@ -39,7 +39,7 @@ def channel_signals(
     sensor: str = "",
     kind: str = "",
 ) -> list[Signal]:
-    """The signals of channels that share a clock; channels that are no sensor's, or lack an axis, are left out.
+    """The signals of channels that share a clock; other channels, and quantities that lack an axis, are left out.
 
     Args:
         path: The file, for messages.
@@ -71,7 +71,7 @@ def channel_signals(
             factor = _factor("acc" if quantity == "free" else quantity, channel.unit or name.unit, given)
             if factor is None:
                 unknown.append(("acc" if quantity == "free" else quantity, channel))
-            with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused later
+            with np.errstate(over="ignore", invalid="ignore"):  # numbers that are too large are refused later
                 columns.append((factor or 1.0) * channel.values)
         found.append(Signal(owner, quantity, time_s, np.stack(columns, axis=1)))
     if unknown:
@@ -81,8 +81,8 @@ def channel_signals(
         first = unknown[0][1]
         raise InvalidInput(
             f"{path}: channel '{first.label}' states "
-            + (f"the unit '{first.unit}', which is none of its quantity" if first.unit else "no unit")
-            + f"; state what it is in, as in --units {kinds}"
+            + (f"the unit '{first.unit}', which its quantity does not have" if first.unit else "no unit")
+            + f"; state its unit, as in --units {kinds}"
         )
     return found
 

@@ -28,8 +28,8 @@ def on_one_clock(
 
     Args:
         sensors: The sensors.
-        started_together: Whether the first samples of all of them are simultaneous, whatever their clocks tell.
-        from_zero: Whether times begin at 0; by default they do where they count from a date.
+        started_together: The first samples of all of them are simultaneous, whatever their clocks say.
+        from_zero: Times begin at 0; by default they do where they count from a date.
 
     Raises:
         InvalidInput: The sensors have no time in common.
@@ -45,7 +45,7 @@ def on_one_clock(
 
 
 def _in_step(sensors: Sequence[ImuReadings]) -> bool:
-    """Whether all have the same times."""
+    """True for sensors with the same times."""
     return all(
         len(one.time_s) == len(sensors[0].time_s)
         and bool((np.abs(one.time_s - sensors[0].time_s) < _SAME_S).all())

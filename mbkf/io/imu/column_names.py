@@ -1,8 +1,8 @@
-"""What a column of a table, or a channel of a recording, holds: sensor, quantity, axis and unit, by its name.
+"""Meaning of a column of a table, or a channel of a recording, by its name: sensor, quantity, axis and unit.
 
 Makers and people write the same in many ways: ``left_foot_acc_x [m/s^2]``, ``accX``, ``ax``, ``acc_1``,
 ``Shimmer_6A92_Accel_LN_X_CAL``, ``Foot Accel Sensor X LT (mG)``, ``Avanti sensor 1: ACC.X 1 [g]``. A name is cut into
-words; one of them is the quantity, one the axis, the last ones may be the unit, and what is left names the sensor.
+words; one of them is the quantity, one the axis, the last ones may be the unit, and the rest names the sensor.
 """
 
 from __future__ import annotations
@@ -60,15 +60,15 @@ _TIME = re.compile(
 
 @dataclass(frozen=True)
 class ColumnName:
-    """What a name says.
+    """Meaning of a name.
 
     Attributes:
         sensor: The sensor, "" where the name has none.
         kind: "acc", "gyr", "mag" or "quat"; "free" for accelerations from which a filter took gravity.
         axis: 0, 1 or 2 for x, y, z; of quaternions 3 is w.
-        unit: The unit as the name states it, a key of :data:`mbkf.io.imu.units.UNITS`, or the text where it is none;
-            "" where it states none.
-        wide: Whether this is the wide-range one of two accelerometers.
+        unit: The unit as the name states it, a key of :data:`mbkf.io.imu.units.UNITS`, or an unknown word; "" where it
+            states none.
+        wide: The wide-range one of two accelerometers.
     """
 
     sensor: str
@@ -79,11 +79,9 @@ class ColumnName:
 
 
 def parse_column_name(name: str, kind: str = "") -> ColumnName | None:
-    """What a name says; None where it is no reading of an inertial sensor.
+    """Meaning of a name; None for other columns than readings of an inertial sensor.
 
-    Args:
-        name: The name.
-        kind: Quantity of a name that is an axis alone ("X (m/s^2)"), as the file's own name tells it.
+    ``kind`` is the quantity of a name that is an axis alone ("X (m/s^2)"), by the file's own name.
     """
     plain, bracketed = split_unit(_HEADS.sub("", name.strip()))
     words = [(word[0], word.start(), word.end()) for word in _WORD.finditer(plain)]

@@ -21,7 +21,7 @@ _DEFAULTS = TableDefaults({"acc": "m/s2", "gyr": "deg/s", "mag": "au", "time": "
 
 
 def is_movella_dot(path: Path) -> bool:
-    """Whether a text file is one of the app's: its header names the device, and samples are counted."""
+    """True for a text file of the app: its header names the device, and samples are counted."""
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         head = [line.strip().lower().replace(" ", "") for line, _ in zip(file, range(30), strict=False)]
     counted = any("packetcounter" in line and "sampletimefine" in line for line in head)

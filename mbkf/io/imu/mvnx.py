@@ -1,4 +1,4 @@
-"""Xsens MVN's exchange files (.mvnx): XML whose frames hold what every sensor of a suit read.
+"""Xsens MVN's exchange files (.mvnx): XML whose frames hold the readings of every sensor of a suit.
 
 The files hold orientations sensor → world (scalar first), accelerations without gravity in that world (z up, m/s²) and
 fields in a unit of their own. Older ones also hold ``sensorAngularVelocity`` (rad/s, in the sensor's axes); newer ones

@@ -1,4 +1,4 @@
-"""What no inertial sensor measures is refused: readings of a thousand times gravity, times that go back."""
+"""Impossible readings of inertial sensors are refused: a thousand times gravity, times that go back."""
 
 from __future__ import annotations
 
@@ -15,11 +15,7 @@ MOST_MPS2, MOST_RAD_S, MOST_UT = 1e4, 1e3, 1e6
 
 
 def plausible_readings(sensors: Sequence[ImuReadings], where: str) -> tuple[ImuReadings, ...]:
-    """The sensors, none of which reads what cannot be.
-
-    Args:
-        sensors: The sensors.
-        where: Their file, for the message.
+    """The sensors of a file, unless one of them reads an impossible value.
 
     Raises:
         InvalidInput: A rate, a time or a reading is impossible; names sensor and sample.
@@ -37,7 +33,7 @@ def plausible_readings(sensors: Sequence[ImuReadings], where: str) -> tuple[ImuR
             raise InvalidInput(
                 f"{name}: the time of sample {first} goes back or is missing; export the file again"
             )
-        for what, values, most, unit in (
+        for quantity, values, most, unit in (
             ("an acceleration", one.specific_force_mps2, MOST_MPS2, "m/s²"),
             ("an angular velocity", one.angular_velocity_rad_s, MOST_RAD_S, "rad/s"),
             ("a magnetic field", one.magnetic_field, MOST_UT, "µT"),
@@ -50,7 +46,7 @@ def plausible_readings(sensors: Sequence[ImuReadings], where: str) -> tuple[ImuR
                 sample = int(np.argmax(far))
                 largest = float(np.nanmax(np.abs(values[sample])))
                 raise InvalidInput(
-                    f"{name} reads {what} of {largest:.2g} {unit}".rstrip()
+                    f"{name} reads {quantity} of {largest:.2g} {unit}".rstrip()
                     + f" in sample {sample + 1}; correct its unit or blank the sample"
                 )
     return tuple(sensors)

@@ -19,12 +19,7 @@ _ANALOG = (".c3d",)
 
 
 def sensor_files(folder: Path, suffixes: Sequence[str]) -> list[Path]:
-    """The files of a folder that hold readings of sensors, by suffix and, of texts, by the names of their columns.
-
-    Args:
-        folder: The folder.
-        suffixes: Endings of files that can be read.
-    """
+    """The files of a folder that hold readings of sensors, by suffix and, of texts, by the names of their columns."""
     files = [path for path in sorted(folder.iterdir()) if path.is_file() and path.suffix.lower() in suffixes]
     return [
         path
@@ -46,7 +41,7 @@ def read_together(
     Args:
         paths: The files.
         read: Reads a file.
-        started_together: Whether all recordings started at the same moment, whatever their clocks tell.
+        started_together: All recordings started at the same moment, whatever their clocks say.
 
     Raises:
         FileFormatError: A file is broken.
@@ -83,7 +78,7 @@ def read_folder(
 
 
 def _names_readings(path: Path) -> bool:
-    """Whether a row at the beginning of a text names three or more columns of readings."""
+    """True for a text with a row near its beginning that names three or more columns of readings."""
     with path.open("rb") as file:
         head = decoded(file.read(_HEAD_BYTES))
     rows = (line.replace("\t", ",").replace(";", ",").split(",") for line in head.splitlines()[:100])

@@ -102,12 +102,7 @@ def _readings(
 
 
 def resampled(signal: Signal, time_s: Array) -> Array:
-    """(T, n) the signal at other times: linear between samples, NaN in gaps and outside.
-
-    Args:
-        signal: The signal, its times increasing.
-        time_s: (T,) the times, s.
-    """
+    """(T, n) the signal at other times (T,), s: linear between samples, NaN in gaps and outside."""
     if len(signal.time_s) == len(time_s) and np.array_equal(signal.time_s, time_s):
         return signal.values
     there = np.isfinite(signal.time_s) & np.isfinite(signal.values).all(axis=1)
@@ -139,7 +134,7 @@ def _with_gravity(free: Array, turn: Array | None) -> Array:
 
 
 def _unit(turn: Array) -> Array:
-    """(T, 4) unit quaternions; what is none is missing."""
+    """(T, 4) unit quaternions; others are missing."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         size = np.linalg.norm(turn, axis=1, keepdims=True)
         return np.where((size > 0.5) & (size < 2.0), turn / size, np.nan)

@@ -27,7 +27,7 @@ _AXES = "xyzw"
 
 @dataclass(frozen=True)
 class TableDefaults:
-    """What a maker's description states where the table does not.
+    """Statements of a maker's description that replace missing ones of the table.
 
     Attributes:
         units: Unit by quantity.
@@ -82,7 +82,7 @@ def read_imu_csv(
         One record per sensor, in the order of the columns.
 
     Raises:
-        FileFormatError: The file is missing, has no accelerometer columns, or a cell is no number; names the line.
+        FileFormatError: The file is missing, has no accelerometer columns, or a cell is not a number; names the line.
         InvalidInput: A unit or the rate is not stated anywhere.
         UnknownName: Unknown unit.
     """
@@ -108,7 +108,7 @@ def table_signals(
         defaults: What the maker states.
 
     Raises:
-        FileFormatError: There are no accelerometer columns, or a cell is no number.
+        FileFormatError: There are no accelerometer columns, or a cell is not a number.
         InvalidInput: A unit or the rate is not stated anywhere.
         UnknownName: Unknown unit.
     """

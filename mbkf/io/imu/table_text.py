@@ -33,7 +33,7 @@ class TableText:
         """A cell as a number; a date with a time of day as seconds since 1970.
 
         Raises:
-            ValueError: It is none.
+            ValueError: It is not one.
         """
         try:
             return float(cell.replace(",", ".") if self.decimal_comma else cell)
@@ -55,11 +55,7 @@ def read_table_text(path: Path) -> TableText:
 
 
 def split_table(path: Path, text: str) -> TableText:
-    """The cells of a text.
-
-    Args:
-        path: Where it is from, for messages.
-        text: The text.
+    """The cells of a text; ``path`` is its file, for messages.
 
     Raises:
         FileFormatError: It is damaged or has no rows.
@@ -100,7 +96,7 @@ def decoded(data: bytes) -> str:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number, whatever its decimal mark, or a date."""
+    """True for a cell that is a number, whatever its decimal mark, or a date."""
     try:
         float(cell.replace(",", "."))
     except ValueError:
@@ -109,12 +105,12 @@ def is_number(cell: str) -> bool:
 
 
 def _delimiter(lines: list[str]) -> str:
-    """What cuts most lines; a comma only where nothing else does, since it may stand in numbers."""
+    """The mark that cuts most lines; a comma only where no other does, since it may stand in numbers."""
     sample = lines[-20:] + lines[:60]
     return max(_DELIMITERS, key=lambda mark: sum(line.count(mark) > 0 for line in sample))
 
 
 def _decimal_commas(rows: list[tuple[int, list[str]]]) -> bool:
-    """Whether numbers of the last rows are written with commas."""
+    """True where numbers of the last rows are written with commas."""
     cells = [cell for _, row in rows[-20:] for cell in row if cell]
     return sum("," in cell and is_number(cell) for cell in cells) > len(cells) // 4

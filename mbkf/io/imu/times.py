@@ -19,8 +19,8 @@ _COUNTER_TURN = 2.0**32
 def times_s(path: Path, counted: Array, unit: str, title: str) -> Array:
     """(T,) seconds.
 
-    A step between samples tells the unit of a clock that does not state it: at rates of 5 to 5000 Hz no step is
-    possible in two of the units. What counts one by one from 0 or 1 may be a counter of samples.
+    A step between samples shows the unit of a clock that does not state it: at rates of 5 to 5000 Hz no step is
+    possible in two of the units. A clock that counts one by one from 0 or 1 may be a counter of samples.
 
     Args:
         path: The file, for messages.
@@ -29,7 +29,7 @@ def times_s(path: Path, counted: Array, unit: str, title: str) -> Array:
         title: Its name, for messages.
 
     Raises:
-        InvalidInput: The unit is not stated and cannot be told.
+        InvalidInput: The unit is not stated, and the steps leave it open.
     """
     steps = np.diff(counted)
     turned = steps < -0.5 * _COUNTER_TURN

@@ -51,7 +51,7 @@ def unit_name(kind: str, text: str, where: str) -> str:
 
 
 def plain_unit(kind: str, text: str) -> str | None:
-    """As :func:`unit_name`, or None where the text is no unit of the quantity."""
+    """As :func:`unit_name`, or None where the text is not a unit of the quantity."""
     plain = text.strip().lower().replace("µ", "u").replace("μ", "u").replace("²", "2").replace("°", "deg")
     plain = re.sub(r"[\s_^*·()\[\]]", "", plain)
     if kind == "mag" and plain in ("g", "gs"):

@@ -24,7 +24,7 @@ _DAMAGED = (
     ArithmeticError, AttributeError, EOFError, IndexError, KeyError, LookupError, MemoryError, OSError, TypeError,
     ValueError, struct.error, zlib.error, SyntaxError,
 )  # fmt: skip
-"""What pyxdf raises of damaged files; XML's error is a SyntaxError."""
+"""Errors that pyxdf raises of damaged files; XML's error is a SyntaxError."""
 
 _FRAME = "orientation in the world of the maker's filter, z up"
 
@@ -32,9 +32,7 @@ _FRAME = "orientation in the world of the maker's filter, z up"
 def read_xdf(path: Path, units: Mapping[str, str] | None = None) -> tuple[ImuReadings, ...]:
     """The sensors of a recording; one whose channels do not name it has the name of its stream.
 
-    Args:
-        path: The file.
-        units: Units that channels do not state.
+    ``units`` are those that channels do not state.
 
     Raises:
         FileFormatError: The file is missing or damaged, or holds no sensor's stream.
@@ -55,34 +53,34 @@ def read_xdf(path: Path, units: Mapping[str, str] | None = None) -> tuple[ImuRea
 
 
 def _streams(path: Path) -> Sequence[dict[str, Any]]:
-    """What pyxdf makes of the file; what it logs as an error, as where chunks are cut, is one."""
+    """The streams that pyxdf finds; an error in its log, as where chunks are cut, is an error here."""
     import pyxdf
 
     content = path.read_bytes()
     if path.suffix.lower() == ".xdfz":
         content = gzip.decompress(content)
-    with _errors_of("pyxdf.pyxdf") as told, np.errstate(all="ignore"):
+    with _errors_of("pyxdf.pyxdf") as errors, np.errstate(all="ignore"):
         streams, _ = pyxdf.load_xdf(io.BytesIO(content))
-    if told:
-        raise FileFormatError(path, f"damaged or cut short ({told[0]}); record or copy it again")
+    if errors:
+        raise FileFormatError(path, f"damaged or cut short ({errors[0]}); record or copy it again")
     return list(streams)
 
 
 @contextmanager
 def _errors_of(name: str) -> Iterator[list[str]]:
-    """What a logger tells as errors, in place of its own output."""
-    told = list[str]()
+    """Errors that a logger reports, in place of its own output."""
+    errors = list[str]()
 
     class Listener(logging.Handler):
         def emit(self, record: logging.LogRecord) -> None:
             if record.levelno >= logging.ERROR:
-                told.append(record.getMessage())
+                errors.append(record.getMessage())
 
     logger, listener = logging.getLogger(name), Listener()
     passed_on, logger.propagate = logger.propagate, False
     logger.addHandler(listener)
     try:
-        yield told
+        yield errors
     finally:
         logger.removeHandler(listener)
         logger.propagate = passed_on

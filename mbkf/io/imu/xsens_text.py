@@ -35,29 +35,27 @@ _FREE = ("FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z"), ("FreeAcc_E", "FreeAcc_N", "Fre
 _TICKS = "SampleTimeFine"
 _TICK_S = 1e-4
 _MOST_IN_ROTATION = 1.1
-"""No entry of a rotation is larger, however it was rounded."""
+"""Largest entry of a rotation, however it was rounded."""
 
 _LOST_SHARE = 0.5
 
 
 def is_xsens(path: Path) -> bool:
-    """Whether a text file is such an export."""
+    """True for a text file of such an export."""
     with path.open(encoding="utf-8", errors="replace") as file:
         return any(line.startswith(COUNTER) for line, _ in zip(file, range(30), strict=False))
 
 
 def _cells(line: str) -> list[str]:
-    """Cells of a line, cut by what its header is cut by."""
+    """Cells of a line, cut by its most frequent delimiter."""
     delimiter = max("\t;,", key=line.count)
     return [cell.strip().strip('"') for cell in line.split(delimiter)]
 
 
 def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
-    """Read one sensor; lost packets become missing samples.
+    """Reads one sensor; lost packets become missing samples.
 
-    Args:
-        path: The file.
-        rate_hz: Sample rate; by default the header's, else that of ``SampleTimeFine``.
+    The sample rate is the one given, else the header's, else that of ``SampleTimeFine``.
 
     Raises:
         FileFormatError: The file is missing or not such an export; names the line.
@@ -77,10 +75,10 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     rate = rate_hz or stated or _rate_of_ticks(names, table)
     if rate is None or not rate > 0.0:
         raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
-    told = table[:, names.index(COUNTER)]
-    if not (np.abs(told) < _COUNTER_TURN + 1).all():
-        raise FileFormatError(path, f"{COUNTER} is no counter; export the file again")
-    count = np.unwrap(told, period=_COUNTER_TURN).astype(int)
+    counted = table[:, names.index(COUNTER)]
+    if not (np.abs(counted) < _COUNTER_TURN + 1).all():
+        raise FileFormatError(path, f"{COUNTER} does not count packets; export the file again")
+    count = np.unwrap(counted, period=_COUNTER_TURN).astype(int)
     row = count - count[0]
     if (np.diff(row) <= 0).any() or row[-1] + 1 > len(row) / _LOST_SHARE + 10:
         raise FileFormatError(path, f"{COUNTER} does not count up; export the file again")
@@ -147,14 +145,14 @@ def _opensense_names(folder: Path) -> dict[str, str]:
     found: dict[str, str] = {}
     for path in folder.glob("*.xml"):
         for sensor in read_loose_xml(path).every("ExperimentalSensor"):
-            name = sensor.said("name_in_model")
+            name = sensor.child_text("name_in_model")
             if name:
                 found[sensor.name] = name.removesuffix("_imu")
     return found
 
 
 def is_xsens_folder(folder: Path) -> bool:
-    """Whether a folder holds such exports."""
+    """True for a folder with such exports."""
     return any(path.suffix.lower() in TEXTS and is_xsens(path) for path in folder.iterdir() if path.is_file())
 
 

@@ -40,7 +40,7 @@ class LslPlayer:
         self._frames = self._lsl.StreamOutlet(info, max_buffered=KEPT_S)
 
     def listening(self) -> bool:
-        """Whether both streams are received."""
+        """True once both streams are received."""
         outlets = [outlet for outlet in (self._frames, self._plates) if outlet is not None]
         return all(outlet.have_consumers() for outlet in outlets)
 

@@ -1,4 +1,4 @@
-"""Format of inertial sensors in Lab Streaming Layer: which channels of a stream are which axis of which sensor.
+"""Format of inertial sensors in Lab Streaming Layer: channels of a stream as axes of sensors.
 
 Channels are read as those of a recording (:mod:`mbkf.io.imu.channels`): their labels name sensor, quantity and axis
 ("left_shank_gyr_x"), their units the unit. A sensor whose channels do not name it has the name of its stream, so that
@@ -37,7 +37,7 @@ class SensorLayout:
         to_readings: (6 S, C) from a sample's channels to angular velocity rad/s and specific force m/s² of each.
         counter: Channel that counts samples, None where there is none.
         rate_hz: Nominal rate.
-        trial: Name of what is played, or of the stream.
+        trial: Name of the played trial, or of the stream.
     """
 
     sensors: tuple[str, ...]
@@ -47,7 +47,7 @@ class SensorLayout:
     trial: str
 
     def readings(self, samples: Array) -> Array:
-        """(T, S, 6) of samples (T, C); what is missing is NaN in its own axis only."""
+        """(T, S, 6) of samples (T, C); a missing channel is NaN in its own axis only."""
         finite = np.isfinite(samples)
         found = np.where(finite, samples, 0.0) @ self.to_readings.T
         if not finite.all():
@@ -86,9 +86,7 @@ def sensor_info(lsl: ModuleType, stream: StreamDescription, name: str) -> Stream
 def read_sensor_info(info: StreamInfo, units: Mapping[str, str]) -> SensorLayout | None:
     """The channel layout of a stream; None where no sensor in it has an accelerometer and a gyroscope.
 
-    Args:
-        info: The stream's description.
-        units: Units that channels do not state.
+    ``units`` are those that channels do not state.
 
     Raises:
         InvalidInput: The stream states no rate, or a unit is stated nowhere.
@@ -96,7 +94,7 @@ def read_sensor_info(info: StreamInfo, units: Mapping[str, str]) -> SensorLayout
     """
     channels = described_channels(info)
     where = f"LSL stream '{info.name()}'"
-    # Each channel as a unit vector: what comes out of it is a column of the map to readings.
+    # Channels as unit vectors: their signals are the columns of the map to readings.
     unit_vectors = np.eye(info.channel_count())
     signals = channel_signals(
         Path(where),
@@ -121,10 +119,7 @@ def read_sensor_info(info: StreamInfo, units: Mapping[str, str]) -> SensorLayout
 
 
 def together(layouts: Sequence[SensorLayout]) -> StreamDescription:
-    """The frames of several streams: as many a second as the slowest one sends, or a whole part of that.
-
-    Args:
-        layouts: Of the streams.
+    """Common frames of several streams: as many a second as the slowest one sends, or a whole part of that.
 
     Raises:
         InvalidInput: Two streams bring a sensor of the same name.

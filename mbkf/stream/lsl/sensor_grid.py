@@ -10,8 +10,8 @@ import numpy as np
 from mbkf.conventions import Array
 
 LATE_S = 0.06
-"""A stream whose samples come later than this after a frame's time is left out of the frame: radios repeat what was
-lost within some 30 ms."""
+"""A stream whose samples come later than this after a frame's time is left out of the frame: radios repeat lost
+samples within some 30 ms."""
 
 BEGIN_S = 1.0
 """A stream that has not begun so long after the first one is not waited for."""
@@ -22,7 +22,7 @@ LONGEST_GAP = 3.0
 
 @dataclass
 class _Samples:
-    """What a stream has sent and frames still need."""
+    """Samples of a stream that frames still need."""
 
     sensors: int
     rate_hz: float
@@ -63,11 +63,7 @@ class SensorGrid:
         own.values = np.concatenate([own.values, values[kept]])
 
     def next(self, now: float) -> tuple[int, Array] | None:
-        """Number and readings (S, 6) of the next frame; None as long as streams that are in time have not sent them.
-
-        Args:
-            now: The time on the clock of the stamps.
-        """
+        """Number and readings (S, 6) of the next frame; None while its samples are due by the stamps' clock."""
         if self._begin is None and not self._begun(now):
             return None
         assert self._begin is not None
@@ -76,7 +72,7 @@ class SensorGrid:
         reach = [at + self._half(one) for one in self._streams]
         if now <= at + 0.5 * self._step + LATE_S and any(a < b for a, b in zip(latest, reach, strict=True)):
             return None
-        if max(latest) < at:  # all are silent: their next samples tell which frames were lost
+        if max(latest) < at:  # all are silent: their next samples show which frames were lost
             return None
         at = self._after_silence(at)
         number, found = self._next, np.concatenate([self._at(one, at) for one in self._streams])
@@ -95,7 +91,7 @@ class SensorGrid:
         return at + max(0, skipped) * self._step
 
     def _begun(self, now: float) -> bool:
-        """Whether all streams have begun, or those that have are not to wait any more."""
+        """True once all streams have begun, or the others have waited long enough."""
         firsts = [one.stamps[0] for one in self._streams if len(one.stamps)]
         if not firsts or (len(firsts) < len(self._streams) and now - min(firsts) < BEGIN_S):
             return False
@@ -103,16 +99,11 @@ class SensorGrid:
         return True
 
     def _half(self, one: _Samples) -> float:
-        """How far beyond a frame's time its samples are needed."""
+        """Time beyond a frame's for which its samples are needed."""
         return 0.5 * self._step if one.rate_hz * self._step > 1.5 else 0.0
 
     def _at(self, one: _Samples, at: float) -> Array:
-        """(S, 6) a stream's readings at a time, NaN in a gap.
-
-        Args:
-            one: The stream.
-            at: The time, s.
-        """
+        """(S, 6) a stream's readings at a time, NaN in a gap."""
         missing = np.full((one.sensors, 6), np.nan)
         if not len(one.stamps):
             return missing

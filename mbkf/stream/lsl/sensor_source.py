@@ -84,7 +84,7 @@ class LslSensorSource:
         return self._stream
 
     def read(self, timeout_s: float) -> SourceFrame | None:
-        """The next frame: a sample of a stream that is alone, else what all streams read at its time."""
+        """The next frame: a sample of a single stream, or the readings of all streams at its time."""
         assert self._stream is not None, "connect first"
         if self._grid is None:
             return self._sample(timeout_s)
@@ -114,7 +114,7 @@ class LslSensorSource:
         return self._frame(number, layout.readings(row[None])[0])
 
     def _fetch(self, grid: SensorGrid) -> bool:
-        """Takes what the streams have; whether there was anything."""
+        """Takes the streams' new samples; true where there were any."""
         there = False
         for k, (inlet, layout) in enumerate(zip(self._inlets, self._layouts, strict=True)):
             samples, stamps = inlet.pull_chunk(timeout=0.0, max_samples=CHUNK)
@@ -127,7 +127,7 @@ class LslSensorSource:
         return SourceFrame(number, time.perf_counter(), NO_MARKERS, NO_MARKERS, PlateSamples.none(0), imus)
 
     def news(self) -> list[tuple[str, str]]:
-        """Nothing that the frames do not show."""
+        """The frames show all events."""
         return []
 
     def close(self) -> None:

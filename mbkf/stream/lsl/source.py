@@ -23,14 +23,15 @@ from mbkf.stream.lsl.format import (
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, counts
 
 OPEN_S = 3.0
-"""How long a stream that was found may take to answer."""
+"""Time in which a stream that was found has to answer."""
 
 PLATES_S = 3.0
-"""How long the plate stream that the markers name is looked for."""
+"""Time for which the plate stream that the markers name is looked for."""
 
 LATE_S = 0.25
-"""Plates may come later than the end of their frame by this: a busy computer pauses for a part of it now and then, and
-what is answered without them stays wrong."""
+"""Plates may come later than the end of their frame by this: a busy computer pauses now and then for a part of it, and
+an answer without them stays wrong.
+"""
 
 GIVEN_UP = 4
 """After so many frames in a row whose plates came too late, plates are not waited for until they are in time again."""
@@ -98,7 +99,7 @@ class LslSource:
         return self._stream
 
     def read(self, timeout_s: float) -> SourceFrame | None:
-        """The next marker frame with what the plates read until its end."""
+        """The next marker frame with the plates' samples until its end."""
         assert self._stream is not None, "connect first"
         self._found_plates_again()
         if self._markers is None and not self._found_again(timeout_s):
@@ -133,7 +134,7 @@ class LslSource:
         return found[0] if found else None
 
     def _inlet(self, info: Any, counted: bool) -> Any:
-        """An open inlet, or None where the stream does not answer; stamps are corrected where they are what counts."""
+        """An open inlet, None where the stream does not answer; stamps are corrected if numbers follow from them."""
         flags = 0
         if not counted:
             # Smoothed stamps separate plate samples; those of frames stay raw, since smoothing would hide lost frames.
@@ -172,7 +173,7 @@ class LslSource:
         return int(counts(np.float64((stamp - self._first_stamp) * self._stream.rate_hz)))
 
     def _samples(self, number: int, arrival_s: float) -> PlateSamples:
-        """What the plates read since the frame before, waited for until the end of this frame."""
+        """Samples of the plates since the frame before, waited for until the end of this frame."""
         assert self._stream is not None
         stream = self._stream
         if self._plates is None:
@@ -216,7 +217,7 @@ class LslSource:
         )
 
     def _judge_plates(self, missing: int, before: int | None, waited_out: bool) -> None:
-        """Whether plates are still worth waiting for: those that only came a little too late are again."""
+        """Counts frames whose plates came too late; plates that were only a little late are waited for again."""
         assert self._stream is not None
         comes = self._newest_sample is not None and self._newest_sample != before
         if missing <= 0:
@@ -227,7 +228,7 @@ class LslSource:
             self._overdue = GIVEN_UP - 1
 
     def _missing(self, until: float) -> int:
-        """How many samples there are to come until that index."""
+        """Number of samples to come until that index."""
         return 1 if self._newest_sample is None else ceil(until) - self._newest_sample
 
     def _placed(self, samples: Array, stamps: Array) -> PlateSamples:
@@ -238,20 +239,20 @@ class LslSource:
             index = counts((np.asarray(stamps) - self._first_stamp) * self._stream.plate_rate_hz)
         return PlateSamples(index, self._plate_layout.wrenches(samples))
 
-    def _lose(self, what: str) -> None:
+    def _lose(self, kind: str) -> None:
         """A stream broke off; it is looked for in the background."""
-        name = self._name if what == "markers" else self._plates_name
-        self._news.append((f"{what} gone", f"the stream '{name}' broke off and is looked for"))
-        if what == "plates":
+        name = self._name if kind == "markers" else self._plates_name
+        self._news.append((f"{kind} gone", f"the stream '{name}' broke off and is looked for"))
+        if kind == "plates":
             self._plates, self._newest_sample = None, None
         else:
             self._markers = None
             if self._plates is not None:
                 self._lose("plates")
-        self._finders[what] = self._lsl.ContinuousResolver("name", name, forget_after=2.0)
+        self._finders[kind] = self._lsl.ContinuousResolver("name", name, forget_after=2.0)
 
     def _found_again(self, timeout_s: float) -> bool:
-        """Whether the marker stream is back, and is the one it was."""
+        """True once the marker stream is back with the same markers and rate."""
         inlet = self._again("markers", timeout_s)
         if inlet is None:
             return False
@@ -293,8 +294,8 @@ class LslSource:
         self._plates, self._plate_layout, self._heard_plates_s = inlet, layout, 0.0
         self._news.append(("plates back", f"the stream '{self._plates_name}' is back"))
 
-    def _again(self, what: str, timeout_s: float) -> Any:
-        found = self._finders[what].results()
+    def _again(self, kind: str, timeout_s: float) -> Any:
+        found = self._finders[kind].results()
         if not found:
             time.sleep(timeout_s)
             return None

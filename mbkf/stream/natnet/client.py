@@ -1,8 +1,8 @@
-"""A NatNet client: two sockets, and frames kept as they came until they are read.
+"""A NatNet client: two sockets, and a queue of received frames until they are read.
 
 The caller that waits for a frame receives it in its own thread: a handover between threads would cost a loaded computer
 more than reading the frame. Another thread receives while no caller waits, since packets that stay too long in the
-system are lost. No packet ends either: one that cannot be read is counted and told.
+system are lost. A packet that cannot be read is counted and reported; reception goes on.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ ROOM_BYTES = 4 * 1024 * 1024
 many plates, and packets beyond that are lost."""
 
 WATCH_S = 0.01
-"""So often the thread looks whether packets wait that no caller takes."""
+"""Interval at which the thread looks for packets that no caller takes."""
 
 KEEP_ALIVE_S = 1.0
-"""So often a server that streams to single clients hears of us, and is asked again for what it has not answered."""
+"""Interval of messages to a server that streams to single clients, which repeat unanswered questions."""
 
 ASK_S = 0.25
-"""So often a server that has not answered yet is asked."""
+"""Interval of questions to a server that has not answered yet."""
 
 PAUSE_S = 0.05
 """Pause after an error of a socket, so that one that lasts costs no processor."""
@@ -76,7 +76,7 @@ class NatNetClient:
         self._frames: deque[tuple[float, bytes]] = deque()
         self._sender: str | None = None
         self._news: deque[tuple[str, str]] = deque()
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._command, self._data = _sockets(local, port, multicast)
         try:
             self._server = (socket.gethostbyname(server), port)
@@ -112,9 +112,9 @@ class NatNetClient:
             return None
 
     def refuse(self, error: InvalidPacket) -> None:
-        """Counts a packet that cannot be read, and tells of the first one."""
+        """Counts a packet that cannot be read, and reports the first one."""
         self.unreadable += 1
-        self._tell("packets", f"packets that cannot be read are left out ({error})")
+        self._report("packets", f"packets that cannot be read are left out ({error})")
 
     def news(self) -> list[tuple[str, str]]:
         """Events since the last call, each kind at most once per client."""
@@ -130,14 +130,14 @@ class NatNetClient:
             self._close_sockets()
 
     def _watch(self) -> None:
-        """The thread: takes what the sockets hold while no caller waits for a frame, and keeps the server informed."""
+        """The thread: empties the sockets while no caller waits for a frame, and keeps the server informed."""
         due = time.monotonic() + ASK_S
         while not self._closing.wait(WATCH_S):
             if self._turn.acquire(blocking=False):
                 try:
                     self._receive(0.0, LEAST_HELD)
                 except Exception as error:  # without this thread the server hears no more of us
-                    self._tell("connection", f"receiving failed ({type(error).__name__}: {error})")
+                    self._report("connection", f"receiving failed ({type(error).__name__}: {error})")
                     self._closing.wait(PAUSE_S)
                 finally:
                     self._turn.release()
@@ -159,7 +159,7 @@ class NatNetClient:
                     break
                 arrival_s = time.perf_counter()
                 if not self._ours(sender):
-                    self._tell("stranger", f"packets of another sender, {sender}, are left out")
+                    self._report("stranger", f"packets of another sender, {sender}, are left out")
                     continue
                 if packet[:2] != _FRAME:
                     self._take_message(packet)
@@ -169,7 +169,7 @@ class NatNetClient:
                 self._frames.append((arrival_s, packet))
 
     def _ours(self, sender: str) -> bool:
-        """Whether packets of an address are the server's: its own, or the first that sent any if that sends none.
+        """True for the server's own address, or for the first one that sent any packet, if the server's own sends none.
 
         A server with several addresses may answer from another one than it is asked at.
         """
@@ -185,7 +185,7 @@ class NatNetClient:
             self._frames.popleft()
             if self.answered.is_set():  # frames before cannot be read yet
                 self.dropped += 1
-                self._tell("overrun", "received frames were dropped, since they were not read in time")
+                self._report("overrun", "received frames were dropped, since they were not read in time")
 
     def _take_message(self, packet: bytes) -> None:
         try:
@@ -214,10 +214,10 @@ class NatNetClient:
         with suppress(OSError):  # asked again in a moment
             self._command.sendto(packets.message(number, payload), self._server)
 
-    def _tell(self, kind: str, what: str) -> None:
-        if kind not in self._told:
-            self._told.add(kind)
-            self._news.append((kind, what))
+    def _report(self, kind: str, sentence: str) -> None:
+        if kind not in self._reported:
+            self._reported.add(kind)
+            self._news.append((kind, sentence))
 
     def _close_sockets(self) -> None:
         self._command.close()
@@ -228,7 +228,7 @@ def _sockets(local: str, port: int, multicast: str | None) -> tuple[socket.socke
     """Command and data socket, neither of which blocks.
 
     Raises:
-        InvalidInput: The address is not of this computer, the group is none, or the port is taken.
+        InvalidInput: The address is not of this computer, the group is not one, or the port is taken.
     """
     made: list[socket.socket] = []
     try:

@@ -29,7 +29,7 @@ class Cursor:
         self.data, self.at, self.end = data, at, end
 
     def take(self, size: int) -> int:
-        """Where the next so many bytes begin, which the cursor leaves behind.
+        """Begin of the next so many bytes, which the cursor leaves behind.
 
         Raises:
             InvalidPacket: The packet ends before them.
@@ -73,7 +73,7 @@ class Cursor:
         return self.rows(_POINT, count)
 
     def text(self) -> str:
-        """Text up to its closing nought; what is no UTF-8 is replaced.
+        """Text up to its closing nought; bytes that are not UTF-8 are replaced.
 
         Raises:
             InvalidPacket: It is not closed.
@@ -119,7 +119,7 @@ class Cursor:
             InvalidPacket: More than the part was read.
         """
         if self.at > end:
-            raise InvalidPacket("NatNet: a part is shorter than what stands in it")
+            raise InvalidPacket("NatNet: a part is shorter than its contents")
         self.at = end
 
 

@@ -67,7 +67,7 @@ class ForcePlate:
 
 @dataclass(frozen=True)
 class Descriptions:
-    """What a stream brings.
+    """Contents of a stream.
 
     Attributes:
         sets: Its marker sets.
@@ -117,7 +117,7 @@ def _force_plate(cursor: Cursor) -> ForcePlate:
     calibration = cursor.rows(_FLOAT, 144).reshape(12, 12)
     corners = cursor.points(4)
     kind, data = cursor.fields(_KIND)
-    with np.errstate(invalid="ignore"):  # what a server sends as a number may be none
+    with np.errstate(invalid="ignore"):  # numbers of a server may be NaN
         geometry = offset.astype(float), calibration.astype(float), corners.astype(float)
     return ForcePlate(number, serial, (width, length), *geometry, kind, data != 0, _texts(cursor))
 
@@ -162,4 +162,4 @@ _PASSED_OVER: dict[int, Callable[[Cursor, Version], None]] = {
     4: _device,
     5: _camera,
 }
-"""What stands between before sizes are sent, by the number of its kind."""
+"""Descriptions to pass over before sizes are sent, by the number of their kind."""

@@ -1,4 +1,4 @@
-"""What a NatNet stream's frames hold by its description: markers, points without names, plates; world axes."""
+"""Layout of a NatNet stream's frames by its description: markers, points without names, plates; world axes."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class StreamLayout:
 
     def frame(self, frame: Frame, arrival_s: float) -> SourceFrame:
         """One frame in the world's axes; its samples of the plates are numbered from its own number on."""
-        with np.errstate(invalid="ignore"):  # what a server sends as a number may be none
+        with np.errstate(invalid="ignore"):  # numbers of a server may be NaN
             markers, points = self._points(frame)
             return SourceFrame(frame.number, arrival_s, markers, points, self._plates(frame))
 
@@ -78,7 +78,7 @@ class StreamLayout:
         return empty_plate(name, rate_hz, 0.0, origin, DEFAULT_COP_THRESHOLD_N, known)
 
     def _points(self, frame: Frame) -> tuple[Array, Array]:
-        """(M, 3) named markers and (N, 3) points; what Motive only filled in counts as missing."""
+        """(M, 3) named markers and (N, 3) points; positions that Motive only filled in count as missing."""
         rows = [_rows(frame.sets.get(one.name), len(one.markers)) for one in self._sets]
         found = rows[0] if len(rows) == 1 else np.concatenate([*rows, packets.NO_POINTS])
         flags, points, missing = frame.labelled["flags"], frame.points, _at_nought(found)
@@ -123,13 +123,13 @@ def _rows(found: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
 
 
 def _at_nought(points: NDArray[np.float32]) -> BoolArray:
-    """(M,) whether each of the points (M, 3) is the origin."""
+    """(M,) true for points (M, 3) at the origin."""
     nought = np.asarray(points[:, 0] == 0.0)
     return nought & ~points.any(axis=1) if nought.any() else nought
 
 
 def _among(found: NDArray[np.float32], others: NDArray[np.float32]) -> BoolArray:
-    """(M,) whether each of the points (M, 3) is one of the others (K, 3)."""
+    """(M,) true for points (M, 3) that are among the others (K, 3)."""
     among = np.zeros(len(found), dtype=bool)
     if not len(others):
         return among

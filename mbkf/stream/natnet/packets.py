@@ -19,7 +19,7 @@ from mbkf.errors import InvalidInput
 
 VERSION = (4, 0, 0, 0)
 
-CONNECT, SERVER_INFO, REQUEST, RESPONSE, REQUEST_DESCRIPTIONS, DESCRIPTIONS = 0, 1, 2, 3, 4, 5
+CONNECT, SERVER_INFO, REQUEST_DESCRIPTIONS, DESCRIPTIONS = 0, 1, 4, 5
 FRAME, DISCONNECT, KEEP_ALIVE = 7, 9, 10
 """Numbers of messages."""
 
@@ -42,7 +42,7 @@ NO_POINTS = read_only(np.zeros((0, 3), dtype="<f4"))
 
 MARKER_SIZE_M = 0.014
 SET_DESCRIPTION, PLATE_DESCRIPTION = 0, 3
-"""Numbers of what is described."""
+"""Kinds of descriptions."""
 
 _NAME_BYTES = 256
 MOST_BYTES = 65_000

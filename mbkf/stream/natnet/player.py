@@ -21,7 +21,7 @@ UP = "y"
 """Motive's default."""
 
 FORGET_S = 5.0
-"""A client that has not been heard of for this long is gone."""
+"""Silence after which a client counts as gone."""
 
 
 class NatNetPlayer:
@@ -55,14 +55,14 @@ class NatNetPlayer:
             self._names,
             [_description(k, plate) for k, plate in enumerate(played.stream.plates)],
         )
-        self._heard: dict[tuple[str, int], float] = {}
+        self._last_seen: dict[tuple[str, int], float] = {}
         self._asked: set[tuple[str, int]] = set()
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="mbkf-natnet", daemon=True)
         self._thread.start()
 
     def listening(self) -> bool:
-        """Whether a client has requested the stream's description."""
+        """True once a client has requested the stream's description."""
         return bool(self._asked)
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:
@@ -70,9 +70,9 @@ class NatNetPlayer:
         del age_s
         packet = self._packed(frame.number, frame.markers_m)
         now = time.monotonic()
-        for client, heard in list(self._heard.items()):
-            if now - heard > FORGET_S:
-                del self._heard[client]
+        for client, seen in list(self._last_seen.items()):
+            if now - seen > FORGET_S:
+                del self._last_seen[client]
                 self._asked.discard(client)
                 continue
             self._answer(packet, client)
@@ -101,7 +101,7 @@ class NatNetPlayer:
                 continue
             if len(data) < 4:
                 continue
-            self._heard[client] = time.monotonic()
+            self._last_seen[client] = time.monotonic()
             number = struct.unpack_from("<H", data)[0]
             if number == packets.CONNECT:
                 self._answer(packets.server_info("mbkf replay", self.port), client)
@@ -109,14 +109,14 @@ class NatNetPlayer:
                 self._answer(self._described, client)
                 self._asked.add(client)
             elif number == packets.DISCONNECT:
-                self._heard.pop(client, None)
+                self._last_seen.pop(client, None)
                 self._asked.discard(client)
 
     def _answer(self, packet: bytes, client: tuple[str, int]) -> None:
         try:
             self._socket.sendto(packet, client)
         except OSError:  # it is gone
-            self._heard.pop(client, None)
+            self._last_seen.pop(client, None)
             self._asked.discard(client)
 
 

@@ -36,7 +36,7 @@ def read_server_info(packet: bytes) -> ServerInfo:
     """Reads a whole packet.
 
     Raises:
-        InvalidPacket: It is no such answer, or the protocol is not one of 3.0 to 4.x.
+        InvalidPacket: It is another message, or the protocol is not one of 3.0 to 4.x.
     """
     fields = opened(packet)[1].fields(_ANSWER)
     name: bytes = fields[0]

@@ -1,4 +1,4 @@
-"""Frames from OptiTrack's Motive over NatNet: the connection, and what becomes of it when the server falls silent."""
+"""Frames from OptiTrack's Motive over NatNet: the connection, and its renewal when the server falls silent."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mbkf.stream.natnet.layout import StreamLayout
 from mbkf.stream.source import SourceFrame, StreamDescription
 
 CONNECT_S = 2.0
-"""How long a server that answered may take to describe its stream and to send frames."""
+"""Time in which a server that answered has to describe its stream and to send frames."""
 
 RATE_FRAMES = 10
 """The frame rate is computed from the time stamps of so many frames."""
@@ -97,10 +97,10 @@ class NatNetSource:
 
     def news(self) -> list[tuple[str, str]]:
         """Events of the connection since the last call."""
-        told = [] if self._client is None else self._client.news()
+        news = [] if self._client is None else self._client.news()
         if self._news:
-            told, self._news = [*self._news, *told], []
-        return told
+            news, self._news = [*self._news, *news], []
+        return news
 
     def close(self) -> None:
         """Ends the connection."""

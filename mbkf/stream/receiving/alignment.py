@@ -32,11 +32,11 @@ class ReadyFrame(NamedTuple):
 
     Attributes:
         number: Frame number; never decreases.
-        arrival_s: When it arrived, or for a lost one the frame after it.
+        arrival_s: Time of its arrival, for a lost one that of the frame after it.
         markers_m: (M, 3) the subject's markers, NaN where missing; None where they have to be labelled.
         unlabelled_m: (N, 3) points without names.
         plates: (K, 6) mean wrenches about the world's origin, NaN where not read.
-        lost: Whether the frame never came.
+        lost: The frame never came.
         imus: (S, 6) readings of inertial sensors, NaN where missing; None where there are none.
     """
 
@@ -160,7 +160,7 @@ class FrameAlignment:
         return imus
 
     def _watch_rate(self, arrival_s: float, number: int | None) -> None:
-        """Tells once of frames that come at another rate than the stream states."""
+        """Reports once that frames come at another rate than the stream states."""
         found = None if self._rate is None else self._rate.arrived(arrival_s, number)
         if found is not None:
             self._rate = None

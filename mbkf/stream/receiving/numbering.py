@@ -1,7 +1,7 @@
 """Frame numbers that never decrease; lost, late and unordered frames are recognised by the source's own count.
 
-A source that restarts counts from zero again, and its count may jump or be none; the number of missing frames then
-follows from the time that passed on this computer since the last frame whose count was as expected.
+A source that restarts counts from zero again, and its count may jump or be unreadable; the number of missing frames
+then follows from the time that passed on this computer since the last frame whose count was as expected.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ LATE_S = 0.5
 """A frame that is behind by less than this is late or out of order; more, and the source's count has been set back."""
 
 BACK_FRAMES = 3
-"""So many frames in a row that are behind, each after the other, are a count set back, however little."""
+"""Length of a row of frames that are behind, each after the other, which shows a count set back, however little."""
 
 SLACK_S = 1.0
 """A count that runs ahead of the time that passed by more than this has jumped."""
 
 
 def readable(number: int) -> bool:
-    """Whether a source's count may be one."""
+    """True for a possible count of a source."""
     return -LARGEST_COUNT <= number <= LARGEST_COUNT
 
 
@@ -32,9 +32,9 @@ class Numbered:
 
     Attributes:
         number: Its number here, None for one that comes too late.
-        lost: How many frames are missing before it.
-        reset: Whether the source's count jumped, so that the number follows from the time that passed.
-        backwards: Whether it jumped back.
+        lost: Number of missing frames before it.
+        reset: The source's count jumped, so that the number follows from the time that passed.
+        backwards: It jumped back.
     """
 
     number: int | None
@@ -57,11 +57,9 @@ class Numbering:
         self._behind: list[int] = []
 
     def place(self, number: int, arrival_s: float) -> Numbered:
-        """Place of the next frame.
+        """Place of the next frame, by the source's count and the time of its arrival.
 
-        Args:
-            number: As the source counts; beyond :data:`mbkf.stream.source.LARGEST_COUNT` it is not believed.
-            arrival_s: When it arrived.
+        A count beyond :data:`mbkf.stream.source.LARGEST_COUNT` is not believed.
         """
         known = readable(number)
         if self._last is None:
@@ -91,14 +89,14 @@ class Numbering:
         return self._taken(here, arrival_s, here - self._last - 1)
 
     def _is_back(self, number: int, passed: float) -> bool:
-        """Whether a count that had jumped goes on as if it had not: single counts are wrong at times."""
+        """True for a count that had jumped and goes on as if it had not: single counts are wrong at times."""
         if self._shift_before is None or self._shift is None or self._last is None:
             return False
         jumped, before = number + self._shift - self._last, number + self._shift_before - self._last
         return jumped != 1 and 1 <= before <= passed + BACK_FRAMES
 
     def _by_time(self, number: int | None, arrival_s: float, backwards: bool = False) -> Numbered:
-        """Place of a frame whose count has jumped, or is none; the count goes on from there."""
+        """Place of a frame whose count has jumped, or cannot be read; the count goes on from there."""
         assert self._last is not None
         since = self._trusted + round((arrival_s - self._trusted_s) * self._rate_hz)
         here = max(self._last + 1, since)

@@ -1,6 +1,6 @@
 """The latest readings of the plates, averaged over each frame as a whole trial's are.
 
-What a person of the known mass cannot make a plate read is refused as it comes, sample by sample. Short gaps are
+Readings that a person of the known mass cannot cause are refused as they come, sample by sample. Short gaps are
 bridged as soon as a good sample ends them, with the numbers that a whole trial gets; a frame due before stays unread.
 """
 
@@ -25,7 +25,7 @@ ONE_SAMPLE = np.ones((1, 1))
 """The weight of a sample that is taken alone."""
 
 OUTSIDE = 0.5
-"""A frame so many samples outside of what was read has no reading."""
+"""A frame so many samples outside of the readings has none."""
 
 
 class PlateBuffer:
@@ -38,12 +38,7 @@ class PlateBuffer:
     """
 
     def __init__(self, stream: StreamDescription, mass_kg: float | None = None) -> None:
-        """A buffer without readings.
-
-        Args:
-            stream: The stream's description.
-            mass_kg: The person's mass, by which readings are judged; None for not at all.
-        """
+        """A buffer without readings; ``mass_kg`` is the person's, by which readings are judged, None to accept all."""
         self._count = len(stream.plates)
         self._rate_hz, self._frame_rate_hz = stream.plate_rate_hz, stream.rate_hz
         self._frames_from_s = stream.start_time_s
@@ -61,10 +56,10 @@ class PlateBuffer:
         self._reach_m = reaches(stream.plates)
         self._bridge = longest_bridge(self._rate_hz)
         self._last_good = [-1] * self._count
-        """Of each plate; −1 where there is none that a gap could begin after."""
+        """Last good sample of each plate, after which a gap could begin; −1 without one."""
 
     def put(self, samples: PlateSamples) -> PlateSamples:
-        """Takes new samples; those not newer than what is known are left out of what is returned, refused ones NaN."""
+        """Takes new samples and returns them without those that are not newer, refused ones as NaN."""
         index, wrench = samples.index, samples.wrench
         if not len(index) or not self._count:
             return PlateSamples.none(self._count)
@@ -91,7 +86,7 @@ class PlateBuffer:
         return PlateSamples(index, wrench)
 
     def _judged(self, wrench: Array) -> tuple[Array, BoolArray]:
-        """Readings (S, K, 6) with NaN for those that are not possible, and which (S, K) are."""
+        """Readings (S, K, 6) with NaN for impossible ones, and (S, K) true for possible ones."""
         if self._weight_n is None:
             return wrench, np.asarray(np.isfinite(wrench).all(axis=2))
         if all_possible(wrench, self._weight_n, self._reach_m):
@@ -101,12 +96,9 @@ class PlateBuffer:
         return np.where(good[:, :, None], wrench, np.nan), good
 
     def _bridge_gaps(self, index: NDArray[np.int64], good: BoolArray, whole: bool) -> None:
-        """Straight lines over short gaps that good samples have ended, for each plate.
+        """Straight lines over short gaps that good samples (S, K) have ended, for each plate.
 
-        Args:
-            index: (S,) the samples.
-            good: (S, K) whether each is.
-            whole: Whether none is missing between them.
+        ``whole`` is true where no sample is missing between the first and the last one.
         """
         if whole and good.all() and all(known == index[0] - 1 for known in self._last_good):
             self._last_good = [int(index[-1])] * self._count
@@ -143,13 +135,7 @@ class PlateBuffer:
         return self._weighed(first, window_weights(low - first, high - first), high - low)
 
     def _weighed(self, first: int, weights: Array, width: float) -> Array:
-        """(K, 6) weighted mean of samples about the world's origin, by the compiled kernel where there is one.
-
-        Args:
-            first: The first sample.
-            weights: (n, 1) of the samples from there on.
-            width: Sum of the weights.
-        """
+        """(K, 6) mean of samples from a first one on, by weights (n, 1) of sum ``width``, about the world's origin."""
         size, kernel = len(self._values), library()
         if kernel is not None and self._count:
             return kernel.wrench_means(self._values, first % size, weights.ravel(), width, self._origins)
@@ -164,6 +150,6 @@ class PlateBuffer:
         return loads
 
     def _position(self, number: int) -> float:
-        """Where the middle of a frame lies, in samples."""
+        """Middle of a frame, in samples."""
         time_s = self._frames_from_s + number / self._frame_rate_hz
         return (time_s - self._from_s) * self._rate_hz

@@ -1,4 +1,4 @@
-"""Whether frames come at the rate that their stream states: what they mean in time depends on it."""
+"""Watch over the rate of frames, which gives the stream's numbers their meaning in time."""
 
 from __future__ import annotations
 
@@ -21,11 +21,9 @@ class RateWatch:
         self._before: float | None = None
 
     def arrived(self, arrival_s: float, number: int | None) -> float | None:
-        """The measured rate, Hz, once it is found to be another than the stated one; otherwise None.
+        """The measured rate, Hz, once it differs from the stated one; otherwise None.
 
-        Args:
-            arrival_s: When the next frame arrived.
-            number: Its number, None where it has none (late, or twice).
+        ``number`` is the number of the frame that arrived, None for a frame without one (late, or twice).
         """
         if number is not None:
             if self._latest is not None and number - self._latest > 0:

@@ -54,14 +54,14 @@ class RingBuffer(Generic[T]):
             return item
 
     def close(self) -> None:
-        """No more items follow; those held can still be taken."""
+        """Refuses further items; those held can still be taken."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
 
     @property
     def empty(self) -> bool:
-        """Whether it holds none."""
+        """True while it holds no item."""
         return not self._items
 
     def left(self) -> list[T]:
@@ -71,6 +71,6 @@ class RingBuffer(Generic[T]):
 
     @property
     def ended(self) -> bool:
-        """Whether it is closed and empty."""
+        """True once it is closed and empty."""
         with self._changed:
             return self._closed and not self._items

@@ -45,11 +45,11 @@ class SampleNumbering:
     def place(
         self, index: Indices, arrival_s: float, wanted: int, fitting: int | None = None
     ) -> tuple[Indices, BoolArray | None]:
-        """Numbers (n,) of the samples that have one, and which of (S,) have; None for all of them.
+        """Numbers (n,) of the samples that have one, and (S,) true for those; None where all have one.
 
         Args:
-            index: (S,) as the source counts.
-            arrival_s: When they arrived.
+            index: (S,) the source's counts.
+            arrival_s: Time of their arrival.
             wanted: Number of the last sample, if the newest belongs to the end of its frame.
             fitting: Shift that the frames' own count suggests, where that jumped; None where it did not.
         """
@@ -75,7 +75,7 @@ class SampleNumbering:
         return numbers[readable], readable
 
     def _follows(self, index: Indices, passed: float, wanted: int) -> bool:
-        """Whether all samples follow the newest one, each other, the time that passed, and the frames."""
+        """True for samples that follow the newest one, each other, the time that passed, and the frames."""
         if self._newest is None:
             return False
         gap = int(index[0]) + self.shift - self._newest - 1
@@ -86,18 +86,14 @@ class SampleNumbering:
         return not len(steps) or bool(steps.min() >= 1 and (whole or steps.max() <= self._slack))
 
     def _ahead(self, last: int, wanted: int) -> bool:
-        """Whether a sample is farther ahead of its frame than the first ones were."""
+        """True for a sample that is farther ahead of its frame than the first ones were."""
         return last + self.shift - wanted > self._lead + self._slack
 
     def _part(self, index: Indices, left: int, wanted: int, fitting: int | None, passed: float) -> Indices:
-        """Numbers of samples without a jump between them; those that come late have none.
+        """Numbers of samples (n,) without a jump between them; late ones get no number.
 
-        Args:
-            index: (n,) as the source counts.
-            left: How many samples there are from here on.
-            wanted: Number of the last one of these, by its frame.
-            fitting: Shift that the frames' own count suggests.
-            passed: How many samples fit into the time since the newest one.
+        ``left`` samples remain from here on, the last of which has the number ``wanted`` by its frame; ``fitting`` is
+        the shift that the frames' own count suggests, ``passed`` the number of samples that fit into the time passed.
         """
         first, newest = int(index[0]) + self.shift, self._newest
         if newest is None:
@@ -116,7 +112,7 @@ class SampleNumbering:
         numbers = index + self.shift
         if self._newest is not None and self._ahead(
             int(numbers.max()) - self.shift, wanted
-        ):  # steps that are none
+        ):  # impossible steps
             numbers = self._newest + 1 + np.arange(len(index))
             self._jump(int(numbers[-1]) - int(index[-1]))
         before = np.concatenate([[numbers[0] - 1 if self._newest is None else self._newest], numbers[:-1]])

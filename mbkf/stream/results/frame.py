@@ -72,7 +72,7 @@ class FrameSink(Protocol):
     """A listener: it shows or sends on the frames of a live reconstruction."""
 
     def take(self, frame: LiveFrame) -> None:
-        """A new frame. Must never block: what cannot be passed on at once is dropped."""
+        """A new frame. Must never block: a frame that cannot be passed on at once is dropped."""
 
     def close(self) -> None:
-        """No more frames follow."""
+        """Ends the frames."""

@@ -9,7 +9,7 @@ from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.results.frame import LiveFrame
 
 HELD = 256
-"""So many frames may wait; when the receiver is slower for longer than that, only the latest is kept."""
+"""Frames that may wait; when the receiver is slower for longer than that, only the latest is kept."""
 
 
 class SendingThread:
@@ -40,7 +40,7 @@ class SendingThread:
         self._buffer.put(frame)
 
     def close(self) -> None:
-        """Sends what waits, and ends."""
+        """Sends the waiting frames, and ends."""
         self._buffer.close()
         self._thread.join(timeout=5.0)
 
@@ -51,6 +51,6 @@ class SendingThread:
                 continue
             try:
                 self._send(frame)
-            except Exception as error:  # told with the next frame
+            except Exception as error:  # raised with the next frame
                 self._error = error
                 return

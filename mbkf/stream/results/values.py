@@ -50,7 +50,7 @@ class ResultValues:
 
         Angles stay continuous with the row before.
         """
-        told = np.full((6, len(self._clinical.names)), np.nan)
+        numbers = np.full((6, len(self._clinical.names)), np.nan)
         if np.isfinite(frame.q).all():
             q, clinical = frame.q[None], self._clinical
             angles = clinical.angles(q, self._before)
@@ -58,6 +58,6 @@ class ResultValues:
             moments = clinical.moments(q, frame.torques[None], angles)[0]
             moments_sd = clinical.moments_sd(q, frame.torques_sd[None], angles)[0]
             moments_offset = clinical.moments_sd(q, frame.torques_offset[None], angles)[0]
-            told[:] = angles[0], frame.angle_sd, moments, moments_sd, frame.angle_offset, moments_offset
+            numbers[:] = angles[0], frame.angle_sd, moments, moments_sd, frame.angle_offset, moments_offset
         loads = frame.wrench.ravel(), frame.wrench_sd.ravel()
-        return np.concatenate([told[:4].ravel(), *loads, told[4:].ravel(), frame.wrench_offset.ravel()])
+        return np.concatenate([numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel()])

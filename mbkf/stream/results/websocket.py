@@ -95,7 +95,7 @@ class WebSocketResults:
         self._thread.join(timeout=5.0)
 
     def _check(self, _connection: ServerConnection, request: Request) -> Response | None:
-        """Refuses what other web pages caused, and clients without the token."""
+        """Refuses requests of other web pages, and clients without the token."""
         headers = request.headers
         if not own_request(headers.get("Host", ""), headers.get("Origin"), self._local, any_port=True):
             return _connection.respond(HTTPStatus.FORBIDDEN, "another web page may not listen\n")
@@ -141,5 +141,5 @@ class WebSocketResults:
 
 
 def _numbers(values: Array) -> list[float | None]:
-    """Plain numbers, None for what is not known."""
+    """Plain numbers, None for unknown ones."""
     return [value if math.isfinite(value) else None for value in values.tolist()]

@@ -9,7 +9,7 @@ from mbkf.errors import InvalidInput
 from mbkf.stream.source import FrameSource, StreamDescription
 
 CONNECT_S = 0.5
-"""How long one attempt to connect takes before the run checks whether it is to stop."""
+"""Length of one attempt to connect, after which the run checks for its end."""
 
 
 def wait_for(
@@ -18,10 +18,10 @@ def wait_for(
     """A stream's description once its source is connected; None where it was stopped first.
 
     Args:
-        source: Where frames are to come from.
+        source: The source of frames.
         source_name: Its name, for messages.
         stop: Set when the run is to end.
-        patience_s: How long to wait at most.
+        patience_s: Longest wait; None for as long as it takes.
 
     Raises:
         InvalidInput: The source did not appear in time.

@@ -11,7 +11,7 @@ MERGED_S = 2.0
 """An event of the same kind within this time prolongs the one before."""
 
 MOST = 300
-"""No more events than this are listed one by one."""
+"""Number of events that are listed one by one."""
 
 
 @dataclass

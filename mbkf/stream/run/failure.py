@@ -1,4 +1,4 @@
-"""What ends a run that cannot go on: the first error of a thread that it depends on."""
+"""End of a run that cannot go on: the first error of a thread that it depends on."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Failure:
 
     @property
     def cause(self) -> str | None:
-        """What failed, in words; None as long as nothing has."""
+        """The failure in words; None while all goes well."""
         return self._cause
 
     def of(self, part: str, error: BaseException) -> None:

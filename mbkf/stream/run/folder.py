@@ -55,12 +55,12 @@ def open_log(
 
 
 class WrittenResults(NamedTuple):
-    """What became of a run's log.
+    """Outcome of a run's log.
 
     Attributes:
         summary: The contents of summary.json; None where no results could be made.
-        problem: Why not.
-        left_out: A sentence for each file of the log of which rows are left out, since it is damaged.
+        problem: The reason.
+        left_out: A sentence for each file of the log of which damaged rows are left out.
     """
 
     summary: Summary | None
@@ -69,12 +69,7 @@ class WrittenResults(NamedTuple):
 
 
 def write_results(folder: Path, notes: tuple[str, ...]) -> WrittenResults:
-    """Makes the results from the log and writes them.
-
-    Args:
-        folder: The output folder.
-        notes: Remarks for the reader.
-    """
+    """Makes the results from the log in an output folder and writes them, with notes for their reader."""
     log = folder / LOG_FOLDER
     left_out: tuple[str, ...] = ()
     try:

@@ -26,7 +26,7 @@ class FrameMaker:
     """Makes :class:`LiveFrame` records."""
 
     def __init__(self, live: LiveInputs, rate_hz: float) -> None:
-        """Args: what the filter was built from, and the stream's rate."""
+        """Args: the filter's inputs, and the stream's rate."""
         inputs = live.inputs
         self._sensor, self._rate_hz = inputs.sensor, rate_hz
         self._balance = NewtonEuler(inputs.sensor.model)

@@ -29,7 +29,7 @@ MOST_HELD_BYTES = 256 * 1024 * 1024
 
 
 def arrived(rows: NDArray) -> int:
-    """How many rows are of frames that arrived: those have a latency, lost ones between them have none."""
+    """Number of rows of frames that arrived: those have a latency, lost ones between them have none."""
     return int(np.isfinite(rows["latency_s"]).sum()) if "latency_s" in (rows.dtype.names or ()) else 0
 
 
@@ -95,12 +95,12 @@ class LogWriter:
             self._logs[1].put(rows)
 
     def close(self) -> tuple[int, int]:
-        """Writes the remaining rows where possible; numbers of frames that arrived and are, or are not, in the log."""
+        """Writes the remaining rows; returns the numbers of frames that arrived and are, or are not, in the log."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()
         self._thread.join()
-        for log in self._logs:  # what a thread that died has left
+        for log in self._logs:  # rows left by a thread that died
             with suppress(Exception):
                 self._flush(log)
         self._log.close()
@@ -130,7 +130,7 @@ class LogWriter:
                 return
 
     def _flush(self, log: _Log) -> bool:
-        """Writes what waits for one file; False where that failed."""
+        """Writes the waiting rows of one file; False where that failed."""
         with self._changed:
             rows = list(log.rows)
         if not rows:

@@ -19,14 +19,14 @@ from mbkf.stream.run.statistics import RunStatistics
 from mbkf.trial.live.filter import LiveStep
 
 TAKE_S = 0.1
-"""How long a frame is waited for before the loop checks whether it is to end."""
+"""Longest wait for a frame before the loop checks for its end."""
 
 
 class FilterLoop:
     """Gives frames to the filter and its answers to the output.
 
     Attributes:
-        until: Number of the last frame asked for; None where the end was not a matter of time.
+        until: Number of the last frame asked for; None where the run did not end by time.
     """
 
     def __init__(
@@ -42,11 +42,11 @@ class FilterLoop:
 
         Args:
             setup: The prepared filter, and the labeller if points have no names.
-            receiver: Where frames come from.
-            output: Where answers go.
+            receiver: Gives frames.
+            output: Takes answers.
             statistics: Counts frames.
             note: Called with events.
-            failure: What has failed; once something has, what was received is answered and the run ends.
+            failure: Failures of other threads; after one, received frames are answered and the run ends.
         """
         self._failure = failure
         self.until: int | None = None
@@ -57,14 +57,9 @@ class FilterLoop:
         self._silent = False
 
     def run(self, stop: threading.Event, seconds: float | None) -> str:
-        """Answers frames until the run ends; an unforeseen error ends it, too, and keeps what was found until then.
+        """Answers frames until the run ends, and returns its cause in words; an unforeseen error keeps the results.
 
-        Args:
-            stop: Set when the run is to end.
-            seconds: How long to track, from the first frame; None for as long as frames come.
-
-        Returns:
-            What ended the run, in words.
+        ``seconds`` is the time to track from the first frame, None for as long as frames come.
         """
         ended_by = ""
         try:
@@ -78,7 +73,7 @@ class FilterLoop:
         return self._failure.cause or ended_by
 
     def _track(self, stop: threading.Event, seconds: float | None) -> str:
-        """Answers frames until something ends the run; returns what did."""
+        """Answers frames until something ends the run, and returns that."""
         statistics = self._statistics
         while not stop.is_set():
             if self._failure.cause is not None:
@@ -122,7 +117,7 @@ class FilterLoop:
         self._push(frame)
 
     def _allow_for_start(self) -> None:
-        """While the filter starts, and until it has caught up with what came meanwhile, more frames may wait."""
+        """Lets more frames wait while the filter starts, and until it has caught up."""
         now = time.perf_counter()
         if self._setup.filter.latest is None:
             self._starting_until_s = now + START_SLACK_S
@@ -161,6 +156,6 @@ class FilterLoop:
         for step in steps:
             at_start = step.awaited or self._starting_until_s > 0.0
             ready = self._waiting.popleft()
-            told = min(lag, len(self._waiting))
-            last = self._waiting[told - 1] if told else ready
+            later = min(lag, len(self._waiting))
+            last = self._waiting[later - 1] if later else ready
             self._output.put(ready, step, at_start, self._receiver.lost, last.arrival_s)

@@ -1,4 +1,4 @@
-"""Where the answers of a live run go: a row of the log, and a frame to every listener."""
+"""Output of a live run: answers become rows of the log, and frames for every listener."""
 
 from __future__ import annotations
 

@@ -38,12 +38,7 @@ class PointNames:
         self._labels = self._fresh()
 
     def push(self, frame: ReadyFrame, prediction: Prediction | None) -> NamedFrames:
-        """A new frame; gives back those that are due.
-
-        Args:
-            frame: The frame.
-            prediction: What the filter expects of the frame, None where it has to start anew.
-        """
+        """Takes a frame, with the filter's prediction of it (None before a start); gives back those that are due."""
         self._waiting.append(frame)
         try:
             return self._due(self._labels.push(frame.unlabelled_m, prediction))

@@ -1,4 +1,4 @@
-"""Prompts for the person to be scaled: what the scaling waits for and why it failed, at a readable pace."""
+"""Prompts for the person to be scaled: the missing condition, and failures of scaling, at a readable pace."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from collections.abc import Callable
 from mbkf.stream.run.events import EventLog
 
 TELL_S, AGAIN_S = 5.0, 10.0
-"""A reason to wait is said at most this often; an unchanged one at most this often."""
+"""Least interval between two reasons to wait, and between two prompts of the same reason."""
 
 
 class Prompting:
     """Says sentences to the person, and notes them as events.
 
     Attributes:
-        refused: Why the last attempt to scale failed; "" before the first failure.
+        refused: Reason of the last failure to scale; "" before the first one.
     """
 
     def __init__(self, say: Callable[[str], None], events: EventLog) -> None:
-        """Args: what takes the sentences, and the run's events."""
+        """Args: function that takes the sentences, and the run's events."""
         self.say, self._events = say, events
         self.refused, self._refused_s = "", -AGAIN_S
-        self._reason, self._said_s = "", events.begin_s
+        self._reason, self._reported_s = "", events.begin_s
 
     def waiting(self, reason: str) -> None:
-        """Says what the scaling waits for."""
+        """Says the reason to wait."""
         now = time.perf_counter()
-        if now - self._said_s >= (AGAIN_S if reason == self._reason else TELL_S):
+        if now - self._reported_s >= (AGAIN_S if reason == self._reason else TELL_S):
             self.say(f"waiting for a person to stand still: {reason}")
             self._events.note("waiting", reason)
-            self._reason, self._said_s = reason, now
+            self._reason, self._reported_s = reason, now
 
     def scaling(self, frames: int, named: bool) -> None:
-        """Says that scaling begins, unless a failure was said a moment ago."""
+        """Says that scaling begins, unless a failure was reported a moment ago."""
         self._reason = ""
         stay = "" if named else ", which takes some seconds as points have no names: stay where you are"
         if time.perf_counter() - self._refused_s >= AGAIN_S:

@@ -50,7 +50,7 @@ class ReportFile:
 
 
 def frame_report(counts: FrameCounts, answered: int, unlogged: int, running: bool) -> dict[str, int]:
-    """What became of the frames: each one received was written, or is counted under one reason why it was not.
+    """Fates of the frames: each one received was written, or is counted under one reason why it was not.
 
     ``frames_in = frames_written + frames_not_written + frames_unanswered + frames_late + frames_overwritten``, and
     ``frames_lost = frames_lost_on_the_way + frames_overwritten + frames_unanswered + frames_not_written``; a frame that
@@ -60,7 +60,7 @@ def frame_report(counts: FrameCounts, answered: int, unlogged: int, running: boo
         counts: Of the receiving side.
         answered: Frames received for which there is a row.
         unlogged: Of these, frames whose rows are not in the log.
-        running: Whether the run goes on; frames that wait to be answered are then not counted as received.
+        running: The run goes on; frames that wait to be answered are then not counted as received.
     """
     waiting = counts.received - counts.late - counts.overwritten - answered
     unanswered = 0 if running else waiting
@@ -76,12 +76,10 @@ def frame_report(counts: FrameCounts, answered: int, unlogged: int, running: boo
 
 
 def latency_summary(latencies_s: Sequence[float], at_start_s: Sequence[float]) -> dict[str, float | None]:
-    """Latencies in ms.
+    """Latencies in ms, from arrival to result without the lag, and of frames that waited for a start of the filter.
 
-    Args:
-        latencies_s: Arrival to result, of frames that were answered at once, or when their lag was over; without it.
-        at_start_s: The same of frames that waited for a start of the filter, which looks a quarter of a second ahead,
-            or until it had caught up; where there are no others, the percentiles are theirs.
+    A start looks a quarter of a second ahead and has to catch up; where there are no other frames, the percentiles are
+    those of the frames at a start.
     """
     milliseconds = 1e3 * np.array(latencies_s if len(latencies_s) else at_start_s, dtype=float)
     known = len(milliseconds) > 0

@@ -23,12 +23,7 @@ class ScalingJob:
     """
 
     def __init__(self, scale: Callable[[], Subject], most_kept: int | None) -> None:
-        """Begins at once.
-
-        Args:
-            scale: Scales the person; runs in the thread.
-            most_kept: Frames kept at most, the latest ones; None for all.
-        """
+        """Begins at once; ``most_kept`` frames are kept at most, the latest ones, None for all."""
         self.begin_s = time.perf_counter()
         self.kept: deque[SourceFrame] = deque(maxlen=most_kept)
         self.left_out = 0
@@ -36,7 +31,7 @@ class ScalingJob:
 
     @property
     def done(self) -> bool:
-        """Whether the attempt has ended."""
+        """True once the attempt has ended."""
         return self._result.done()
 
     def wait(self, timeout_s: float) -> None:
@@ -50,7 +45,7 @@ class ScalingJob:
         self.kept.append(frame)
 
     def outcome(self) -> Subject | str:
-        """The scaled person, or why scaling failed; only when done."""
+        """The scaled person, or the reason of a failure; only when done."""
         try:
             return self._result.result()
         except MbkfError as error:

@@ -36,13 +36,13 @@ RUNNING = "running"
 
 @dataclass(frozen=True)
 class LiveOutcome:
-    """How a run ended.
+    """Outcome of a run.
 
     Attributes:
         report: The contents of live.json.
         summary: The contents of summary.json; None where no results could be made.
-        problem: Why not.
-        failure: What ended the run early, in words; None where nothing failed.
+        problem: The reason.
+        failure: Failure that ended the run early, in words; None without one.
     """
 
     report: dict[str, object]
@@ -88,9 +88,7 @@ class LiveSession:
     def connect(self, stop: threading.Event, patience_s: float | None) -> bool:
         """Waits for the source and prepares the filter for its stream; False where it was stopped first.
 
-        Args:
-            stop: Set when the run is to end.
-            patience_s: How long to wait at most; None for as long as it takes.
+        ``patience_s`` is the longest wait, None for as long as it takes.
 
         Raises:
             InvalidInput: The source did not appear in time.
@@ -136,7 +134,7 @@ class LiveSession:
             self._folder,
             setup.stream,
             setup.rows.dtype,
-            {**recorded(self._settings), **setup.told},
+            {**recorded(self._settings), **setup.extra_settings},
             setup.names,
             self._subject,
         )
@@ -196,7 +194,7 @@ class LiveSession:
             self._events.note("source", f"the source failed at the end ({type(error).__name__}: {error})")
 
     def _write_results(self) -> WrittenResults:
-        """The results from the log, or why there are none."""
+        """The results from the log, or the reason why there are none."""
         notes = tuple(f"live: {event['what']} ({event['count']} times)" for event in self._events.plain())
         written = write_results(self._folder, notes)
         for sentence in written.left_out:

@@ -27,7 +27,7 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 class SensorFrames:
-    """Readings of a stream's inertial sensors as the filter takes them, and which feet rest."""
+    """Readings of a stream's inertial sensors as the filter takes them, and feet at rest."""
 
     def __init__(self, worn: LiveWorn, rate_hz: float) -> None:
         """Args: the calibrated sensors, and the frame rate."""
@@ -36,12 +36,7 @@ class SensorFrames:
         self._feet = FeetAtRest(roles.feet, worn.segments, rate_hz, stillness)
 
     def frame(self, ready: ReadyFrame, markers_m: Array) -> Frame:
-        """The frame; to be called once for each, in order.
-
-        Args:
-            ready: The frame.
-            markers_m: (0, 3).
-        """
+        """The filter's frame; to be called once for each, in order, with markers (0, 3)."""
         imus = None if ready.imus is None else ready.imus[self._columns]
         return Frame(markers_m, ready.plates, imus, {FOOT_REST: self._feet.push(imus)})
 
@@ -57,8 +52,8 @@ class LiveSetup:
         maker: Makes the frames that listeners receive.
         rows: Makes the rows of the log.
         labels: Names the points of a stream without marker names; None where markers have names.
-        sensors: Inertial sensors, if these alone show the person.
-        told: What the log keeps beside the usual settings.
+        sensors: Inertial sensors, in a run without markers.
+        extra_settings: Settings that the log keeps beside the usual ones.
     """
 
     stream: StreamDescription
@@ -68,15 +63,10 @@ class LiveSetup:
     rows: FrameRecorder
     labels: PointNames | None
     sensors: SensorFrames | None = None
-    told: Mapping[str, object] = field(default_factory=dict)
+    extra_settings: Mapping[str, object] = field(default_factory=dict)
 
     def frame(self, ready: ReadyFrame, markers_m: Array) -> Frame:
-        """What the filter reads in a frame.
-
-        Args:
-            ready: The frame.
-            markers_m: (M, 3) its markers.
-        """
+        """The filter's readings of a frame with markers (M, 3)."""
         if self.sensors is None:
             return Frame(markers_m, ready.plates)
         return self.sensors.frame(ready, markers_m)
@@ -114,7 +104,7 @@ def prepare(
         stream: The stream's description.
         subject: The scaled person.
         settings: The filter and its settings.
-        patient: Whether the source waits for a slow reader; labels are then searched on complete frames.
+        patient: The source waits for a slow reader; labels are then searched on complete frames.
         note: Called with events of the labeller.
 
     Raises:
@@ -139,7 +129,7 @@ def prepare_sensors(worn: LiveWorn, settings: ReconstructSettings, stream: Strea
 
     Args:
         worn: The sensors.
-        settings: The lag, and which standard deviations are told.
+        settings: The lag, and the standard deviations asked for.
         stream: The stream's description.
     """
     live = LiveInputs((), np.zeros(0, dtype=int), worn.inputs)

@@ -14,15 +14,15 @@ from mbkf.stream.source import SourceFrame, StreamDescription, plausible
 from mbkf.trial.live.scaling import Stance, StillWatch, worn_markers
 
 MOST_LISTED = 4
-"""So many missing markers are listed by name."""
+"""Missing markers that are listed by name."""
 
 
 class StanceFrames:
     """Collects frames while the person stands still.
 
     Attributes:
-        named: Whether the stream's points have marker names.
-        hindrance: What kept the person from being scaled so far, as a clause.
+        named: The stream's points have marker names.
+        hindrance: Reason why the person could not be scaled so far, as a clause.
     """
 
     def __init__(self, stream: StreamDescription, protocol: Protocol | None) -> None:
@@ -38,7 +38,7 @@ class StanceFrames:
         self._watch = StillWatch(stream.rate_hz, self._worn, self.named)
         self._frames: deque[SourceFrame] = deque(maxlen=self._watch.wanted)
         self._stance = Stance(0, 0, 0.0, None, False)
-        self.hindrance = "no person is seen yet"
+        self.hindrance = "no markers are seen yet"
 
     def __len__(self) -> int:
         return len(self._frames)
@@ -55,7 +55,7 @@ class StanceFrames:
 
     @property
     def enough(self) -> bool:
-        """Whether the person can be scaled from the frames."""
+        """True once the person can be scaled from the frames."""
         return self._stance.enough
 
     @property

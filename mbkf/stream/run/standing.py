@@ -28,11 +28,11 @@ none do, since finding names keeps frames waiting, too."""
 
 @dataclass(frozen=True)
 class KnownPerson:
-    """Facts of a person that are known before scaling.
+    """Facts of a person before scaling.
 
     Attributes:
         mass_kg: Body mass; None for the load of the plates.
-        protocol: The markers worn; None for the protocol that the stream's names belong to.
+        protocol: The marker set; None for the protocol that the stream's names belong to.
     """
 
     mass_kg: float | None = None

@@ -12,11 +12,11 @@ RECENT_FRAMES = 5000
 
 
 class RunStatistics:
-    """What a run counts.
+    """Counts of a run.
 
     Attributes:
         first, latest: First and latest frame taken, None before the first.
-        processed: Frames that arrived and were answered; of them there is a row for the log.
+        processed: Frames that arrived and were answered; each has a row in the log.
         starts: Starts of the filter, the first included.
     """
 
@@ -34,10 +34,7 @@ class RunStatistics:
         return before
 
     def answered(self, latency_s: float, at_start: bool) -> None:
-        """Counts the latency of an answered frame, separately for frames that waited for a start of the filter.
-
-        It is that besides the lag: from the arrival of the last frame that the answer knows.
-        """
+        """Counts the latency of an answered frame beyond the lag, separately for frames that waited for a start."""
         (self._at_start_s if at_start else self._latencies_s).append(latency_s)
 
     def latencies(self, recent: bool) -> dict[str, float | None]:

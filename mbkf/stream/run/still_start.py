@@ -60,11 +60,7 @@ class StillStart(Generic[Found]):
         self._frames_in, self._uncounted_s = 0, 0.0
 
     def connect(self, stop: threading.Event, patience_s: float | None) -> bool:
-        """Waits for the source; False where it was stopped first.
-
-        Args:
-            stop: Set when the run is to end.
-            patience_s: Longest wait; None for as long as it takes.
+        """Waits for the source, ``patience_s`` at most; False where it was stopped first.
 
         Raises:
             InvalidInput: The source did not appear in time, or its stream does not suit.
@@ -79,9 +75,7 @@ class StillStart(Generic[Found]):
     def find(self, stop: threading.Event, patience_s: float | None = None) -> Found | None:
         """Reads the stream until there is a result, of which a file is written; None where it was stopped first.
 
-        Args:
-            stop: Set when the run is to end.
-            patience_s: Longest wait for a person who stands still.
+        ``patience_s`` is the longest wait for a person who stands still, None for as long as it takes.
 
         Raises:
             InvalidInput: The source ended, or the time was over, before there was a result.
@@ -140,7 +134,7 @@ class StillStart(Generic[Found]):
         return STANDING
 
     def _silent(self) -> None:
-        """No frames have come for a while."""
+        """Called while no frames come."""
 
     def _progress_report(self) -> dict[str, object]:
         """The entry of live.json on the way to a result."""
