@@ -213,7 +213,7 @@ class _Player(NatNetPlayer):
 
     def clients(self) -> list[tuple[str, int]]:
         """Who has been heard of."""
-        return list(self._heard)
+        return list(self._last_seen)
 
     def to_all(self, packet: bytes) -> bool:
         """Sends a packet to all clients; whether there is any."""

@@ -137,9 +137,9 @@ def session_of(table: Mapping[str, object], file: str | Path = SESSION_FILE) -> 
 def _session(read: Entries) -> SessionNotes:
     return SessionNotes(
         name=read.text("name") or "",
-        mass_kg=read.number("mass_kg", *MASS_KG),
-        height_m=read.number("height_m", *HEIGHT_M),
-        age=read.number("age", *AGE),
+        mass_kg=read.number("mass_kg", MASS_KG),
+        height_m=read.number("height_m", HEIGHT_M),
+        age=read.number("age", AGE),
         sex=read.one_of("sex", SEXES) or "",
         protocol=read.text("protocol"),
         trials={name: _trial(entries) for name, entries in read.tables("trial").items()},

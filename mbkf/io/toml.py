@@ -145,13 +145,19 @@ class Entries:
         expected = f"one of {', '.join(known)}"
         return self._checked(key, lambda value: value if value in known else None, expected)
 
-    def number(self, key: str, low: float = -math.inf, high: float = math.inf) -> float | None:
+    def number(self, key: str, span: tuple[float, float] = (-math.inf, math.inf)) -> float | None:
         """A finite number in a span."""
-        span = "a number" if math.isinf(low) else f"a number between {low:g} and {high:g}"
-        return self._checked(key, lambda value: _number_in(value, low, high), span)
+        expected = "a number" if math.isinf(span[0]) else f"a number between {span[0]:g} and {span[1]:g}"
+        return self._checked(key, lambda value: _number_in(value, *span), expected)
 
     def numbers(self, key: str, count: int, largest: float) -> Array | None:
-        """(count,) numbers whose size is at most the largest."""
+        """(count,) numbers.
+
+        Args:
+            key: Name of the entry.
+            count: Number of numbers.
+            largest: Bound of their size.
+        """
 
         def read(value: object) -> Array | None:
             listed = value if isinstance(value, list) else []

@@ -127,7 +127,7 @@ def test_markers_that_are_never_seen_together(tmp_path, refuse_scale, refuse_rec
 def test_markers_in_the_wrong_unit(factor, unit, tmp_path, everywhere):
     markers = made_markers(20)
     path = build_c3d(tmp_path / "unit.c3d", factor * markers.positions_m, list(markers.names), unit=unit)
-    everywhere(path, path, f"read in {unit}", "which no person does", "--unit")
+    everywhere(path, path, f"read in {unit}", "unlike any person", "--unit")
 
 
 @pytest.mark.slow

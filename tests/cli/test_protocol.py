@@ -125,8 +125,8 @@ def test_import_writes_what_it_prints(capsys, tmp_path):
     ("content", "reason"),
     [
         (osim_4(skeleton(), []), "holds no marker"),
-        ("name;x;y;z", "is no XML"),
-        ("<html><body>404</body></html>", "is no OpenSim model"),
+        ("name;x;y;z", "not XML"),
+        ("<html><body>404</body></html>", "not an OpenSim model"),
     ],
 )
 def test_import_refuses_in_one_line_and_writes_nothing(content, reason, tmp_path, refused):

@@ -57,7 +57,7 @@ def entries(**table) -> Entries:
 
 def test_entries_are_what_they_must_be_or_missing():
     read = entries(text="x", number=2, numbers=[1, 2.5], word="a", tables={"b": {"n": 1}}, listed=[{"n": 2}])
-    assert (read.text("text"), read.number("number", 0, 3), read.one_of("word", ("a", "b"))) == (
+    assert (read.text("text"), read.number("number", (0, 3)), read.one_of("word", ("a", "b"))) == (
         "x",
         2.0,
         "a",
@@ -78,7 +78,7 @@ def test_entries_are_what_they_must_be_or_missing():
         ("", lambda read: read.text("x"), "must be a text, got"),
         (True, lambda read: read.number("x"), "must be a number, got True"),
         (float("nan"), lambda read: read.number("x"), "must be a number, got nan"),
-        (4, lambda read: read.number("x", 0.0, 3.0), "must be a number between 0 and 3, got 4"),
+        (4, lambda read: read.number("x", (0.0, 3.0)), "must be a number between 0 and 3, got 4"),
         ([1.0], lambda read: read.numbers("x", 2, 9.0), "must be 2 numbers"),
         ([1.0, 10.0], lambda read: read.numbers("x", 2, 9.0), "must be 2 numbers"),
         ([1.0, True], lambda read: read.numbers("x", 2, 9.0), "must be 2 numbers"),

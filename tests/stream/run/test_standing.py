@@ -257,7 +257,7 @@ def test_patience_ends(tmp_path, visit):
             return None
 
     stream, _ = frames_of(visit)
-    with pytest.raises(InvalidInput, match="0 s passed before a person was scaled: no person is seen yet"):
+    with pytest.raises(InvalidInput, match="0 s passed before a person was scaled: no markers are seen yet"):
         begin(tmp_path, Silent(stream, []), patience_s=0.0)
 
 
