@@ -27,7 +27,7 @@ from tests.motions import worst
 BLOCKS = block_classes()
 each_block = pytest.mark.parametrize("name", BLOCKS)
 
-PER_INSTRUMENT = {"WornSensors": "tests/sensors/test_worn_sensors.py"}
+PER_INSTRUMENT = {"BodySensors": "tests/sensors/test_body_sensors.py"}
 """Blocks with states for each instrument, in the instruments' order, and where that order is tested."""
 
 

@@ -1,1 +1,1 @@
-"""What instruments should read: residual, Jacobian and noise of markers, posture and plates against the body."""
+"""Instruments, laws and priors as blocks: expected readings, their derivatives and their noise."""

@@ -1,4 +1,4 @@
-"""One protocol for everything that speaks of a frame: instruments, physical laws and priors are blocks.
+"""The protocol of blocks: instruments, physical laws and priors turn a frame into information on the state.
 
 A filter has a state x with mean and covariance P⁻ before a frame. A block turns the frame's readings into a statement
 about x, in one of two forms:
@@ -30,11 +30,11 @@ NO_DOFS = np.zeros(0, dtype=np.intp)
 """An empty list of dofs."""
 
 NO_READINGS: Mapping[str, Array] = {}
-"""Readings of a frame in which no instrument of one's own takes part."""
+"""Readings of a frame without user-defined instruments."""
 
 
 class State(Protocol):
-    """What every filter's state has: configuration q (nq,), velocity v (nv,), covariance P (N, N)."""
+    """State of any filter: configuration q (nq,), velocity v (nv,), covariance P (N, N)."""
 
     @property
     def q(self) -> Array:
@@ -50,13 +50,13 @@ class State(Protocol):
 
 
 class Frame(NamedTuple):
-    """What the instruments read in a frame.
+    """Readings of the instruments in a frame.
 
     Attributes:
         markers_m: (M, 3) positions in the world, NaN where missing.
         plates: (K, 6) force N and moment N m about the world's origin per plate; NaN where not recorded.
-        imus: (S, 6) angular velocity rad/s and specific force m/s² per inertial sensor; None where there are none.
-        readings: Of instruments of one's own, by a name that their block knows.
+        imus: (S, 6) angular velocity rad/s and specific force m/s² per inertial sensor; None without sensors.
+        readings: Of user-defined instruments, by a name that their block knows.
     """
 
     markers_m: Array
@@ -71,20 +71,20 @@ NO_MARKERS = np.zeros(0, dtype=bool)
 
 @dataclass(slots=True)
 class Notes:
-    """What blocks share about a frame; complete when all of them have decided.
+    """Findings on a frame that blocks share; complete when all of them have decided.
 
     Attributes:
         seen: (M,) markers seen.
         trusted: (M,) markers used: seen, and inside their gate.
         unmarked: Dofs of joints whose segment shows no used marker.
-        unobserved: Those of them that no inertial sensor observes either.
-        observed: Whether enough instruments read for the body to count as tracked.
-        lost: Whether most markers lie far from the predicted body.
-        lasting: Mean square of what lasts in the markers' errors, over what their noise is taken for.
-        imus: (S, 6) inertial readings that are used; None where there are none.
-        contact: What the feet stand on; None where no block asks.
+        unobserved: Unmarked dofs that no inertial sensor observes either.
+        observed: True if enough instruments read for the body to count as tracked.
+        lost: True if most markers lie far from the predicted body.
+        lasting: Mean square of the markers' lasting errors over that of their assumed noise.
+        imus: (S, 6) inertial readings that are used; None without any.
+        contact: Contact of the feet; None without a block that decides it.
         coordinated: Dofs that the coordination prior predicts.
-        supports: Parts besides the feet that bear load, by their place among the body's bearings.
+        supports: Parts besides the feet that carry load, by their place among the body's bearings.
     """
 
     # Arrays here are replaced, never written into, so that the defaults can be shared.
@@ -107,9 +107,9 @@ class Rows(NamedTuple):
     Attributes:
         jacobian: (k, n) R^(-1/2) H.
         innovation: (k,) R^(-1/2) y.
-        first: Component of the state that the first column stands for.
-        readings: How many of the rows, the first ones, are readings that NIS and likelihood count; others are priors.
-        vector: (n,) HᵀR⁻¹y of priors where the block rounds it less than the product does; None for the product.
+        first: Component of the state of the first column.
+        readings: Number of rows, the first ones, that are readings, which NIS and likelihood count; others are priors.
+        vector: (n,) HᵀR⁻¹y of priors if the block rounds it less than the product does; None for the product.
     """
 
     jacobian: Array
@@ -124,7 +124,7 @@ class Channels(NamedTuple):
 
     Attributes:
         mean_square: (n,) mean of their squares; any finite number in a channel that did not read.
-        readings: (n,) how many numbers each channel read, 0 for none.
+        readings: (n,) number of readings of each channel.
     """
 
     mean_square: Array
@@ -132,7 +132,7 @@ class Channels(NamedTuple):
 
 
 Statement = Information | Rows | Sequence[Rows] | None
-"""What a block says in a frame; None for nothing."""
+"""Statement of a block in a frame; None without one."""
 
 StateT = TypeVar("StateT", bound=State)
 PreparedT = TypeVar("PreparedT")
@@ -141,23 +141,23 @@ MemoryT = TypeVar("MemoryT")
 
 
 class OperatingPoint(NamedTuple, Generic[StateT, PreparedT]):
-    """A state at which a block is linearised, with what the block worked out there without the frame."""
+    """A state at which a block is linearised, with the block's own preparation there, made without the frame."""
 
     state: StateT
     prepared: PreparedT
 
 
 class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
-    """An instrument, a law or a prior: what a frame's readings are taken to be, and what they then say of the state.
+    """An instrument, a law or a prior: a decision on a frame's readings, and their information on the state.
 
     The order of calls in a frame is ``prepare`` (before the frame comes), ``decide``, ``inflate``, ``linearise``,
     ``review``, ``remember``. A smoother calls ``prepare`` and ``linearise`` again at another state.
 
     Attributes:
-        prior: Whether the block is a prior rather than an instrument or a law; priors count in no NIS.
-        kind: Which of :data:`mbkf.conventions.READING_KINDS` its readings are.
-        quantities: Its readings alternate in threes between so many quantities with a spread of their own: force and
-            moment.
+        prior: True for a prior, False for an instrument or a law; priors count in no NIS.
+        kind: Kind of its readings, one of :data:`mbkf.conventions.READING_KINDS`.
+        quantities: Number of quantities with a spread of their own between which its readings alternate in threes, as
+            force and moment.
     """
 
     prior: bool = False
@@ -181,11 +181,11 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
         return None  # type: ignore[return-value]
 
     def prepare(self, state: StateT, memory: MemoryT | None) -> PreparedT:
-        """What can be worked out at a state before the frame is there.
+        """Preparation at a state before the frame comes.
 
         Args:
             state: The predicted state, or that at which a smoother linearises.
-            memory: Of the frame before; None where a smoother asks.
+            memory: Of the frame before; None for a smoother.
         """
         return None  # type: ignore[return-value]
 
@@ -193,13 +193,13 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
     def decide(
         self, at: OperatingPoint[StateT, PreparedT], frame: Frame, memory: MemoryT, notes: Notes
     ) -> DecisionT:
-        """What the frame's readings are taken to be; with it they can be linearised at another state.
+        """Decision on the frame's readings; with it they can be linearised at another state.
 
         Args:
             at: The predicted state.
             frame: The readings.
             memory: Of the frame before.
-            notes: What blocks share: those before this one in the filter's list have decided.
+            notes: Findings of the blocks before this one in the filter's list; its own are added.
         """
 
     def inflate(self, P: Array, decision: DecisionT) -> None:
@@ -207,10 +207,10 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
 
     @abstractmethod
     def linearise(self, at: OperatingPoint[StateT, PreparedT], decision: DecisionT) -> Statement:
-        """What the readings say of the state, linearised at a state."""
+        """Information of the readings on the state, linearised at a state."""
 
     def review(self, posterior: StateT, decision: DecisionT) -> DecisionT | None:
-        """Another decision where the posterior shows the first to be wrong, None where it stands; asked once."""
+        """Another decision if the posterior shows the first to be wrong, else None; called once."""
         return None
 
     def remember(
@@ -221,17 +221,17 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
         Args:
             posterior: Corrected state.
             at: The predicted state.
-            decision: What was decided.
+            decision: The decision on the frame.
             memory: Of the frame before.
         """
         return memory
 
     def expected_spread(self) -> Array | None:
-        """(n,) expected spread of one reading by channel; None where channels are the whitened ``quantities``."""
+        """(n,) expected spread of one reading by channel; None if channels are the whitened ``quantities``."""
         return None
 
     def channels(self, decision: DecisionT) -> Channels | None:
-        """The frame's innovations by channel; None where they are those of the whitened readings."""
+        """The frame's innovations by channel; None if they are those of the whitened readings."""
         return None
 
     def log_noise(self, decision: DecisionT) -> float:

@@ -1,4 +1,4 @@
-"""Plates and foot contact, as a block: what each foot's wrench w is read to be, by what the foot stands on.
+"""Plates and foot contact, as a block: readings of each foot's wrench w, by its contact.
 
     measured    X w = X w_plate + r       r ~ N(0, diag(σ_F², σ_M²)) of the plate, moments about the middle of the sole
     shared      X (w_r + w_l) = X w_plate + r, and X w_r its share by geometry (:mod:`mbkf.sensors.contact.sharing`)
@@ -7,8 +7,8 @@
                                           support each foot's lever and direction by where it stands
 
 X moves a wrench from the world's origin to the middle of the sole. Between frames wrenches are random walks about that
-point. Which foot stands on what is decided by :class:`mbkf.sensors.contact.causal.ContactDetector`. An unmeasured foot
-whose posterior force pulls at the floor is read again as carrying nothing.
+point. :class:`mbkf.sensors.contact.causal.ContactDetector` decides the contact of each foot. An unmeasured foot whose
+posterior force pulls at the floor is read again as carrying nothing.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ class FootContactSettings:
         plate_force_n, plate_moment_nm: Noise of a plate's reading.
         wrench_force, wrench_moment: Random walk of a foot's wrench, N/√s and N m/√s: a heel strike loads a foot with
             a body weight in a tenth of a second.
-        air_force_n, air_moment_nm: How exactly a foot in the air carries nothing.
+        air_force_n, air_moment_nm: Spread of the zero wrench of a foot in the air.
         free_force_share, free_lever_m: Spread of an unmeasured foot's force about its share of the weight, in body
-            weights, and of its lever about the middle of the sole, m, per reading: what keeps two such feet from
-            pulling against each other.
-        pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor, N.
+            weights, and of its lever about the middle of the sole, m, per reading: it keeps two such feet from pulling
+            against each other.
+        pulling_force_n: Spread of the zero force by which an unmeasured foot is kept from pulling at the floor, N.
         free_push_share: Spread of the share of the load on a foot that pushes off, as part of that share.
         free_shear_share: Spread of an unmeasured foot's shear force about the direction to the pelvis in double
             support, as a share of its vertical force.
         free_sway_m: Further spread of its centre of pressure along the sole where the feet stand side by side, m.
-        landing_force_n, landing_moment_nm: Spread of what a foot carries that is in the air, but about to touch a floor
-            that no plate reads, or has just left it: when is known to some 40 ms.
+        landing_force_n, landing_moment_nm: Spread of the wrench of a foot in the air that is about to touch a floor
+            that no plate reads, or has just left it: the instant is known to some 40 ms.
     """
 
     plate_force_n: float = 3.0
@@ -75,7 +75,7 @@ class FootContactSettings:
 
 
 PUSH_LEAST = 0.07
-"""Share that is added to that of a foot that pushes off where its spread is counted."""
+"""Share added to that of a foot that pushes off to give its spread."""
 
 TOGETHER = 0.1
 """Weight of the direction of both feet's shear together, over that of their difference, where no plate reads."""
@@ -86,7 +86,7 @@ BELT_FORCE = 2.0
 
 
 class FootDecision(NamedTuple):
-    """What the feet stand on, and which unmeasured feet, 0 right and 1 left, were seen to carry nothing."""
+    """Contact of the feet, and unmeasured feet, 0 right and 1 left, that were seen to carry nothing."""
 
     contact: ContactDecision
     lifted: tuple[int, ...] = ()
@@ -96,7 +96,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
     """Force plates under the feet: twelve rows on the wrenches of right and left foot.
 
     Attributes:
-        detector: Finds what the feet stand on.
+        detector: Decides the contact of the feet.
         settings: Noise.
     """
 
@@ -110,14 +110,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         dt_s: float,
         settings: FootContactSettings = FootContactSettings(),
     ) -> None:
-        """Makes the block.
-
-        Args:
-            detector: Finds what the feet stand on.
-            weight_n: The body's weight.
-            dt_s: Time between frames.
-            settings: Noise.
-        """
+        """Args: the attributes; weight_n: the body's weight; dt_s: time between frames."""
         self.detector, self.settings, self._weight_n, self._dt_s = detector, settings, weight_n, dt_s
         s = settings
         self._plate = 1.0 / np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
@@ -132,12 +125,12 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         self._first, self._feet = 0, (slice(0, 6), slice(6, 12))
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where the wrenches stand in the state."""
+        """Keeps the slices of the wrenches."""
         first = self._first = layout.wrench.start
         self._feet = slice(first, first + 6), slice(first + 6, first + 12)
 
     def begin(self) -> KeptContact:
-        """No plate was loaded yet."""
+        """Memory without a loaded plate."""
         return self.detector.begin()
 
     def decide(
@@ -150,7 +143,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         return FootDecision(notes.contact)
 
     def inflate(self, P: Array, decision: FootDecision) -> None:
-        """The wrenches' random walk about the middles of the soles, which a belt takes along."""
+        """Adds the wrenches' random walk about the middles of the soles, which a belt carries along."""
         contact = decision.contact
         x, y = contact.floor_m_s
         carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x]) if x or y else _NO_BELT
@@ -194,7 +187,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
             middles_m: (2, 3) of the soles.
             weights: (6,) 1/sd of right and left foot's rows.
             expected: (2, 6) wrenches as read.
-            left_first: Whether the rows of the left foot come first.
+            left_first: True if the rows of the left foot come first.
         """
         if self._kernel is not None:
             return self._kernel.wrench_rows(middles_m, *weights, expected, w, left_first)
@@ -203,7 +196,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         return _stacked(X, np.vecdot(X, (expected - w)[:, None]), left_first)
 
     def review(self, posterior: LoadedState, decision: FootDecision) -> FootDecision | None:
-        """Unmeasured feet whose force pulls at the floor, clearly more than it is kept from that, carry nothing."""
+        """Unmeasured feet that pull at the floor clearly beyond ``pulling_force_n`` carry nothing."""
         kinds = decision.contact.contacts
         if Contact.UNMEASURED not in kinds:
             return None
@@ -218,7 +211,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         decision: FootDecision,
         memory: KeptContact,
     ) -> KeptContact:
-        """What the detector keeps."""
+        """The detector's memory."""
         return decision.contact.memory
 
     def log_noise(self, decision: FootDecision) -> float:
@@ -228,9 +221,9 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         return -2.0 * plates * float(np.log(self._plate).sum())
 
     def _expected(self, contact: ContactDecision, pulls: Sequence[bool]) -> Array:
-        """(2, 6) wrenches that feet are read to carry: their plate's, nothing, or their share of what no plate carries.
+        """(2, 6) wrenches as read: the plate's, zero, or the foot's share of the weight that no plate carries.
 
-        An unmeasured foot that would pull at the floor is held at nothing instead.
+        An unmeasured foot that would pull at the floor is read as zero.
         """
         if Contact.UNMEASURED not in contact.contacts:
             return contact.wrench
@@ -245,13 +238,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         return expected
 
     def _weight(self, contact: ContactDecision, foot: int, pulls: bool) -> Array:
-        """(6,) 1/sd of a foot's rows.
-
-        Args:
-            contact: The frame's decision.
-            foot: 0 right, 1 left.
-            pulls: Whether it would pull at the floor; unmeasured, it is then held at no vertical force.
-        """
+        """(6,) 1/sd of the rows of a foot, 0 right and 1 left, unmeasured perhaps and pulling at the floor."""
         kind, near = contact.contacts[foot], contact.near[foot]
         if kind == Contact.MEASURED:
             return self._plate
@@ -260,7 +247,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         return self._pulling if pulls else self._free
 
     def _both_unmeasured(self, w: Array, free: FreeStance) -> Rows:
-        """Both feet on floor that no plate reads: Newton's law knows the sum, geometry where and whither each presses.
+        """Both feet on floor that no plate reads: Newton's law gives their sum, geometry place and direction of each.
 
         About its expected centre of pressure each foot's horizontal moment is 0 to a lever, the forces differ as those
         that point to the pelvis do, and each vertical force is weakly half of the weight. Feet side by side are loaded
@@ -295,14 +282,14 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
                 row[own], row[10 - own] = 1.0 - share, -share
                 row /= s.free_push_share * (share + PUSH_LEAST) * weight
                 values[own] = -row @ w.ravel()
-        # Of the shear of both feet together Newton's law knows more than the direction to the pelvis.
+        # Newton's law gives the shear of both feet together better than the direction to the pelvis does.
         for kept in (rows, values):
             of_right, of_left = kept[:2].copy(), kept[6:8].copy()
             kept[:2], kept[6:8] = of_right - of_left, TOGETHER * (of_right + of_left)
         return Rows(rows, values, self._first, 0)
 
     def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:
-        """One plate reads the sum of both wrenches; how they share it is known by geometry, with its spread."""
+        """One plate reads the sum of both wrenches; geometry gives their shares, with a spread."""
         rows, values = np.zeros((12, 12)), np.empty(12)
         middle = _about(contact.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]
         rows[:6, :6] = rows[:6, 6:] = middle
@@ -319,7 +306,7 @@ def _stacked(X: Array, values: Array, left_first: bool = False) -> tuple[Array, 
     Args:
         X: (2, 6, 6) rows on the wrench of right and left foot.
         values: (2, 6) their innovations.
-        left_first: Whether the rows of the left foot come first.
+        left_first: True if the rows of the left foot come first.
     """
     rows = np.zeros((2, 6, 2, 6))
     if left_first:
@@ -330,14 +317,14 @@ def _stacked(X: Array, values: Array, left_first: bool = False) -> tuple[Array, 
 
 
 def _about(points_m: Array) -> Array:
-    """(k, 6, 6) that take a wrench about the world's origin to one about each of the points (k, 3): n − c × f."""
+    """(k, 6, 6) transforms of a wrench about the world's origin to each of the points (k, 3): n − c × f."""
     found = points_m @ _LEVERS
     found += _UNMOVED
     return found.reshape(-1, 6, 6)
 
 
 def _levers() -> Array:
-    """(3, 36) by which a unit shift along each axis changes :func:`_about`."""
+    """(3, 36) derivative of :func:`_about` by a shift along each axis."""
     table = np.zeros((3, 6, 6))
     for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         table[x, 3 + z, y], table[x, 3 + y, z] = -1.0, 1.0

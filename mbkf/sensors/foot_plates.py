@@ -8,8 +8,8 @@ the ankles, force N and moment N m in world axes (:mod:`mbkf.sensors.foot_wrench
     shared                z_r + z_l = the plate's wrench, and z_r its share by where the feet stand, with its spread
     unmeasured            no reading; the wrench follows from Newton's law and the other foot
 
-Which foot stands on what is decided where the posterior of the frame before leads at its own acceleration,
-q ⊕ v Δt and v + a Δt, and not at the prediction, whose forces may be wrong at a heel strike.
+Contact is decided at the state to which the posterior of the frame before leads at its own acceleration, q ⊕ v Δt and
+v + a Δt, and not at the prediction, whose forces may be wrong at a heel strike.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class FootPlateSettings:
 
     Attributes:
         plate_force_n, plate_moment_nm: Of a plate's reading.
-        air_force_n, air_moment_nm: How exactly a foot in the air carries nothing.
+        air_force_n, air_moment_nm: Spread of the zero wrench of a foot in the air.
     """
 
     plate_force_n: float = 5.0
@@ -50,13 +50,13 @@ class FootPlateSettings:
 
 
 class FootReading(NamedTuple):
-    """What is known of the ground's reactions in a frame.
+    """Readings of the ground's reactions in a frame.
 
     Attributes:
         wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
         known: (2,) feet whose wrench is read: from a plate, or 0 in the air.
-        airborne: (2,) feet that touch nothing.
-        shared: How both share a plate; None where they do not.
+        airborne: (2,) feet in the air.
+        shared: Shares of both feet in one plate; None where they do not share one.
     """
 
     wrench: Array
@@ -76,7 +76,7 @@ class FootReading(NamedTuple):
 
 
 class Ahead(NamedTuple):
-    """Where contact is decided: configuration q (nq,), velocity v and acceleration a (nv,)."""
+    """State at which contact is decided: configuration q (nq,), velocity v and acceleration a (nv,)."""
 
     q: Array
     v: Array
@@ -84,14 +84,14 @@ class Ahead(NamedTuple):
 
 
 class PlateMemory(NamedTuple):
-    """What the detector keeps, and where the next frame's contact is decided; None for at the prediction."""
+    """The detector's memory, and the state at which the next contact is decided; None for the prediction."""
 
     contact: KeptContact
     ahead: Ahead | None
 
 
 class PlateDecision(NamedTuple):
-    """What the feet stand on, and what is known of their wrenches."""
+    """Contact of the feet, and readings of their wrenches."""
 
     contact: ContactDecision
     reading: FootReading
@@ -102,7 +102,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
 
     Attributes:
         body: The forced body.
-        detector: Finds what the feet stand on.
+        detector: Decides the contact of the feet.
         sensor: Wrench states carried to points on the plates.
         settings: Noise.
         columns: Components of the state that are read: positions and wrenches.
@@ -119,14 +119,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         dt_s: float,
         settings: FootPlateSettings = FootPlateSettings(),
     ) -> None:
-        """Makes the block.
-
-        Args:
-            body: The forced body.
-            detector: Finds what the feet stand on.
-            dt_s: Time between frames.
-            settings: Noise.
-        """
+        """Args: the attributes; dt_s: time between frames."""
         self.body, self.detector, self.settings = body, detector, settings
         self.sensor = FootWrenchSensor(body)
         self._dt_s = dt_s
@@ -134,13 +127,13 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         self._air = np.repeat([settings.air_force_n, settings.air_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where positions and wrenches stand in the state."""
+        """Keeps the indices of positions and wrenches."""
         self._size = layout.size
         every = np.arange(layout.size)
         self.columns = np.concatenate([every[layout.q], every[layout.wrench]])
 
     def begin(self) -> PlateMemory:
-        """No plate was loaded yet."""
+        """Memory without a loaded plate."""
         return PlateMemory(self.detector.begin(), None)
 
     def decide(
@@ -180,7 +173,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         decision: PlateDecision,
         memory: PlateMemory,
     ) -> PlateMemory:
-        """What the detector keeps, and where the posterior leads."""
+        """The detector's memory, and the state to which the posterior leads."""
         del at, memory
         return self.next_memory(posterior, decision)
 
@@ -191,19 +184,14 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         return PlateMemory(decision.contact.memory, Ahead(self.body.integrate(q, dt * v), v + dt * a, a))
 
     def _whitening(self, shared: SharedLoad, points_m: Array) -> Array:
-        """(12, 12) that takes wrenches about points to the plate's sum and the right foot's share, whitened.
-
-        Args:
-            shared: How the feet share the plate.
-            points_m: (2, 3) about which the moments of right and left foot are taken.
-        """
+        """(12, 12) whitened map of the feet's wrenches about points (2, 3) to the plate's sum and the right share."""
         rows = np.zeros((12, 12))
         rows[:6, :6], rows[:6, 6:] = np.eye(6), about(points_m[0] - points_m[1])
         rows[6:, :6] = about(shared.centres_m[0] - points_m[0])
         return rows / np.concatenate([self._plate, shared.sd])[:, None]
 
     def sd(self, feet: FootReading) -> Array:
-        """(12,) standard deviations of a frame's readings, infinite for a foot whose wrench is not known."""
+        """(12,) standard deviations of a frame's readings, infinite for a foot of unknown wrench."""
         if feet.shared is not None:
             return np.tile(np.hypot(self._plate, feet.shared.sd), 2)
         none = np.full(6, np.inf)

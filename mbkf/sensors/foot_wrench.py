@@ -1,4 +1,4 @@
-"""What the force plates should read of the wrenches that a dynamic filter holds at the feet (thesis eqs. 4.10–4.13)."""
+"""Expected readings of plates, from the wrenches that a filter holds at the feet (thesis eqs. 4.10–4.13)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class FootWrenchSensor:
     """Rigid transfer of foot wrenches to points on the plates: p = [f, n + r̃ f], r from the point to the foot.
 
     Attributes:
-        dynamics: The body, which says where wrench states live.
+        dynamics: The body, which defines the frames of wrench states.
         ids: Pinocchio joints of right and left foot.
     """
 
@@ -39,7 +39,7 @@ class FootWrenchSensor:
         self.ids = [dynamics.model.joint(name).joint_id for name in dynamics.model.roles.feet]
 
     def reading(self, q: Array, state: Array, points_m: Array) -> WrenchReading:
-        """What plates under both feet read.
+        """Expected readings of plates under both feet.
 
         Args:
             q: (nq,) configuration.

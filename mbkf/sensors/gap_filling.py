@@ -1,9 +1,9 @@
-"""Where a marker is while no camera sees it: on the body, and as far off it as its skin is expected to be.
+"""Places of markers in gaps: on the body, with the expected offset of the skin.
 
 A marker's offset from the rigid body, in its segment's axes, is a smooth random process: skin slides slowly, so that
-the offset and its rate just before a gap, and just after it where both sides are known, tell much of what lies between.
-It is also partly common to the markers of a segment (they ride on the same flesh, and a wrong pose displaces all of
-them as one), so that those seen in the gap tell more. Both are one Gaussian process, and its mean is the estimate.
+the offset and its rate just before a gap, and just after it, predict those within. It is also partly common to the
+markers of a segment (they ride on the same flesh, and a wrong pose displaces all of them as one), so that the markers
+seen in the gap add information. Both are one Gaussian process, and its mean is the estimate.
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 SKIN_MEMORY_S = 0.2
-"""Length of the process's correlation (Matérn, 3/2)."""
+"""Correlation time of the process (Matérn, 3/2)."""
 
 SIGHTS = 10
-"""Sights before a gap, and after it, that count."""
+"""Number of sights before a gap, and after it, that count."""
 
 SIGHT_VARIANCE = 0.01
-"""Variance of a sight, over that of the offset: cameras are that much more exact than skin."""
+"""Variance of a sight over that of the offset."""
 
 TURN_RAD_M = 10.0
-"""What a segment's markers have in common: they shift as much as each slides alone, and turn by this angle per metre
-that each slides alone (the same shift again at 0.1 m from their middle)."""
+"""Common part of a segment's markers: they shift as much as each slides alone, and turn by this angle per metre that
+each slides alone (the same shift again at 0.1 m from their middle)."""
 
 
 STRANGE_M = 0.05
-"""A marker this far from where its own sights expect it is not the skin's doing, and tells nothing of the others."""
+"""A marker farther than this from the place expected by its own sights is not on sliding skin; the others ignore it."""
 
 
 @dataclass(frozen=True)
 class _Gap:
-    """Frames [first, end) in which a marker is not seen, and the frames (k,) of the sights that tell about it."""
+    """Frames [first, end) in which a marker is not seen, and the frames (k,) of the sights around it."""
 
     first: int
     end: int
@@ -54,7 +54,7 @@ def filled(
         q: (T, nq) configurations, NaN where the body is not followed.
         shown_m: (T, M, 3) markers as the filter saw them, NaN where missing.
         dt_s: Time between frames.
-        both_sides: Whether the sight after a gap may be used, too (smoothing).
+        both_sides: True to use sights after a gap, too (smoothing).
     """
     frames, markers = shown_m.shape[:2]
     on_body = np.full((frames, markers, 3), np.nan)
@@ -69,7 +69,7 @@ def filled(
 
 
 def _expected(sensor: MarkerSensor, offset: Array, dt_s: float, both_sides: bool) -> Array:
-    """(T, M, 3) expected offsets in gaps, zero where a marker is seen or was never seen."""
+    """(T, M, 3) expected offsets in gaps, zero elsewhere and for a marker that was never seen."""
     expected = np.zeros_like(offset)
     for joint in np.unique(sensor.joint_ids):
         members = np.flatnonzero(sensor.joint_ids == joint)
@@ -83,7 +83,7 @@ def _expected(sensor: MarkerSensor, offset: Array, dt_s: float, both_sides: bool
 
 
 def _gaps(seen: BoolArray, both_sides: bool) -> Iterator[_Gap]:
-    """Gaps of one marker that have a sight to tell of them."""
+    """Gaps of one marker that have sights."""
     edges = np.diff(np.r_[0, ~seen, 0].astype(int))
     known = np.flatnonzero(seen)
     for first, end in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
@@ -96,31 +96,31 @@ def _gaps(seen: BoolArray, both_sides: bool) -> Iterator[_Gap]:
 def _in_gap(k: int, gap: _Gap, offset: Array, seen: BoolArray, shared: Array, dt_s: float) -> Array:
     """(L, 3) expected offsets of marker k of a segment in its gap.
 
-    Its sights around the gap come first. The segment's other markers are expected from theirs at the same frames, as
-    if they were hidden as well; by what they differ from that is shared out.
+    Its sights around the gap come first. The segment's other markers are predicted from theirs at the same frames, as
+    if they were hidden as well; the common part of their differences from that is added.
 
     Args:
         k: The marker among the segment's n.
         gap: Its gap of L frames, with its sights.
         offset: (T, n, 3) offsets, NaN where not seen.
-        seen: (T, n) whether a marker is seen.
+        seen: (T, n) seen markers.
         shared: (n, 3, n, 3) covariance of the offsets of a frame.
         dt_s: Time between frames.
     """
     frames = np.arange(gap.first, gap.end)
     expected, spread = _from_sights(offset[gap.sights, k], gap.sights, frames, dt_s)
     surprise = np.zeros((len(frames), len(shared), 3))
-    tells = np.zeros((len(frames), len(shared)), dtype=bool)
+    informs = np.zeros((len(frames), len(shared)), dtype=bool)
     for j in range(len(shared)):
         at = gap.sights[seen[gap.sights, j]]
         if len(at) and seen[frames, j].any():
             mean, sd = _from_sights(offset[at, j], at, frames, dt_s)
             difference = offset[frames, j] - mean
-            tells[:, j] = np.linalg.norm(difference, axis=1) < STRANGE_M
+            informs[:, j] = np.linalg.norm(difference, axis=1) < STRANGE_M
             surprise[:, j] = difference / sd[:, None]
-    for pattern in np.unique(tells, axis=0):
+    for pattern in np.unique(informs, axis=0):
         if pattern.any():
-            rows = (tells == pattern).all(axis=1)
+            rows = (informs == pattern).all(axis=1)
             among = shared[pattern][:, :, pattern].reshape(3 * pattern.sum(), -1)
             passed_on = np.linalg.solve(among, shared[pattern][:, :, k].reshape(-1, 3))
             known = surprise[np.ix_(rows, pattern)].reshape(rows.sum(), -1)
@@ -131,7 +131,7 @@ def _in_gap(k: int, gap: _Gap, offset: Array, seen: BoolArray, shared: Array, dt
 def _from_sights(
     sighted: Array, at: NDArray[np.int64], frames: NDArray[np.int64], dt_s: float
 ) -> tuple[Array, Array]:
-    """(L, 3) mean and (L,) standard deviation of the process at some frames, given what was sighted at others.
+    """(L, 3) mean and (L,) standard deviation of the process at some frames, given sights at others.
 
     Args:
         sighted: (k, 3) offsets.
@@ -149,13 +149,13 @@ def _from_sights(
 
 
 def correlation(apart_s: Array) -> Array:
-    """Correlation of an offset with itself some time later (Matérn, 3/2): smooth, and fading with the distance."""
+    """Correlation of an offset with itself some time later (Matérn, 3/2)."""
     steps = np.sqrt(3.0) * np.abs(apart_s) / SKIN_MEMORY_S
     return np.asarray((1.0 + steps) * np.exp(-steps))
 
 
 def shared_covariance(places_m: Array) -> Array:
-    """(n, 3, n, 3) covariance of the offsets of a segment's markers, over the variance of what each slides alone.
+    """(n, 3, n, 3) covariance of the offsets of a segment's markers, over the variance of each marker's own slide.
 
     Args:
         places_m: (n, 3) the markers in the segment's axes.

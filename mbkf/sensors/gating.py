@@ -1,4 +1,4 @@
-"""Gating: which markers of a frame are used, by the Mahalanobis distance of each marker's innovation.
+"""Gating of a frame's markers by the Mahalanobis distance of each marker's innovation.
 
 A marker passes where yᵀ S⁻¹ y ≤ gate with S = H P⁻ Hᵀ + R, or where it lies within a radius of its prediction.
 """
@@ -15,15 +15,15 @@ from mbkf.sensors.block import NO_DOFS
 from mbkf.sensors.marker_sensor import MarkerReading, MarkerSensor
 
 TRACK_LOSS_M = 0.10
-"""Where more than half of the markers lie so far off their prediction, the track is lost: the body has jumped, or it is
-another one. Fast limbs are mispredicted by a third of that, most markers by a tenth."""
+"""The track is lost if more than half of the markers lie farther than this from their prediction: the body has jumped,
+or it is another one. Fast limbs are mispredicted by a third of that, most markers by a tenth."""
 
 
 class ObservedDofs:
-    """Which dofs belong to segments none of whose markers is used."""
+    """Dofs that the used markers leave unobserved."""
 
     def __init__(self, sensor: MarkerSensor, unobservable: BoolArray) -> None:
-        """Args: the markers on the body, and dofs (nv,) that no marker of the capture moves with."""
+        """Args: the markers on the body, and the dofs (nv,) that move no marker of the capture."""
         joints = np.empty(sensor.model.nv, dtype=int)
         for joint in sensor.model.joints.values():
             joints[joint.v] = joint.joint_id
@@ -42,7 +42,7 @@ class ObservedDofs:
         return found
 
     def unmarked(self, trusted: BoolArray) -> NDArray[np.intp]:
-        """Dofs whose segment carries markers none of which is ``trusted`` (M,) now."""
+        """Dofs whose segment carries markers but no ``trusted`` one (M,)."""
         asked = trusted.tobytes()
         if asked != self._asked:
             self._asked = asked
@@ -51,11 +51,15 @@ class ObservedDofs:
 
 
 class Gated(NamedTuple):
-    """Markers of a frame (M,): those ``seen``, those of them ``trusted``, and those of segments found elsewhere.
+    """Sorted markers of a frame.
 
-    ``displaced`` markers are all that are seen of a segment and lie far from where it was predicted, so that the state
-    is wrong there and not they; None where there are none. ``lost``: most markers lie far from their prediction.
-    ``squared_m2`` (M,): squared length of the innovation of the trusted ones, 0 of others.
+    Attributes:
+        seen: (M,) markers seen.
+        trusted: (M,) markers used.
+        squared_m2: (M,) squared length of the innovation of trusted markers, 0 of others.
+        displaced: (M,) markers of segments of which all seen markers lie far from their prediction, so that the state
+            is wrong there and not they; None without one.
+        lost: True if most markers lie far from their prediction.
     """
 
     seen: BoolArray
@@ -76,8 +80,8 @@ def gated(
 ) -> Gated:
     """Sorts the markers of a frame.
 
-    When more than half of the markers fall outside, the state is wrong and not the markers, and all are used.
-    The Jacobian is asked for only of markers that are too far off for any prediction that is exact.
+    If more than half of the markers fall outside, the state is wrong and not the markers, and all are used.
+    The Jacobian is computed only of markers outside the gate of an exact prediction.
 
     Args:
         innovation_m: (M, 3) measured minus predicted, NaN where missing.
@@ -85,7 +89,7 @@ def gated(
         covariance: (nv, nv) predicted covariance P⁻ of the configuration.
         noise_m: (M,) marker noise.
         gate: Largest squared Mahalanobis distance (3 readings).
-        radius_m: Distance below which no marker is refused.
+        radius_m: Distance below which every marker is used.
         noise_scale: Factor on the square of the noise.
     """
     squared = np.vecdot(innovation_m, innovation_m)
@@ -109,7 +113,7 @@ def gated(
 
 
 def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolArray:
-    """(M,) markers of segments all of whose seen markers, two or more, lie far off: then the limb is, not they."""
+    """(M,) markers of segments all of whose seen markers, two or more, lie far off: the limb is displaced."""
     shared = moves @ moves.T
     own = np.diag(shared)
     same = (shared == own) & (shared == own[:, None])
@@ -118,26 +122,19 @@ def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolAr
 
 
 def _distance(y: Array, H: Array, covariance: Array, variance_m2: Array) -> Array:
-    """(m,) yᵀ S⁻¹ y of innovations (m, 3) with Jacobians (m, 3, nv).
-
-    Args:
-        y: The innovations.
-        H: The Jacobians.
-        covariance: (nv, nv) predicted covariance P⁻ of the configuration.
-        variance_m2: (m,) variance of the markers' noise.
-    """
+    """(m,) yᵀ S⁻¹ y of innovations (m, 3) by Jacobians (m, 3, nv), covariance P⁻ (nv, nv), noise variances (m,)."""
     S = (H @ covariance) @ H.transpose(0, 2, 1)
     S[:, np.arange(3), np.arange(3)] += variance_m2[:, None]
     try:
         found: Array = (y * np.linalg.solve(S, y[:, :, None])[:, :, 0]).sum(axis=1)
     except np.linalg.LinAlgError:
-        # Of a lost track P⁻ may be so large that S no longer holds R: then no marker is too far off.
+        # P⁻ of a lost track may be so large that S no longer holds R: every marker then passes.
         return np.zeros(len(y))
     return found
 
 
 def _with_far(seen: BoolArray, near: BoolArray, far: BoolArray, distance: Array, gate: float) -> BoolArray:
-    """Near markers and those far ones inside the gate; all seen ones where these are less than half."""
+    """Near markers and far ones inside the gate; all seen ones if these are less than half."""
     inside = near.copy()
     inside[far] = distance <= gate
     mostly_outside = inside.sum() < 0.5 * seen.sum()

@@ -23,8 +23,8 @@ class InertialSettings:
     """Noise of inertial sensors, skin movement included.
 
     Attributes:
-        imu_rate_sd_rad_s, imu_force_sd_mps2: How far a reading is from that of its segment, rad/s and m/s² per
-            component and reading.
+        imu_rate_sd_rad_s, imu_force_sd_mps2: Difference between a reading and that of its segment, rad/s and m/s² per
+            component.
     """
 
     imu_rate_sd_rad_s: float = 0.05
@@ -50,7 +50,7 @@ class InertialSensors(Block[AcceleratedState, None, Array | None, None]):
     def decide(
         self, at: OperatingPoint[AcceleratedState, None], frame: Frame, memory: None, notes: Notes
     ) -> Array | None:
-        """The frame's readings (S, 6), None where none was read; joints they observe are noted."""
+        """The frame's readings (S, 6), None without any; the joints that they observe are noted."""
         if frame.imus is None or not np.isfinite(frame.imus).any():
             return None
         notes.imus, notes.observed = frame.imus, True
@@ -82,7 +82,7 @@ class InertialSensors(Block[AcceleratedState, None, Array | None, None]):
 
 
 def observed_dofs(model: Body, segments: Sequence[str]) -> BoolArray:
-    """(nv,) dofs of the joints that carry these segments; joints between two of them are observed in sum only."""
+    """(nv,) dofs of the joints that carry these segments; only the sum of joints between two of them is observed."""
     observed = np.zeros(model.nv, dtype=bool)
     for segment in segments:
         observed[model.joint(segment).v] = True

@@ -1,4 +1,4 @@
-"""What inertial sensors on a body read: angular velocity and specific force in their own axes, with derivatives.
+"""Expected readings of inertial sensors on a body: angular velocity and specific force, with derivatives.
 
 ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations
 (eqs. 38–43 of docs/references.md, key ``Madgwick``, take finite differences instead). A turn of the world about the
@@ -41,10 +41,10 @@ class InertialSensor:
 
     Attributes:
         model: The body.
-        mounts: Where they sit.
+        mounts: Their places.
 
     Raises:
-        UnknownName: A sensor sits on a segment that the body does not have.
+        UnknownName: The body has no segment of a sensor.
     """
 
     def __init__(self, model: Body, mounts: Sequence[ImuMount]) -> None:
@@ -60,15 +60,12 @@ class InertialSensor:
         ]
 
     def values(self, q: Array, v: Array, a: Array) -> Array:
-        """Expected readings.
+        """(S, 6) expected angular velocity rad/s and specific force m/s² in sensor axes.
 
         Args:
             q: (nq,) configuration.
             v: (nv,) velocity.
             a: (nv,) acceleration.
-
-        Returns:
-            (S, 6) angular velocity rad/s and specific force m/s² in sensor axes.
         """
         pin.forwardKinematics(self.model.pin_model, self._data, q, v, a)
         return self._read()[0]

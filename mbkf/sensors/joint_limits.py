@@ -1,6 +1,6 @@
-"""Joint limits, as a block: a joint beyond a limit θ_max is read to be at it, 0 = θ(q) − θ_max + r, r ~ N(0, σ²).
+"""Joint limits, as a block: 0 = θ(q) − θ_max + r, r ~ N(0, σ²), for a joint beyond its limit θ_max.
 
-An inequality: a joint inside its limits is not read at all.
+An inequality: a joint inside its limits is not read.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class JointLimits(Block[State, Information | None, None, None]):
     """Least and greatest rotation of every joint about its axes, from the neutral posture.
 
     Attributes:
-        lower, upper: (nv,) limits, rad; ±inf where there is none.
+        lower, upper: (nv,) limits, rad; ±inf without one.
         sd_rad: Softness.
     """
 
@@ -43,13 +43,7 @@ class JointLimits(Block[State, Information | None, None, None]):
         unobservable: BoolArray,
         settings: JointLimitSettings = JointLimitSettings(),
     ) -> None:
-        """Makes the block.
-
-        Args:
-            sensor: Deviation of every joint from neutral.
-            unobservable: (nv,) dofs that no marker of the capture moves with; they have no limit.
-            settings: Softness.
-        """
+        """Args: sensor: deviation from neutral; unobservable: (nv,) dofs without a limit; settings: softness."""
         model = sensor.model
         self._sensor, self.sd_rad = sensor, settings.limit_sd_rad
         self.lower = np.where(unobservable, -np.inf, model.limits[:, 0])
@@ -57,24 +51,22 @@ class JointLimits(Block[State, Information | None, None, None]):
         self._turning = [joint.v for joint in model.joints.values() if joint.kind == "spherical"]
 
     def prepare(self, state: State, memory: None) -> Information | None:
-        """What the passed limits say; it does not depend on the frame."""
+        """Information of the passed limits, which does not depend on the frame."""
         return self.information(*self._sensor.deviation(state.q))
 
     def decide(
         self, at: OperatingPoint[State, Information | None], frame: Frame, memory: None, notes: Notes
     ) -> None:
-        """Nothing is to be decided."""
+        """No decision is needed."""
 
     def linearise(self, at: OperatingPoint[State, Information | None], decision: None) -> Information | None:
-        """Information on the configuration, None where no limit is passed."""
+        """Information on the configuration, None without a passed limit."""
         return at.prepared
 
     def information(self, deviation: Array, jacobian: Array) -> Information | None:
-        """What the passed limits say about the configuration (nv), or None where none is passed; no readings.
+        """Information of the passed limits on the configuration (nv), without readings; None if no limit is passed.
 
-        Args:
-            deviation: (nv,) rotation of every joint from neutral, rad (``PostureSensor.deviation``).
-            jacobian: (nv, nv) its derivative.
+        The deviation (nv,) and its Jacobian (nv, nv) are those of :meth:`PostureSensor.deviation`.
         """
         if self._sensor.tree is not None:
             return self._compiled(self._sensor.tree, deviation, jacobian)

@@ -1,13 +1,12 @@
-"""Noise that stays for a while, told as white noise of equal weight to a slowly moving body.
+"""Lasting noise as white noise of equal weight for a slowly moving body.
 
 A reading's error is r_k = w_k + c_k: w white with variance σ² − σ_c², c a Gauss–Markov process (Bryson & Henrikson
 1968) with variance σ_c² and correlation time τ, ρ = e^(−Δt/τ). Its power at the angular frequency ω, per reading, is
 
     R(ω) = σ² − σ_c² + σ_c² (1 − ρ²) / (1 − 2 ρ cos ωΔt + ρ²)
 
-A filter that takes white noise of the variance R(ω) weighs the readings as their errors deserve at that frequency. At
-ω = 0 this is σ² − σ_c² + σ_c² coth(Δt/2τ) ≈ σ² − σ_c² + 2 τ σ_c² / Δt, the variance of a mean of many readings times
-their number.
+A filter with white noise of the variance R(ω) weighs the readings by their errors at that frequency. At ω = 0 this is
+σ² − σ_c² + σ_c² coth(Δt/2τ) ≈ σ² − σ_c² + 2 τ σ_c² / Δt, the variance of a mean of many readings times their number.
 """
 
 from __future__ import annotations
@@ -19,11 +18,11 @@ from mbkf.model.sides import mirrored
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 MOVEMENT_HZ = 0.5
-"""Frequency at which noise is weighed: the slow end of everyday movement. Weighed at 0 Hz, a gait's quick turns of the
-ankle are smoothed away; weighed at 0.7 Hz, stated intervals are too narrow (synthetic walks)."""
+"""Frequency at which noise is weighed: the slow end of everyday movement. At 0 Hz, a gait's quick turns of the ankle
+are smoothed away; at 0.7 Hz, stated intervals are too narrow (synthetic walks)."""
 
 LINE_M = 0.03
-"""Points whose scatter about their best line is smaller than this do not show how a segment is turned about it."""
+"""Least scatter of points about their best line that determines a segment's turn about it."""
 
 
 def white_noise_m(
@@ -33,13 +32,13 @@ def white_noise_m(
 
     Args:
         noise_m: (M,) standard deviation of the whole noise, m.
-        correlated_m: (M,) standard deviation of the part that stays, m.
-        correlation_s: (M,) its correlation time, s; 0 where it does not stay.
+        correlated_m: (M,) standard deviation of the lasting part, m.
+        correlation_s: (M,) its correlation time, s; 0 for white noise.
         dt_s: Time between readings.
         frequency_hz: The frequency.
     """
-    stays = (correlated_m > 0.0) & (correlation_s > 0.0)
-    rho = np.where(stays, np.exp(-dt_s / np.where(stays, correlation_s, 1.0)), 0.0)
+    lasts = (correlated_m > 0.0) & (correlation_s > 0.0)
+    rho = np.where(lasts, np.exp(-dt_s / np.where(lasts, correlation_s, 1.0)), 0.0)
     gain = (1.0 - rho**2) / (1.0 - 2.0 * rho * np.cos(2.0 * np.pi * frequency_hz * dt_s) + rho**2)
     return np.sqrt(noise_m**2 - correlated_m**2 + gain * correlated_m**2)
 
@@ -47,9 +46,9 @@ def white_noise_m(
 def prior_dilution(sensor: MarkerSensor, noise_m: Array, spread_m: Array) -> Array:
     """(nv,) factor on a prior that is read in every frame, so that it does not outweigh diluted markers.
 
-    A frame of markers counts as (spread/noise)² of an independent reading, and a prior beside it for as little. Where
-    the root's own points lie on a line, as the hips do, its tilt shows only by the bend of the trunk above it; that is
-    all but straight, so that millimetres bend it by many degrees. What is known of the trunk then keeps its weight.
+    A frame of markers counts as (spread/noise)² of an independent reading, and so does a prior beside it. If the root's
+    own points lie on a line, as the hips do, its tilt shows only by the bend of the trunk above it; that is all but
+    straight, so that millimetres bend it by many degrees. The prior on the trunk then keeps its weight.
 
     Args:
         sensor: The markers on the body.

@@ -1,14 +1,13 @@
-"""Load that passes from foot to foot in walking, as a block: the foot behind gives it away as it rolls over its toes.
+"""Load transfer from foot to foot in walking, as a block: the foot behind unloads as it rolls over its toes.
 
     0 = (1 − s) F_behind − s F_ahead + r,   s = (1 − x)^γ,   x = (φ − φ₀) / (φ₁ − φ₀),   r ~ N(0, (σ m g)²)
 
 φ is the pitch of the foot behind, φ₀ that at which the other foot landed, φ₁ that at which it leaves the floor: as the
-last time, as usual before the first. Newton's law knows how two feet share a load by the moment of the whole body;
-where arms and head are not seen it is not known to better than a fifth of the weight, and heights of soles, by which
-markers tell the same (:mod:`mbkf.sensors.contact.sharing`), are not known to a centimetre. A foot's pitch is known to
-a degree.
-That load passes in a smooth and similar way in every walk is known since L. Ren, R. K. Jones and D. Howard, Journal of
-Biomechanics 41 (2008) 2750–2759, who take it to be a function of time.
+last time, and ``leaving_pitch_rad`` before the first. Newton's law shares a load between two feet by the moment of the
+whole body; without sensors on arms and head that is uncertain by a fifth of the weight, and the heights of soles, which
+share it between markers (:mod:`mbkf.sensors.contact.sharing`), by a centimetre. A foot's pitch is known to a degree.
+Load passes in a smooth and similar way in every walk (L. Ren, R. K. Jones and D. Howard, Journal of Biomechanics 41
+(2008) 2750–2759, as a function of time).
 """
 
 from __future__ import annotations
@@ -29,19 +28,18 @@ from mbkf.sensors.states import LoadedState
 
 @dataclass(frozen=True)
 class LoadTransferSettings:
-    """How load passes from foot to foot.
+    """Course of the load from foot to foot.
 
     Set on the double supports of Rajagopal's walk, gait2354 and Rehazenter's, whose plates follow it to 0.05; shown on
     HC032A, HC044A and gaitalytics, 0.14.
 
     Attributes:
         transfer_power: γ.
-        transfer_sd: σ, spread of a foot's force in body weights. It errs for ``transfer_memory_s``.
-        transfer_memory_s: See above.
+        transfer_sd, transfer_memory_s: σ, spread of a foot's force in body weights, and correlation time of its error.
         leaving_pitch_rad: φ₁ before a foot has left the floor for the first time.
-        stood_s: A foot that has stood alone for less does not give its load away by rolling.
-        transfer_within_s: Nor one whose other foot has landed earlier than this.
-        least_pitching_rad_s: Nor one that pitches more slowly: the person comes to a stand.
+        stood_s: Least time for which the foot behind has stood alone.
+        transfer_within_s: Longest transfer.
+        least_pitching_rad_s: Least angular velocity of the foot behind; slower, the person comes to a stand.
     """
 
     transfer_power: float = 1.6
@@ -54,10 +52,10 @@ class LoadTransferSettings:
 
 
 LEAST_ROLL_RAD = 0.2
-"""A foot is taken to pitch by this at least while it gives its load away."""
+"""Least pitch φ₁ − φ₀ over which a foot unloads."""
 
 LEAVING_RAD = radians(35.0), radians(85.0)
-"""Pitches at which feet leave the floor."""
+"""Least and greatest pitch at which feet leave the floor."""
 
 
 class Transfer(NamedTuple):
@@ -65,9 +63,9 @@ class Transfer(NamedTuple):
 
     Attributes:
         behind: The foot that stood, 0 right and 1 left.
-        landed_rad: Its pitch then.
+        landed_rad: Its pitch when the other foot landed.
         pitch_rad: Its pitch now.
-        lasted_s: For how long both have stood.
+        lasted_s: Duration for which both have stood.
     """
 
     behind: int
@@ -77,12 +75,12 @@ class Transfer(NamedTuple):
 
 
 class Walk(NamedTuple):
-    """What a frame needs from the one before.
+    """State carried from one frame to the next.
 
     Attributes:
-        alone_s: For how long right and left foot have stood alone.
-        transfer: The double support, None in none or in one that did not begin so.
-        leaving_rad: Pitch at which each foot has last left the floor; None before it has.
+        alone_s: Duration for which right and left foot have stood alone.
+        transfer: The double support; None outside one, or in one that began otherwise.
+        leaving_rad: Pitch at which each foot has last left the floor; None before the first time.
     """
 
     alone_s: tuple[float, float] = (0.0, 0.0)
@@ -91,7 +89,7 @@ class Walk(NamedTuple):
 
 
 class TransferDecision(NamedTuple):
-    """The foot behind and its share of both feet's load, None where the frame does not tell; and what is kept."""
+    """The foot behind and its share of both feet's load, None outside a transfer; and the memory."""
 
     share: tuple[int, float] | None
     walk: Walk
@@ -105,30 +103,24 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
     def __init__(
         self, model: Body, dt_s: float, settings: LoadTransferSettings = LoadTransferSettings()
     ) -> None:
-        """Makes the block.
-
-        Args:
-            model: The body.
-            dt_s: Time between frames.
-            settings: How load passes.
-        """
+        """Args: model: the body; dt_s: time between frames; settings: course of the load."""
         self.settings = settings
         self._feet, self._dt_s, self._vertical = FeetOnBody(model), dt_s, [2, 8]
         weight_n = -float(model.pin_model.gravity.linear[2]) * model.mass_kg
         self._sd_n = settings.transfer_sd * weight_n * max(settings.transfer_memory_s / dt_s, 1.0) ** 0.5
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where the wrenches stand in the state."""
+        """Keeps the first component of the wrenches."""
         self._first = layout.wrench.start
 
     def begin(self) -> Walk:
-        """No foot has stood yet."""
+        """Memory before any foot has stood."""
         return Walk()
 
     def decide(
         self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: Walk, notes: Notes
     ) -> TransferDecision:
-        """By how far the foot behind has rolled since the other one landed."""
+        """Share of the foot behind by its roll since the other one landed."""
         contact = notes.contact
         if contact is None:
             return TransferDecision(None, memory)
@@ -162,7 +154,7 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
         decision: TransferDecision,
         memory: Walk,
     ) -> Walk:
-        """What the decision keeps."""
+        """The decision's memory."""
         return decision.walk
 
     def _begun(self, memory: Walk, feet: FeetMotion) -> Transfer | None:
@@ -179,12 +171,7 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
         return transfer._replace(pitch_rad=pitch, lasted_s=transfer.lasted_s + self._dt_s)
 
     def _after(self, memory: Walk, stands: tuple[bool, ...]) -> Walk:
-        """What is kept where at most one foot stands.
-
-        Args:
-            memory: From the frame before.
-            stands: Whether right and left foot do.
-        """
+        """Memory after a frame in which at most one foot stands."""
         leaving, transfer = list(memory.leaving_rad), memory.transfer
         if transfer is not None and not stands[transfer.behind]:
             leaving[transfer.behind] = float(np.clip(transfer.pitch_rad, *LEAVING_RAD))
@@ -194,7 +181,7 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
         return Walk((right, left), None, (leaving[0], leaving[1]))
 
     def _rolls(self, transfer: Transfer, feet: FeetMotion) -> bool:
-        """Whether the foot behind still gives its load away by rolling."""
+        """True while the foot behind unloads by rolling."""
         s = self.settings
         return transfer.lasted_s < s.transfer_within_s and (
             pitching(feet, transfer.behind) > s.least_pitching_rad_s
@@ -210,7 +197,7 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
 
 
 def pitch_of(feet: FeetMotion, foot: int) -> float:
-    """Pitch of a foot (0 right, 1 left), rad: how steeply its sole descends from heel to ball."""
+    """Pitch of a foot (0 right, 1 left), rad: descent angle of its sole from heel to ball."""
     heel, ball, _ = feet.soles[foot]
     return atan2(heel[2] - ball[2], hypot(heel[0] - ball[0], heel[1] - ball[1]))
 

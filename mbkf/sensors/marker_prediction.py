@@ -13,7 +13,7 @@ class MarkerPrediction:
     """Markers predicted from a state.
 
     Attributes:
-        reading: The markers at the predicted configuration, with their Jacobian H for those who ask.
+        reading: The markers at the predicted configuration; its Jacobian H is computed on demand.
         covariance: (nv, nv) covariance P⁻ of the predicted configuration in its tangent space.
     """
 

@@ -1,4 +1,4 @@
-"""What the cameras should see: marker positions and their derivatives (thesis eqs. 3.4, 3.5)."""
+"""Expected marker positions and their derivatives (thesis eqs. 3.4, 3.5)."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class MarkerReading:
 
     Attributes:
         positions_m: (M, 3) in the world.
-        spatial: (6, nv) velocity at the world origin of what each dof moves, (linear, angular).
-        _moves: (M, nv) whether a dof moves a marker.
+        spatial: (6, nv) velocity (linear, angular) at the world origin of the segments that each dof moves.
+        _moves: (M, nv) True for a dof that moves a marker.
     """
 
     positions_m: Array
@@ -35,7 +35,7 @@ class MarkerReading:
 
     @property
     def moves(self) -> Array:
-        """(M, nv) 1 where a dof moves a marker: markers of one segment have the same row."""
+        """(M, nv) 1 for a dof that moves a marker: markers of one segment have the same row."""
         return np.asarray(self._moves, dtype=float)
 
     def only(self, markers: BoolArray) -> MarkerReading:
@@ -44,7 +44,7 @@ class MarkerReading:
 
     @cached_property
     def jacobian(self) -> Array:
-        """(M, 3, nv) in the tangent space: δm = (v + ω × m) δq for the dofs below the marker; built when asked for."""
+        """(M, 3, nv) in the tangent space: δm = (v + ω × m) δq for the dofs below the marker; built on demand."""
         x, y, z = self.positions_m.T
         velocity = np.zeros((len(x), 3, 6))
         velocity[:, (0, 1, 2), (0, 1, 2)] = 1.0
@@ -73,7 +73,7 @@ class MarkerSensor:
         segments: Segment of each of the M markers.
         local_m: (M, 3) positions in the segments' frames, m.
         joint_ids: (M,) Pinocchio joints that carry them.
-        compiled: They in compiled code, None where there is none.
+        compiled: The markers in compiled code, None without a kernel.
     """
 
     def __init__(self, model: Body, segments: Sequence[str], local_m: Array) -> None:
@@ -105,7 +105,7 @@ class MarkerSensor:
 
 
 class MarkerInformation:
-    """What frames of markers say about the configuration, without their Jacobian.
+    """Information of markers on the configuration, without their Jacobian.
 
     Attributes:
         sensor: The markers on the body.
@@ -131,7 +131,7 @@ class MarkerInformation:
             q: (nq,) configuration.
             reading: The sensor's at q.
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
-            trusted: (M,) markers that count; none of them missing.
+            trusted: (M,) markers that count, all of them seen.
             noise_scale: Square of a factor on their noise.
         """
         count = trusted.tobytes().count(1)
@@ -147,11 +147,7 @@ class MarkerInformation:
 
 
 class JacobianInformation:
-    """The same by the markers' Jacobian: slower, and equal to :class:`MarkerInformation` up to rounding.
-
-    Attributes:
-        noise_m: (M,) standard deviation of each marker.
-    """
+    """The same by the markers' Jacobian: slower, and equal to :class:`MarkerInformation` up to rounding."""
 
     def __init__(self, sensor: MarkerSensor, noise_m: Array) -> None:
         self.noise_m, self._nv = noise_m, sensor.model.nv
@@ -164,15 +160,7 @@ class JacobianInformation:
         trusted: BoolArray,
         noise_scale: float = 1.0,
     ) -> Information:
-        """As :meth:`MarkerInformation.at`.
-
-        Args:
-            q: (nq,) configuration; not needed here.
-            reading: The sensor's reading at q.
-            innovation_m: (M, 3) measured minus predicted positions.
-            trusted: (M,) markers to count.
-            noise_scale: Square of a factor on their noise.
-        """
+        """Args: as :meth:`MarkerInformation.at`; q is not used."""
         del q
         H = reading.jacobian[trusted].reshape(-1, self._nv)
         return information(

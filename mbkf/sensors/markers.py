@@ -1,19 +1,18 @@
 """Markers on the body, as a block: z_m = p_m(q) + r, r ~ N(0, c σ_m² I₃) for every marker m that passes its gate.
 
 p_m is the marker's place on its segment (:mod:`mbkf.sensors.marker_sensor`), σ_m its noise, and c a factor that follows
-the innovations: skin moves slowly, so that the next frames repeat an error, and a frame counts for a share s of an
+the innovations. Skin moves slowly, so that the next frames repeat an error, and a frame counts for a share s of an
 independent reading only:
 
     c ← c + (1 − e^(−Δt/T)) (clip(yᵀR⁻¹y / (3 m s)) − c)
 
-Noise that stays for a while is told as white noise σ_m of equal weight (:mod:`mbkf.sensors.lasting_noise`). One frame
-then shows only the noise's own spread e_m, and s is (e_m/σ_m)² of each such marker.
+Lasting noise is replaced by white noise σ_m of equal weight (:mod:`mbkf.sensors.lasting_noise`). One frame then shows
+only the noise's own spread e_m, and s is (e_m/σ_m)² of each such marker.
 
-What of the innovations does not last is white noise of the cameras, told by the readings themselves
-(:mod:`mbkf.sensors.white_noise`). Where cameras and skin are quiet, c is at its least, and errors are less than it
-says.
+The part of the innovations that does not last is white noise of the cameras, estimated from the readings
+(:mod:`mbkf.sensors.white_noise`). For quiet cameras and skin c is at its least, and errors are smaller than it states.
 
-The innovation gate is that of :mod:`mbkf.sensors.gating`. Where all that is seen of a segment lies elsewhere than
+The innovation gate is that of :mod:`mbkf.sensors.gating`. If all seen markers of a segment lie elsewhere than
 predicted, its joint's spread is inflated.
 """
 
@@ -42,19 +41,19 @@ DISPLACED_SD_RAD_S = 3.0
 
 @dataclass(frozen=True)
 class MarkerSettings:
-    """Noise of the markers, and which of them are used.
+    """Noise and gate of the markers.
 
     Attributes:
         marker_noise_scale: Factor on the markers' own noise. Raise it for loose clothing.
-        innovation_share: Share s of an independent reading that a frame's marker counts for; the noise then follows the
-            innovations within ``noise_range``. 0 keeps the markers' own noise (white camera noise only). Set on
+        innovation_share: Share s of an independent reading for which a frame's marker counts; the noise then follows
+            the innovations within ``noise_range``. 0 keeps the markers' own noise (white camera noise only). Set on
             synthetic trials with 3 to 5 mm of skin so that 95 % intervals cover.
         noise_memory_s: Time T over which the mean square innovation is taken.
         noise_range: Least and greatest factor on the markers' noise.
         gate: Squared Mahalanobis distance (3 readings) above which a marker is not used.
-        gate_radius_m: Distance below which no marker is refused, m.
-        skin_memory_s: How long a marker's skin artefact lasts where it is modelled as a Gauss–Markov process with the
-            marker's noise as its spread (:mod:`mbkf.sensors.skin`); 0 for white noise.
+        gate_radius_m: Distance below which every marker is used, m.
+        skin_memory_s: Correlation time of a marker's skin artefact as a Gauss–Markov process with the marker's noise as
+            its spread (:mod:`mbkf.sensors.skin`); 0 for white noise.
         camera_noise_m: White noise besides the artefact.
         min_markers: Fewer used markers than this leave the body untracked.
     """
@@ -71,17 +70,17 @@ class MarkerSettings:
 
 
 LEAST_WHITE_M = 1e-5
-"""White noise of cameras that is taken for granted: files have so many digits."""
+"""Least white noise of cameras: the digits of files."""
 
 
 class MarkerMemory(NamedTuple):
-    """What the frames before have shown.
+    """State carried from one frame to the next.
 
     Attributes:
         noise_scale: Square c of the factor on the noise.
-        before_m: (M, 3) markers used in the frame before, where skin is modelled.
-        lasting: The same mean as c, before it is kept in its range, of what is not white noise of the cameras.
-        white: White noise of the cameras, m; None where it is not asked for.
+        before_m: (M, 3) markers used in the frame before, if skin is modelled.
+        lasting: Mean like c, without its range, of the innovations without the cameras' white noise.
+        white: White noise of the cameras, m; None if it is not estimated.
     """
 
     noise_scale: float
@@ -91,16 +90,16 @@ class MarkerMemory(NamedTuple):
 
 
 class MarkerDecision(NamedTuple):
-    """What the cameras were taken to see.
+    """Decision on the frame's markers.
 
     Attributes:
         measured_m: (M, 3) the frame's markers.
-        innovation_m: (M, 3) they, minus the predicted ones.
-        squared_m2: (M,) squared length of that of the markers used, 0 of others.
+        innovation_m: (M, 3) their difference from the predicted ones.
+        squared_m2: (M,) its squared length for markers used, 0 for others.
         trusted: (M,) markers used.
         noise_scale: Square of the factor on their noise.
         displaced: Dofs of limbs found elsewhere than predicted.
-        before_m: (M, 3) markers used in the frame before; None where skin artefacts are not modelled.
+        before_m: (M, 3) markers used in the frame before; None without a model of skin artefacts.
     """
 
     measured_m: Array
@@ -143,12 +142,12 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
             sensor: The markers on the body.
             noise_m: (M,) standard deviation of each marker, m.
             dt_s: Time between frames.
-            unobservable: (nv,) dofs that no marker of the capture moves with.
+            unobservable: (nv,) dofs that move no marker of the capture.
             settings: Noise and gate.
-            spread_m: (M,) spread of one reading of markers whose noise stays, m; None where σ_m and s tell it.
-            inflate: Whether a displaced limb's predicted covariance is inflated.
-            track_loss: Whether a frame in which most markers lie far off ends the track.
-            compress: Arithmetic of the information; both give the same up to rounding.
+            spread_m: (M,) spread of one reading of markers with lasting noise, m; None for the one from σ_m and s.
+            inflate: True to inflate a displaced limb's predicted covariance.
+            track_loss: True to end the track in a frame in which most markers lie far off.
+            compress: Arithmetic of the information; both agree up to rounding.
         """
         s = settings
         self.sensor, self.settings, self.noise_m = sensor, s, noise_m * s.marker_noise_scale
@@ -180,7 +179,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
     def decide(
         self, at: OperatingPoint[State, MarkerReading], frame: Frame, memory: MarkerMemory, notes: Notes
     ) -> MarkerDecision:
-        """Gates the markers and notes which dofs they leave unobserved."""
+        """Gates the markers and notes the dofs that they leave unobserved."""
         s, predicted = self.settings, at.prepared.positions_m
         found = innovations(frame.markers_m, predicted, s.gate_radius_m)
         innovation = frame.markers_m - predicted if found is None else found.innovation_m
@@ -206,20 +205,20 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         )
 
     def _close(self, found: Innovations, noise_scale: float) -> bool:
-        """Whether no marker lies further off than its noise alone lets pass."""
+        """True if every marker passes by its noise alone."""
         limit = np.maximum(noise_scale * self._passes_m2, self.settings.gate_radius_m**2)
         np.minimum(limit, TRACK_LOSS_M**2, out=limit)
         return bool((found.squared_m2 <= limit).all())
 
     def inflate(self, P: Array, decision: MarkerDecision) -> None:
-        """A displaced limb may be elsewhere, and move differently, than predicted."""
+        """Adds to the covariance of a displaced limb's position and velocity."""
         dofs = decision.displaced
         if len(dofs):
             P[dofs, dofs] += DISPLACED_SD_RAD**2
             P[self._nv + dofs, self._nv + dofs] += DISPLACED_SD_RAD_S**2
 
     def linearise(self, at: OperatingPoint[State, MarkerReading], decision: MarkerDecision) -> Information:
-        """Information on the configuration; on (q, v, a) where skin artefacts are modelled."""
+        """Information on the configuration; on (q, v, a) with a model of skin artefacts."""
         state, reading, trusted = at.state, at.prepared, decision.trusted
         innovation = decision.measured_m - reading.positions_m
         if self._skin is None or decision.before_m is None:
@@ -235,7 +234,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         decision: MarkerDecision,
         memory: MarkerMemory,
     ) -> MarkerMemory:
-        """How large the innovations were."""
+        """Running mean of the innovations, and of the cameras' white noise."""
         if self._skin is None and self.settings.innovation_share <= 0.0:
             return memory
         before = None
@@ -258,7 +257,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         return self.expected_m
 
     def channels(self, decision: MarkerDecision) -> Channels:
-        """Of each marker; those of a limb found elsewhere are the state's error and not theirs."""
+        """Innovations by marker, without those of a displaced limb, which are errors of the state."""
         used = decision.trusted
         if len(decision.displaced):
             used = used & ~self._observed.carried_by(decision.displaced)

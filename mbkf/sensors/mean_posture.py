@@ -1,7 +1,7 @@
 """Mean posture, as a block: 0 = q ⊖ q̄ + r, r ~ N(0, σ²), for limbs that neither markers nor inertial sensors observe.
 
-q̄ is the mean of a joint's configuration while it was observed. For longer than a fraction of a second that is a better
-guess than the standing posture or the last one. Used beside inertial sensors, whose trials leave limbs unobserved.
+q̄ is the mean of a joint's configuration while it was observed, a better guess than the standing posture, and after a
+fraction of a second than the last one. Used beside inertial sensors, whose trials leave limbs unobserved.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 
 @dataclass(frozen=True)
 class MeanPostureSettings:
-    """How the mean is taken, and how far a limb is from it.
+    """Mean posture and spread about it.
 
     Attributes:
         mean_posture_s: Time over which a joint's mean posture is taken while it is observed.
-        mean_posture_sd_rad: Its spread about that when nothing observes it, per reading.
+        mean_posture_sd_rad: Spread about it of an unobserved joint, per reading.
     """
 
     mean_posture_s: float = 1.0
@@ -30,7 +30,7 @@ class MeanPostureSettings:
 
 
 class MeanPostureDecision(NamedTuple):
-    """(nq,) mean posture, None where there is none yet, and the frame's notes."""
+    """(nq,) mean posture, None before the first, and the frame's notes."""
 
     mean: Array | None
     notes: Notes
@@ -44,13 +44,7 @@ class MeanPosture(Block[State, None, MeanPostureDecision, "Array | None"]):
     def __init__(
         self, model: Body, dt_s: float, settings: MeanPostureSettings = MeanPostureSettings()
     ) -> None:
-        """Makes the block.
-
-        Args:
-            model: The body.
-            dt_s: Time between frames.
-            settings: How the mean is taken.
-        """
+        """Args: model: the body; dt_s: time between frames; settings: mean and spread."""
         self._model, self.settings = model, settings
         # Hinges (toes) bend with every step: their mean says little.
         self._limb = np.zeros(model.nv, dtype=bool)
@@ -61,7 +55,7 @@ class MeanPosture(Block[State, None, MeanPostureDecision, "Array | None"]):
     def decide(
         self, at: OperatingPoint[State, None], frame: Frame, memory: Array | None, notes: Notes
     ) -> MeanPostureDecision:
-        """The mean so far; which joints it is used for depends on the other blocks."""
+        """The mean so far; the joints that need it depend on the other blocks."""
         return MeanPostureDecision(memory if notes.imus is not None else None, notes)
 
     def linearise(self, at: OperatingPoint[State, None], decision: MeanPostureDecision) -> Rows | None:

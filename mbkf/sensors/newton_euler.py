@@ -19,13 +19,13 @@ from mbkf.sensors.states import LoadedState
 
 @dataclass(frozen=True)
 class NewtonEulerSettings:
-    """How exactly Newton's law holds for a body of rigid segments.
+    """Standard deviations of Newton's law for a body of rigid segments.
 
     Attributes:
-        residual_force_n, residual_moment_nm: Standard deviation of the residual at the pelvis, per component. The law
-            itself is exact; these allow for what the segments' masses and inertias are wrong by.
-        imu_residual_scale: Factor on both where inertial sensors read and a limb has neither marker nor sensor: else
-            that limb would be thrown about to make up for the sensors' errors.
+        residual_force_n, residual_moment_nm: Of the residual at the pelvis, per component. The law itself is exact;
+            they allow for errors of the segments' masses and inertias.
+        imu_residual_scale: Factor on both while inertial sensors read and a limb has neither marker nor sensor: the
+            errors of the sensors would throw that limb about.
     """
 
     residual_force_n: float = 2.0
@@ -38,7 +38,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
 
     Attributes:
         balance: Newton–Euler equations.
-        settings: How exactly they hold.
+        settings: Standard deviations.
     """
 
     kind = "law"
@@ -52,7 +52,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where other wrenches stand: of other contacts, and of what no instrument shows, if the state has them."""
+        """Keeps the slices of the wrench of other contacts and of the unseen moment, if the state has them."""
         if SUPPORT in layout:
             self._support, self._support_extra = layout[SUPPORT], layout.extra_index(SUPPORT)
         if UNSEEN_MOMENT in layout:
@@ -62,7 +62,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         """The law's rows at a state; they do not depend on the frame."""
         nv, wrenches, support, unseen = len(state.v), state.w, self._support, self._unseen
         if support is not None:
-            # At the root a wrench is the same wherever it acts: that of other parts adds to the right foot's.
+            # At the root a wrench counts alike wherever it acts: that of other parts adds to the right foot's.
             wrenches = wrenches.copy()
             wrenches[:6] += state.extra[self._support_extra]
         root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
@@ -82,11 +82,11 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     def decide(
         self, at: OperatingPoint[LoadedState, Rows], frame: Frame, memory: None, notes: Notes
     ) -> Notes:
-        """Depends on what the blocks after this one observe."""
+        """The notes, to which the blocks after this one add."""
         return notes
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
-        """The prepared rows, loosened where a limb is observed by nothing while inertial sensors read."""
+        """The prepared rows, loosened for a limb without marker and sensor while inertial sensors read."""
         rows = at.prepared
         if decision.imus is None or not len(decision.unobserved):
             return rows

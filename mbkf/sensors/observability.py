@@ -1,4 +1,4 @@
-"""Which degrees of freedom markers determine: ranks of H and of the observability matrix (thesis eq. 4.14)."""
+"""Degrees of freedom that markers determine: ranks of H and of the observability matrix (thesis eq. 4.14)."""
 
 from __future__ import annotations
 
@@ -6,19 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array, BoolArray, read_only
+from mbkf.conventions import Array, read_only
 from mbkf.errors import ShapeError
 from mbkf.model.body import Body
 from mbkf.model.clinical import dof_names
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 RANK_TOLERANCE = 1e-6
-"""Singular values below this part of the largest one count as zero."""
+"""Singular values below this share of the largest one count as zero."""
 
 SHARE_THRESHOLD = 0.01
-"""A dof is called unobserved when more than this share of it lies in the null space."""
+"""A dof is unobserved if more than this share of it lies in the null space."""
 
 BENT_POSTURES = 4
 _BEND_RAD = 0.35
@@ -26,15 +27,15 @@ _BEND_RAD = 0.35
 
 @dataclass(frozen=True)
 class Observability:
-    """What markers say about a body, in several postures; P postures, the first of them standing straight.
+    """Observability of a body by markers in P postures, the first of them standing straight.
 
     Attributes:
         dofs: (nv,) names of the tangent dofs.
-        ranks: (P,) rank of the marker Jacobian H; nv where every dof is determined.
-        state_ranks: (P,) rank of [H; HF; HF²; …] for positions and velocities; 2 nv where it is full.
-        unobserved_share: (P, nv) share of each dof in the null space of H: 0 fully seen, 1 not at all.
+        ranks: (P,) rank of the marker Jacobian H; nv if every dof is determined.
+        state_ranks: (P,) rank of [H; HF; HF²; …] for positions and velocities; 2 nv if it is full.
+        unobserved_share: (P, nv) share of each dof in the null space of H: 0 fully seen, 1 unseen.
         sd: (P, nv) standard deviation that one frame leaves on each dof, rad (m for the pelvis's
-            translations); infinite where it is not determined.
+            translations); infinite for an undetermined dof.
     """
 
     dofs: tuple[str, ...]
@@ -45,13 +46,13 @@ class Observability:
 
     @property
     def complete(self) -> bool:
-        """Whether positions and velocities of all dofs are determined in every posture."""
+        """True if positions and velocities of all dofs are determined in every posture."""
         nv = len(self.dofs)
         return bool((self.ranks == nv).all() and (self.state_ranks == 2 * nv).all())
 
     @property
     def typical_sd(self) -> Array:
-        """(nv,) median of ``sd`` over the bent postures; infinite where most do not determine the dof."""
+        """(nv,) median of ``sd`` over the bent postures; infinite if most do not determine the dof."""
         return np.asarray(np.median(self.sd[1:], axis=0))
 
     @property
@@ -61,7 +62,7 @@ class Observability:
 
     @property
     def sometimes_unobserved(self) -> tuple[str, ...]:
-        """Dofs that are determined in some postures only (a straight elbow hides the arm's turning, say)."""
+        """Dofs that are determined in some postures only (a straight elbow hides the turn of the arm)."""
         hidden = self.unobserved_share > SHARE_THRESHOLD
         return self._named(np.any(hidden, axis=0) & ~np.all(hidden, axis=0))
 
@@ -69,19 +70,18 @@ class Observability:
         return tuple(name for name, here in zip(self.dofs, chosen, strict=True) if here)
 
 
-def numerical_rank(matrix: Array, tolerance: float = RANK_TOLERANCE) -> int:
-    """Rank of a matrix (m, n): singular values above ``tolerance`` times the largest one."""
-    return int(np.sum(_above(np.linalg.svd(matrix, compute_uv=False), tolerance)))
+def numerical_rank(matrix: Array) -> int:
+    """Rank of a matrix (m, n): number of singular values above the tolerance."""
+    return int(np.linalg.matrix_rank(matrix, rtol=RANK_TOLERANCE))
 
 
-def null_space(matrix: Array, tolerance: float = RANK_TOLERANCE) -> Array:
-    """(n, n − rank) orthonormal basis of the directions that a matrix (m, n) does not see."""
-    _, singular, directions = np.linalg.svd(matrix, full_matrices=True)
-    return directions[int(np.sum(_above(singular, tolerance))) :].T
+def null_space(matrix: Array) -> Array:
+    """(n, n − rank) orthonormal basis of the null space of a matrix (m, n)."""
+    return np.asarray(scipy.linalg.null_space(matrix, rcond=RANK_TOLERANCE))
 
 
 def observability_matrix(measurement: Array, plant: Array) -> Array:
-    """[H; HF; HF²; …] (thesis eq. 4.14), as far as its rows are not all zero and at most n blocks.
+    """[H; HF; HF²; …] (thesis eq. 4.14): at most n blocks, without those that are zero.
 
     Args:
         measurement: (m, n) H.
@@ -109,13 +109,13 @@ def kinematic_plant(nv: int) -> Array:
     return plant
 
 
-def generic_postures(model: Body, bent: int = BENT_POSTURES) -> Array:
-    """(1 + bent, nq) postures: standing straight, then every dof bent by about 20° in fixed random ways.
+def generic_postures(model: Body) -> Array:
+    """(P, nq) postures: standing straight, then every dof bent by about 20° in fixed random ways.
 
-    Bent postures show what markers determine in general; the straight one shows what they lose by symmetry.
+    Bent postures show the observability in general; the straight one lacks some by symmetry.
     """
-    rng = np.random.default_rng(18)
-    bends = rng.uniform(0.5, 1.5, (bent, model.nv)) * rng.choice((-1.0, 1.0), (bent, model.nv)) * _BEND_RAD
+    rng, size = np.random.default_rng(18), (BENT_POSTURES, model.nv)
+    bends = rng.uniform(0.5, 1.5, size) * rng.choice((-1.0, 1.0), size) * _BEND_RAD
     neutral = model.neutral()
     return np.array([neutral, *(model.integrate(neutral, bend) for bend in bends)])
 
@@ -160,8 +160,3 @@ def _one_frame_sd(weighted: Array, share: Array) -> Array:
     """(nv,) square root of the diagonal of (HᵀR⁻¹H)⁺; infinite for dofs with a share in the null space."""
     inverse = np.linalg.pinv(weighted, rcond=RANK_TOLERANCE)
     return np.where(share > SHARE_THRESHOLD, np.inf, np.linalg.norm(inverse, axis=1))
-
-
-def _above(singular: NDArray, tolerance: float) -> BoolArray:
-    largest = singular[0] if singular.size else 0.0
-    return (singular > tolerance * largest) & (largest > 0.0)

@@ -1,9 +1,9 @@
 """Pelvis residual of a forced body, as a block: 0 = τ_p(q, v, u) + r, r ~ N(0, diag(σ_F² I₃, σ_M² I₃)).
 
 τ_p are the six generalised forces at the pelvis that neither gravity nor the ground exerts, force N and moment N m in
-pelvis axes (thesis 3.2.3). In truth there are none: what is left of them is the error of body, markers and plates. With
-inertial force states (:data:`mbkf.model.human_dynamics.FORCE_STATES`) this reading is what ties plates to motion. An
-infinite σ leaves the residual a random walk, as in the thesis.
+pelvis axes (thesis 3.2.3): errors of body, markers and plates. With inertial force states
+(:data:`mbkf.model.human_dynamics.FORCE_STATES`) this reading ties plates to motion. An infinite σ leaves the residual a
+random walk, as in the thesis.
 """
 
 from __future__ import annotations

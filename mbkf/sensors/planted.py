@@ -1,9 +1,9 @@
-"""Planted foot, as a block: u = ṗ + r_p and 0 = ω + r_ω, for a loaded foot none of whose markers is seen.
+"""Planted foot, as a block: u = ṗ + r_p and 0 = ω + r_ω, for a loaded foot without a seen marker.
 
-Where keypoints show a foot, which leave its pitch open by several degrees, its sole is level while it lies flat on a
-plate: 0 = (A e_z)_xy + r_l.
+Keypoints leave the pitch of a foot open by several degrees; while it lies flat on a plate, its sole is level:
+0 = (A e_z)_xy + r_l.
 
-The point p under the centre of pressure moves as the floor does, whether the foot is flat or rolls: u is zero, or the
+The point p under the centre of pressure moves with the floor, under a flat as under a rolling foot: u is zero, or the
 velocity of the belt. A flat foot does not turn either, nor do the toes once the load is on them and the heel rises. The
 derivative by the configuration vanishes where the reading is met and is left out.
 """
@@ -26,13 +26,13 @@ from mbkf.sensors.layout import Layout
 
 @dataclass(frozen=True)
 class PlantedSettings:
-    """How still a loaded foot stands.
+    """Standard deviations of a loaded foot's rest.
 
     Attributes:
-        planted_speed_sd, planted_turn_sd: Standard deviations of the point's velocity on the floor, m/s, and of the
-            turning of what lies flat, rad/s.
-        belt_speed_share: The same of the belt's speed, as a share of it.
-        level_sd_rad: How far from level a flat sole is per frame, where only keypoints show the foot, rad.
+        planted_speed_sd, planted_turn_sd: Of the point's velocity on the floor, m/s, and of the angular velocity of a
+            flat sole, rad/s.
+        belt_speed_share: Of the belt's speed, as a share of it.
+        level_sd_rad: Of a flat sole's tilt from level per frame, for a foot that only keypoints show, rad.
     """
 
     planted_speed_sd: float = 0.03
@@ -42,7 +42,7 @@ class PlantedSettings:
 
 
 class PlantedDecision(NamedTuple):
-    """What stands still on the floor, the segments of feet whose soles are level, and the floor's velocity, m/s."""
+    """Feet and toes at rest on the floor, segments of feet with level soles, and the floor's velocity, m/s."""
 
     still: tuple[Planted, ...]
     level: tuple[str, ...]
@@ -53,9 +53,9 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
     """Loaded feet without a marker in sight, and flat ones that keypoints show.
 
     Attributes:
-        detector: Finds what the feet stand on.
-        settings: How still they stand.
-        keypoints: Whether keypoints show the feet.
+        detector: Decides the contact of the feet; a block before this one calls it in every frame.
+        settings: Standard deviations.
+        keypoints: True if keypoints show the feet.
     """
 
     prior = True
@@ -67,27 +67,20 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         settings: PlantedSettings = PlantedSettings(),
         keypoints: bool = False,
     ) -> None:
-        """Makes the block.
-
-        Args:
-            model: The body.
-            detector: Finds what the feet stand on; a block before this one asks it in every frame.
-            settings: How still they stand.
-            keypoints: Whether keypoints show the feet.
-        """
+        """Args: the attributes; model: the body."""
         self.keypoints = keypoints
         self._model, self.detector, self.settings = model, detector, settings
         self._dof = [model.joint(segment).v.start for segment in model.roles.feet]
         self._v = 0
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where velocities stand in the state."""
+        """Keeps the first component of the velocities."""
         self._v = layout.v.start
 
     def decide(
         self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes
     ) -> PlantedDecision:
-        """What of which foot stands still, and which soles are level."""
+        """Feet or toes at rest, and level soles."""
         contact = notes.contact
         if contact is None or not (self.keypoints or len(notes.unmarked)):
             return PlantedDecision((), ())
@@ -105,7 +98,7 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         return PlantedDecision(still, level, contact.floor_m_s)
 
     def linearise(self, at: OperatingPoint[State, None], decision: PlantedDecision) -> list[Rows]:
-        """Rows on the velocity, and on the configuration where a sole is level."""
+        """Rows on the velocity, and on the configuration for level soles."""
         s, state, floor = self.settings, at.state, decision.floor_m_s
         sds = math.hypot(s.planted_speed_sd, s.belt_speed_share * math.hypot(*floor)), s.planted_turn_sd
         found = [
@@ -125,15 +118,15 @@ def standing_still(
     turn_sd: float,
     floor_m_s: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[Array, Array]:
-    """Whitened rows (k, nv) on the velocity and their innovations (k,): three, and three more for what lies flat.
+    """Whitened rows (k, nv) on the velocity and their innovations (k,): three, and three more for a flat sole.
 
     Args:
         model: The body.
         q: (nq,) configuration.
         v: (nv,) velocity.
         planted: The foot or its toes.
-        speed_sd: How still the point stands on the floor, m/s.
-        turn_sd: How little what lies flat turns, rad/s.
+        speed_sd: Standard deviation of the point's velocity on the floor, m/s.
+        turn_sd: That of the angular velocity of a flat sole, rad/s.
         floor_m_s: Horizontal velocity of the floor.
     """
     jacobian = model.segment_jacobian(q, planted.segment, planted.point_m)
@@ -151,7 +144,7 @@ def lying_level(model: Body, q: Array, segment: str, level_sd_rad: float) -> tup
         model: The body.
         q: (nq,) configuration.
         segment: The foot.
-        level_sd_rad: How far from level it is.
+        level_sd_rad: Standard deviation of its tilt.
     """
     joint = model.joint(segment).joint_id
     frames, spatial = model.frames_and_jacobian(q)

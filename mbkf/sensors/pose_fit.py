@@ -26,7 +26,7 @@ class PoseFit:
         q: (nq,) configuration.
         rms_m: RMS distance of the markers used, m.
         covariance: (nv, nv) of q in its tangent space.
-        converged: Whether the iteration settled.
+        converged: True if the iteration settled.
     """
 
     q: Array
@@ -38,8 +38,8 @@ class PoseFit:
 def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
     """A first pose from the markers of each segment in turn (Wahba's problem, SVD solution of Markley 1988).
 
-    Each segment turns about its proximal joint so that its markers point where they were measured; the little weight
-    given to the parent's orientation decides what the markers leave open.
+    Each segment turns about its proximal joint so that its markers point where they were measured; a small weight of
+    the parent's orientation determines the rest.
 
     Args:
         sensor: The markers on the body.
@@ -89,7 +89,7 @@ def _with_limbs(sensor: MarkerSensor, target_m: Array, seen: BoolArray, poses: A
     Args:
         sensor: The markers on the body.
         target_m: (N, M, 3) measured positions.
-        seen: (N, M) whether a marker was measured.
+        seen: (N, M) measured markers.
         poses: (N, nq) poses whose joints are neutral.
     """
     names = np.array(sensor.segments)
@@ -115,7 +115,7 @@ def fit_pose(
     start: Array,
     max_iterations: int = 30,
 ) -> PoseFit:
-    """The most likely pose given one frame of markers and the weak posture prior.
+    """Most likely pose given one frame of markers and the weak posture prior.
 
     Args:
         sensor: The markers on the body.
@@ -123,7 +123,7 @@ def fit_pose(
         measured_m: (M, 3) measured positions, NaN where missing.
         noise_m: (M,) marker noise, m.
         start: (nq,) first guess.
-        max_iterations: Most iterations.
+        max_iterations: Largest number of iterations.
     """
     seen = np.asarray(~np.isnan(measured_m).any(axis=1))
     weights = 1.0 / noise_m[seen]

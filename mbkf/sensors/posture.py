@@ -1,7 +1,7 @@
 """Posture prior, as a block: 0 = θ(q) + r, r ~ N(0, diag(k σ_j)²), θ each joint's rotation vector from neutral.
 
-σ_j is the spread of the joint's angle among people and k a factor. A dof without markers so stays near where people
-keep it, while an observed one is moved by less than its own noise.
+σ_j is the spread of the joint's angle among people and k a factor. A dof without markers stays near the posture of
+people; an observed one moves by less than its own noise.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mbkf.sensors.posture_sensor import PostureSensor
 
 
 def posture_information(deviation: Array, jacobian: Array, weights: Array) -> Information:
-    """What reading zero deviation says about the configuration (nv); no readings of an instrument.
+    """Information of a zero deviation on the configuration (nv), without readings of an instrument.
 
     Args:
         deviation: (nv,) of every dof, rad (:meth:`PostureSensor.deviation`).
@@ -33,8 +33,8 @@ class PostureSettings:
 
     Attributes:
         posture_scale: Factor k on the body's table of spreads, per frame.
-        unseen_posture: Factor on the prior's weight for joints that nothing observes: repeated in every frame, it would
-            soon outweigh what was known before. 1 leaves it.
+        unseen_posture: Factor on the prior's weight for unobserved joints: repeated in every frame, the full weight
+            would soon outweigh earlier readings.
     """
 
     posture_scale: float = 1.0
@@ -66,32 +66,25 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
         settings: PostureSettings,
         dilution: Array | None = None,
     ) -> None:
-        """Makes the block.
-
-        Args:
-            sensor: Deviation of every joint from neutral.
-            unobservable: (nv,) dofs that no marker of the capture moves with; they have no prior.
-            settings: Its weight.
-            dilution: (nv,) further factor on the spread of each dof, None for 1.
-        """
+        """Args: the attributes; unobservable: (nv,) dofs without a prior; dilution: (nv,) factor on their spreads."""
         self.sensor, self.settings = sensor, settings
         self._weights = sensor.weights(settings.posture_scale, unobservable)
         if dilution is not None:
             self._weights = self._weights / dilution
 
     def prepare(self, state: State, memory: None) -> PreparedPosture:
-        """What the prior says while every segment is observed."""
+        """The prior's information while every segment is observed."""
         deviation, jacobian = self.sensor.deviation(state.q)
         return PreparedPosture(deviation, jacobian, self._information(deviation, jacobian, self._weights))
 
     def decide(
         self, at: OperatingPoint[State, PreparedPosture], frame: Frame, memory: None, notes: Notes
     ) -> Notes:
-        """Depends on which joints are observed."""
+        """The notes, which list unobserved joints."""
         return notes
 
     def linearise(self, at: OperatingPoint[State, PreparedPosture], decision: Notes) -> Information:
-        """Information on the configuration, of less weight for joints that nothing observes."""
+        """Information on the configuration, of less weight for unobserved joints."""
         unobserved, prepared = decision.unobserved, at.prepared
         if not len(unobserved) or self.settings.unseen_posture == 1.0:
             return prepared.information

@@ -25,7 +25,7 @@ class PostureSensor:
     Attributes:
         dofs: (n,) tangent indices with a prior.
         sd: (n,) spread of each, rad.
-        tree: The body's compiled equations; None where there is no kernel, or neutral is not Pinocchio's.
+        tree: The body's compiled equations; None without a kernel, or if neutral is not Pinocchio's.
     """
 
     def __init__(self, model: Body) -> None:
@@ -45,7 +45,7 @@ class PostureSensor:
         return PostureReading(deviation[self.dofs], jacobian[self.dofs])
 
     def weights(self, scale: float, unobservable: BoolArray) -> Array:
-        """(nv,) 1/sd of each dof's reading, 0 where there is none: for :func:`posture_information`."""
+        """(nv,) 1/sd of each dof's reading, 0 without one, for :func:`mbkf.sensors.posture.posture_information`."""
         weights = np.zeros(self.model.nv)
         weights[self.dofs] = 1.0 / (scale * self.sd)
         weights[unobservable] = 0.0
@@ -54,8 +54,8 @@ class PostureSensor:
     def deviation(self, q: Array) -> tuple[Array, Array]:
         """Deviation (nv,) of every dof, rad, and its Jacobian (nv, nv).
 
-        The root is set aside, for its turn may be far from neutral. Several blocks ask at the same configuration, so
-        the last answer is kept.
+        The root is left out, for its turn may be far from neutral. Several blocks need the same configuration, so the
+        last result is kept.
         """
         if self._last is not None and self._last[0] is q:
             return self._last[1]
@@ -64,12 +64,7 @@ class PostureSensor:
         return found
 
     def from_posture(self, start: Array, q: Array) -> tuple[Array, Array]:
-        """Rotation (nv,) of every dof from another posture, rad, and its Jacobian (nv, nv) by q; the root is set aside.
-
-        Args:
-            start: (nq,) configuration with the other posture.
-            q: (nq,) configuration.
-        """
+        """Rotation (nv,) of all dofs but the root's from ``start`` to q, rad, and its Jacobian (nv, nv) by q."""
         tree = self.model.tree
         return self._from(start, q) if tree is None else tree.deviation(q, start)
 

@@ -1,10 +1,9 @@
 """Posture and rest, as a block: 0 = θ_j(q) + r, r ~ N(0, (k σ_j)²) and 0 = v_j + r, r ~ N(0, σ_v²) for every dof j.
 
 θ is each joint's rotation vector from the neutral posture, σ_j its spread among people, k a factor
-(:mod:`mbkf.sensors.posture`). Both readings are weak and repeated in every frame; dofs that no marker of the capture
-moves with have neither. The torque-state filter needs them for every dof, because its velocities are known through
-forces alone where markers are out of sight; the other filters hold back unobserved joints only
-(:mod:`mbkf.sensors.unobserved`).
+(:mod:`mbkf.sensors.posture`). Both readings are weak and repeated in every frame; dofs that move no marker of the
+capture have neither. The torque-state filter needs them for every dof, since without markers it knows velocities
+through forces alone; the other filters damp unobserved joints only (:mod:`mbkf.sensors.unobserved`).
 """
 
 from __future__ import annotations
@@ -31,21 +30,14 @@ class PostureAndRest(Block[State, None, None, None]):
     def __init__(
         self, sensor: PostureSensor, unobservable: BoolArray, posture_scale: float, rest_sd: float
     ) -> None:
-        """Makes the block.
-
-        Args:
-            sensor: Deviation of every joint from neutral.
-            unobservable: (nv,) dofs that no marker of the capture moves with.
-            posture_scale: Factor k on the body's table of spreads, per reading.
-            rest_sd: σ_v, rad/s or m/s, per reading.
-        """
+        """Args: the attributes; unobservable: (nv,) dofs without readings; posture_scale: k; rest_sd: σ_v, rad/s."""
         self.sensor = sensor
         self._free = np.flatnonzero(~unobservable[sensor.dofs])
         self._posture_sd = posture_scale * sensor.sd[self._free]
         self._moving, self._certainty = np.flatnonzero(~unobservable), rest_sd**-2
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where velocities stand in the state."""
+        """Keeps the indices of the velocities."""
         self._nv, self._v, self._stop = layout.nv, layout.v.start + self._moving, layout.v.stop
 
     def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> None:

@@ -1,4 +1,4 @@
-"""Skin that slides: marker errors that stay for a while (Gauss–Markov) instead of being new in every frame.
+"""Sliding skin: lasting marker errors (Gauss–Markov).
 
 Each marker carries an artefact state s' = ρ s + noise of standard deviation σ. With y = h(q) + s, the state before is
 known given q, so it is eliminated (Bryson & Henrikson 1968): y_k − ρ y_{k−1} reads h(q_k) − ρ h(q_{k−1}) with white
@@ -19,7 +19,7 @@ class SkinMarkers:
 
     Attributes:
         sensor: The markers on the body.
-        rho: Share of an artefact that is left after a frame.
+        rho: Share of an artefact that remains after a frame.
         dt_s: Time between frames.
     """
 
@@ -59,8 +59,8 @@ class SkinMarkers:
             a: (nv,) acceleration.
             reading: The sensor's at q.
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
-            trusted: (M,) markers that count; none of them missing.
-            before_m: (M, 3) what was measured in the frame before, NaN where nothing (credible) was.
+            trusted: (M,) markers that count, all of them seen.
+            before_m: (M, 3) positions measured in the frame before; NaN without a credible one.
         """
         dt, rho, nv = self.dt_s, self.rho, len(v)
         known = trusted & ~np.isnan(before_m).any(axis=1)

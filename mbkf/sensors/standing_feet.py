@@ -1,13 +1,13 @@
-"""Feet that stand, as a block, for a body that no camera sees: they do not move, and their soles lie on the floor.
+"""Standing feet, as a block, for a body without cameras: they do not move, and their soles lie on the floor.
 
 A foot whose own sensor is at rest lies flat on the floor: neither its sole's middle nor the foot itself moves,
 
     0 = u + r_u,  0 = ω + r_ω,  0 = z_heel + r_z,  0 = z_ball + r_z
 
-as far as it does not turn all the same: in walking it rolls from heel to ball even where its sensor is calm.
+with a spread that grows with its angular velocity: in walking it rolls from heel to ball even while its sensor is calm.
 A foot that carries weight otherwise rolls over the lower end of its sole, which hardly moves: 0 = u + ρ_u, 0 = z + ρ_z.
-u and ω are told in the foot's axes, with their derivatives by the whole posture. The floor is level, at height 0.
-A foot that has been at rest for longer than a step takes stays where it stands: 0 = (p − p₀)_xy + r_p, p₀ where it was.
+u and ω are in the foot's axes, with their derivatives by the whole posture. The floor is level, at height 0.
+A foot at rest for longer than a step takes stays at its place p₀: 0 = (p − p₀)_xy + r_p.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ FOOT_REST = "feet at rest"
 
 @dataclass(frozen=True)
 class StandingSettings:
-    """How still feet stand, per frame. What makes them move lasts for many frames, so that each counts for little.
+    """Spreads of standing feet, per frame. Their errors last for many frames, so that each frame counts for little.
 
     Attributes:
-        standing_speed_m_s, standing_turn_rad_s: Spread of the velocity of a foot at rest, per frame.
+        standing_speed_m_s, standing_turn_rad_s: Spread of the velocity of a foot at rest.
         standing_height_m: Spread of its heel's and ball's height.
         rolling_speed_m_s, rolling_height_m: The same of the lower end of a sole that rolls.
         standing_lever_m: A foot at rest that still turns rolls over some point of its sole, this far from its middle.
-        stance_s: For so long it does: it errs alike in all frames of that time, by its lever times its turning in
-            velocity and times half the turn in height.
-        stays_after_s, staying_m: A foot that has been at rest for so long stays where it is, with this spread.
+        stance_s: Duration of that roll: the error is alike in all its frames, in velocity by lever times angular
+            velocity, in height by lever times half the turn.
+        stays_after_s, staying_m: A foot at rest for this long stays in its place, with this spread.
     """
 
     standing_speed_m_s: float = 0.02
@@ -57,17 +57,17 @@ class StandingSettings:
 
 
 Places = tuple[Array | None, Array | None]
-"""(2,) where right and left foot stay on the floor, m; None for one that does not."""
+"""(2,) places on the floor at which right and left foot stay, m; None for a foot that does not."""
 
 
 class StandingDecision(NamedTuple):
-    """Which feet are at rest, which roll, and where feet stay.
+    """Feet at rest and feet that roll.
 
     Attributes:
         at_rest: Feet at rest, 0 right and 1 left.
-        turning_rad_s: How fast each of them turns all the same.
-        rolling: Feet that bear otherwise.
-        places: Where feet stay.
+        turning_rad_s: Angular velocity of each of them.
+        rolling: Other feet that carry weight.
+        places: Places at which feet stay.
     """
 
     at_rest: tuple[int, ...] = ()
@@ -77,7 +77,7 @@ class StandingDecision(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """For how many frames right and left foot have been at rest, and where they stay since."""
+    """Number of frames for which right and left foot have been at rest, and the places at which they stay."""
 
     frames: tuple[int, int] = (0, 0)
     places: Places = (None, None)
@@ -100,9 +100,9 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         Args:
             model: The body.
             dt_s: Time between frames.
-            settings: How still its feet stand.
-            standing_q: (nq,) a posture in which it stood, whose heels and balls touched the floor; None for soles that
-                are level as the body has them.
+            settings: Spreads.
+            standing_q: (nq,) a posture in which heels and balls touched the floor; None for soles that are level in
+                the body file.
         """
         self._model, self.settings = model, settings
         self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
@@ -115,13 +115,13 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
             self._on_floor_m = ends - ends.min(axis=1, keepdims=True)
 
     def begin(self) -> Rest:
-        """No foot was at rest yet."""
+        """Memory without a foot at rest."""
         return Rest()
 
     def decide(
         self, at: OperatingPoint[State, None], frame: Frame, memory: Rest, notes: Notes
     ) -> StandingDecision:
-        """By the feet's own sensors, else by what carries weight."""
+        """By the feet's own sensors, else by the contact decision."""
         rest = frame.readings.get(FOOT_REST)
         at_rest = tuple(f for f in (0, 1) if rest is not None and rest[f] > 0.5)
         feet, contact = self._feet.at(at.state.q, at.state.v), notes.contact
@@ -132,12 +132,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         return StandingDecision(at_rest, turning, rolling, (right, left))
 
     def _may_roll(self, feet: FeetMotion, foot: int) -> bool:
-        """Whether a foot that is taken to bear is slow enough: one in swing, close above the floor, would be held back.
-
-        Args:
-            feet: The feet.
-            foot: 0 right, 1 left.
-        """
+        """True for a loaded foot that is slow: a foot in swing, close above the floor, would be held back."""
         lowest = min(feet.soles[foot][:SOLE_ENDS], key=lambda point: point[2])
         return feet.speed(foot, lowest, (0.0, 0.0)) < STANDING.speed_m_s
 
@@ -148,7 +143,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         decision: StandingDecision,
         memory: Rest,
     ) -> Rest:
-        """For how long feet have been at rest, and where they then stay."""
+        """Durations of rest, and places at which feet then stay."""
         right, left = (memory.frames[f] + 1 if f in decision.at_rest else 0 for f in (0, 1))
         places: list[Array | None] = []
         for foot, frames in enumerate((right, left)):
@@ -192,13 +187,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         return found
 
     def _still_rows(self, foot: int, point_m: Array, sds: Array) -> Rows:
-        """Rows of a world point of a foot that does not move, and of the foot that does not turn where six are asked.
-
-        Args:
-            foot: 0 right, 1 left.
-            point_m: (3,) the point.
-            sds: (3,) or (6,) spreads, m/s and rad/s.
-        """
+        """Rows of a foot's world point (3,) at rest, with spreads (3,) m/s; (6,) for a foot that does not turn."""
         joint = self._model.joint(self._model.roles.feet[foot]).joint_id
         by_q, by_v = pin.getJointVelocityDerivatives(self._model.pin_model, self._data, joint, pin.LOCAL)
         to_point = np.eye(6)
@@ -207,27 +196,12 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         return Rows(np.hstack([to_point @ by_q, to_point @ by_v]), -to_point @ self._data.v[joint].vector)
 
     def _place_rows(self, q: Array, foot: int, point_m: Array, place_m: Array) -> Rows:
-        """Rows of a world point of a foot that stays where it was.
-
-        Args:
-            q: (nq,) configuration.
-            foot: 0 right, 1 left.
-            point_m: (3,) the point.
-            place_m: (2,) where it was.
-        """
+        """Rows of a foot's world point (3,) that stays at a place (2,)."""
         jacobian = self._model.segment_jacobian(q, self._model.roles.feet[foot], point_m)
         sd = self.settings.staying_m
         return Rows(jacobian[:2] / sd, (place_m - point_m[:2]) / sd)
 
     def _floor_rows(self, q: Array, foot: int, point_m: Array, height_m: float, sd_m: float) -> Rows:
-        """A row of a world point of a foot that lies on the floor.
-
-        Args:
-            q: (nq,) configuration.
-            foot: 0 right, 1 left.
-            point_m: (3,) the point.
-            height_m: How high it is on the body when it touches the floor.
-            sd_m: Spread of that.
-        """
+        """A row of a foot's world point (3,) whose height, when the sole touches the floor, is known with a spread."""
         jacobian = self._model.segment_jacobian(q, self._model.roles.feet[foot], point_m)
         return Rows(jacobian[2:3] / sd_m, np.array([(height_m - point_m[2]) / sd_m]))

@@ -1,4 +1,4 @@
-"""States of which a block needs more than every filter's state has: accelerations, foot wrenches, forces."""
+"""Protocols of states with more than positions and velocities: accelerations, foot wrenches, forces."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Joints that nothing observes, as a block: 0 = v + r_v and 0 = a + r_a, for the dofs of segments out of sight.
+"""Unobserved joints, as a block: 0 = v + r_v and 0 = a + r_a, for the dofs of segments out of sight.
 
-Without it their velocity would go on for ever. The spreads are wide, so that it fades within a few frames:
+Without it their velocity would last for ever. The spreads are wide, so that it fades within a few frames:
 σ_v is the joint's movement acceleration over a time, σ_a a multiple of that acceleration.
 """
 
@@ -21,7 +21,7 @@ from mbkf.sensors.states import AcceleratedState
 
 @dataclass(frozen=True)
 class UnobservedSettings:
-    """Damping of joints that nothing observes.
+    """Damping of unobserved joints.
 
     Attributes:
         unseen_velocity_s, unseen_velocity_range: σ_v is the movement acceleration over that time, s, within the range,
@@ -47,17 +47,17 @@ class UnobservedJoints(Block[State, None, Notes, None]):
 
     @classmethod
     def of(cls, movement_sd: Array, settings: UnobservedSettings) -> UnobservedJoints:
-        """The block for a body's movement accelerations (nv,); 0 for dofs that no marker of the capture moves with."""
+        """The block for a body's movement accelerations (nv,); 0 for dofs that move no marker of the capture."""
         s = settings
         velocity = np.clip(s.unseen_velocity_s * movement_sd, *s.unseen_velocity_range)
         return cls(velocity, s.unseen_acceleration_share * movement_sd)
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where velocities, and accelerations after them, stand in the state."""
+        """Keeps the first component of velocities, which accelerations follow."""
         self._v = layout.v.start
 
     def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> Notes:
-        """Depends on which joints are observed."""
+        """The notes, which list unobserved joints."""
         return notes
 
     def linearise(self, at: OperatingPoint[State, None], decision: Notes) -> Rows | None:
@@ -75,12 +75,7 @@ class UnobservedJoints(Block[State, None, Notes, None]):
         return Rows(rows, speed, self._v, vector=vector)
 
     def _weights(self, dofs: NDArray[np.intp], nv: int) -> tuple[Array, Array]:
-        """Rows on velocities and accelerations, and weights of the first; kept while the same are unobserved.
-
-        Args:
-            dofs: (n,) unobserved ones.
-            nv: Degrees of freedom.
-        """
+        """Rows on velocities and accelerations of dofs (n,) of nv, and weights of the first; kept for the next call."""
         asked = dofs.tobytes()
         if self._kept is None or self._kept[0] != asked:
             k, rest = np.arange(len(dofs)), self._rest[dofs]

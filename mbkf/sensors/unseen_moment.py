@@ -1,11 +1,11 @@
-"""Moment of what no instrument shows, as a block: arms and head that are held otherwise than taken, masses that differ.
+"""Unseen moment, as a block: that of arms and head in another posture than assumed, and of wrong masses.
 
     dm/dt = −m/τ + noise, standing at m ~ N(0, σ² I₃)          a state, about the pelvis's origin and axes
     0 = [ID(q, v, a) − Σ J_fᵀ w_f]₄₋₆ + m + r                   Newton's law (:mod:`mbkf.sensors.newton_euler`)
 
-Arms that hang forward bend a body's balance for as long as they do. Taken for noise that is new in every frame, their
-moment would be averaged away, and the filter would bend the trunk and the knees instead. The decay is told as a reading
-of zero in every frame, whose spread σ √(τ / 2Δt) leaves a random walk of 2σ²/τ the variance σ².
+Arms that hang forward shift a body's balance all the time. As white noise, their moment would be averaged away, and
+the filter would bend the trunk and the knees instead. The decay is a reading of zero in every frame, whose spread
+σ √(τ / 2Δt) leaves a random walk of 2σ²/τ the variance σ².
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mbkf.sensors.states import LoadedState
 
 @dataclass(frozen=True)
 class UnseenMomentSettings:
-    """What moves besides what instruments show.
+    """Size and duration of the unseen moment.
 
     Attributes:
         unseen_moment_nm: σ, per component.
@@ -39,7 +39,7 @@ class UnseenMoment(Block[LoadedState, None, bool, None]):
     prior = True
 
     def __init__(self, dt_s: float, settings: UnseenMomentSettings = UnseenMomentSettings()) -> None:
-        """Args: time between frames; what is not seen."""
+        """Args: time between frames; size and duration."""
         self.settings = settings
         s = settings
         self._walk = s.unseen_moment_nm * (2.0 / s.unseen_memory_s) ** 0.5
@@ -51,7 +51,7 @@ class UnseenMoment(Block[LoadedState, None, bool, None]):
         return [ExtraState(UNSEEN_MOMENT, np.zeros(3), start_sd, np.full(3, self._walk))]
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where it stands in the state."""
+        """Keeps the slices of the moment."""
         self._slice, self._extra = layout[UNSEEN_MOMENT], layout.extra_index(UNSEEN_MOMENT)
 
     def decide(self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: None, notes: Notes) -> bool:

@@ -1,9 +1,8 @@
-"""How much readings scatter, told by the readings themselves, sample by sample.
+"""White noise of readings, estimated from the readings themselves, sample by sample.
 
-White noise of standard deviation σ has third differences of standard deviation √20 σ. What is read changes them as
-well, but hardly while it is steady. A quarter of all third differences therefore lies below z √20 σ, z the quartile of
-the absolute value of a standard normal number; that level is followed by a Robbins–Monro recursion in its logarithm
-(Robbins & Monro 1951):
+White noise of standard deviation σ has third differences of standard deviation √20 σ, to which a steady signal adds
+hardly anything. A quarter of all third differences therefore lies below z √20 σ, z the quartile of the absolute value
+of a standard normal number; a Robbins–Monro recursion in its logarithm (Robbins & Monro 1951) follows that level:
 
     ln x ← ln x + η (¼ − share of the sample's third differences below x)
 """
@@ -28,12 +27,12 @@ _LEVEL = 0.318639 * 20.0**0.5
 
 @dataclass(frozen=True)
 class WhiteNoise:
-    """What is known of readings' noise after a sample.
+    """Estimate of readings' noise after a sample.
 
     Attributes:
-        sd: Standard deviation of one number; 0 before readings have shown it.
-        least: Noise that is taken for granted: readings are stored in steps of such a size.
-        last: The last samples, three at most, the latest last; NaN where there was no reading.
+        sd: Standard deviation of one number; 0 before the first estimate.
+        least: Least standard deviation: readings are stored in steps of such a size.
+        last: The last samples, three at most, the latest last; NaN without a reading.
     """
 
     sd: float
@@ -41,7 +40,7 @@ class WhiteNoise:
     last: tuple[Array, ...] = ()
 
     def after(self, now: Array) -> WhiteNoise:
-        """With the next sample, of the same shape as those before; NaN where there is no reading."""
+        """The estimate after the next sample, of the same shape as those before; NaN without a reading."""
         now = np.ascontiguousarray(now, dtype=float)
         if len(self.last) < 3:
             return WhiteNoise(self.sd, self.least, (*self.last, now))
@@ -58,12 +57,12 @@ class WhiteNoise:
 
 
 def _first_sd(samples: Sequence[Array], least: float) -> float:
-    """What four samples show at once; 0 where nothing is read."""
+    """Estimate from four samples; 0 without a reading."""
     differences = _third(*samples)
     known = np.sort(differences[~np.isnan(differences)])
     if not known.size:
         return 0.0
-    # As np.quantile has it, which takes half a filter's step.
+    # np.quantile, which takes half a filter's step.
     level = np.interp(QUANTILE * (len(known) - 1), np.arange(len(known)), known)
     return max(least, float(level) / _LEVEL)
 

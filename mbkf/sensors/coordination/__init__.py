@@ -1,1 +1,1 @@
-"""Coordination of limbs that nothing observes with trunk and legs: the prior, and the regression behind it."""
+"""Coordination of unobserved limbs with trunk and legs: the prior, and the regression behind it."""

@@ -1,9 +1,9 @@
 """Coordination prior, as a block: 0 = q_j ⊖ q̂_j(f) + r and 0 = v_j − v̂_j(f) + r', for joints j out of sight.
 
 Arms swing with the legs, toes bend with the foot. Many times a second the block notes the features f, pose and rates of
-trunk and legs, and of every other observed joint its rotation and velocity. When a joint goes out of sight, a ridge
+trunk and legs, and the rotation and velocity of every other observed joint. When a joint goes out of sight, a ridge
 regression on the last seconds (:mod:`mbkf.sensors.coordination.regression`) predicts it from f; the noise is the
-regression's error on blocks of time left out, as long as such errors last.
+regression's error on blocks of time left out, weighted by its correlation time.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from mbkf.sensors.layout import Layout
 from mbkf.sensors.posture_sensor import PostureSensor
 
 NOTED_HZ, BLOCK_S = 25.0, 0.5
-"""How often frames are noted, and how long a block of them is that is left out at a time."""
+"""Rate at which frames are noted, and duration of a block that is left out at a time."""
 
 PACE_S = 0.15
-"""A velocity counts as much as the angle it covers in this time: about the inverse rate of a stride."""
+"""A velocity counts as the angle that it covers in this time: about the inverse rate of a stride."""
 
 LEAST_SD_RAD = 0.02
-"""No joint follows more exactly than this, nor its velocity than this per PACE_S."""
+"""Least error of a predicted joint; of its velocity, this per PACE_S."""
 
 
 @dataclass(frozen=True)
 class CoordinationSettings:
-    """How the regression is learnt and trusted. Tuned on public walks and a run with the right arm hidden for 1 s.
+    """Regression and its errors. Tuned on public walks and a run with the right arm hidden for 1 s.
 
     Attributes:
-        coordination_memory_s: How far back a joint's movement with trunk and legs is looked at; 0 for no such prior.
+        coordination_memory_s: Duration of movement from which a joint's relation is learnt; 0 for no such prior.
         coordination_ridge_rad: Features that vary by less than this hardly predict.
-        coordination_errs_s: How long an error of the prediction lasts.
+        coordination_errs_s: Correlation time of the prediction's error.
     """
 
     coordination_memory_s: float = 5.0
@@ -57,20 +57,20 @@ class NotedFrame(NamedTuple):
 
 
 class Followed(NamedTuple):
-    """How a joint goes with trunk and legs: rows of a relation's targets, its posture and then its velocity."""
+    """Relation of a joint to trunk and legs, and columns of its targets: posture, then velocity."""
 
     relation: Coordination
     columns: NDArray[np.intp]
 
 
 class CoordinationMemory(NamedTuple):
-    """What a trial has shown so far.
+    """State carried from one frame to the next.
 
     Attributes:
-        frame: How many frames have passed.
-        noted: Some of the last ones.
+        frame: Number of frames so far.
+        noted: Some of the last frames.
         gone: Numbers of the joints that are out of sight now.
-        learned: What was learned of them, by their number.
+        learned: Relations of these joints, by their number.
     """
 
     frame: int
@@ -80,16 +80,16 @@ class CoordinationMemory(NamedTuple):
 
 
 class CoordinationDecision(NamedTuple):
-    """What joints out of sight are predicted to do, as far as it was learned.
+    """Predicted movement of joints out of sight with a learned relation.
 
     Attributes:
-        dofs: (n,) theirs.
+        dofs: (n,) their dofs.
         q: (nq,) a configuration with their posture.
         v: (n,) their velocities.
         q_sd, v_sd: (n,) standard deviations of both, per reading.
         gone: Numbers of the joints out of sight.
-        legible: Whether trunk and legs are observed, so that the frame may be noted.
-        unobserved: Dofs that nothing observes.
+        legible: True if trunk and legs are observed, so that the frame may be noted.
+        unobserved: Unobserved dofs.
     """
 
     dofs: NDArray[np.intp]
@@ -102,15 +102,15 @@ class CoordinationDecision(NamedTuple):
     unobserved: NDArray[np.intp]
 
 
-NONE = np.zeros(0)
-"""No numbers."""
+NO_NUMBERS = np.zeros(0)
+"""An empty array."""
 
 
 class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecision, CoordinationMemory]):
-    """Head, arms and toes as they went with trunk and legs.
+    """Head, arms and toes, predicted from trunk and legs.
 
     Attributes:
-        dependents: Dofs of each joint that follows.
+        dependents: Dofs of each predicted joint.
     """
 
     prior = True
@@ -127,8 +127,8 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         Args:
             model: The body.
             dt_s: Time between frames.
-            unobservable: (nv,) dofs that no marker of the capture moves with; they are not predicted.
-            settings: How it learns.
+            unobservable: (nv,) dofs that move no marker of the capture; they are not predicted.
+            settings: Regression and its errors.
         """
         self._model, self._ridge = model, settings.coordination_ridge_rad
         joints = [joint for joint in model.joints.values() if joint.kind != "free"]
@@ -147,22 +147,22 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         self._block = max(1, round(BLOCK_S / noted_s))
         self._keep = max(1, round(settings.coordination_memory_s / noted_s))
         self._first = np.array([own[0] for own in self.dependents], dtype=np.intp)
-        # A reading that errs alike for a while counts once in that time, not in every frame.
+        # A reading with a lasting error counts once in its correlation time, not in every frame.
         self._repeat = max(1.0, settings.coordination_errs_s / dt_s) ** 0.5
         self._v = 0
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where velocities stand in the state."""
+        """Keeps the first component of the velocities."""
         self._v = layout.v.start
 
     def begin(self) -> CoordinationMemory:
-        """Nothing was shown yet."""
+        """Memory without noted frames."""
         return CoordinationMemory(0, (), (), {})
 
     def prepare(self, state: State, memory: CoordinationMemory | None) -> Mapping[int, Followed]:
-        """How the joints that were out of sight in the frame before go with the others, by their number.
+        """Relations of the joints that were out of sight in the frame before, by their number.
 
-        Learned once, when they go; not of those that were observed too little.
+        They are learned once, when a joint goes out of sight, if it was observed long enough.
         """
         if memory is None or not memory.gone:
             return {}
@@ -175,12 +175,19 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         memory: CoordinationMemory,
         notes: Notes,
     ) -> CoordinationDecision:
-        """What the joints out of sight are predicted to do."""
+        """Predicted movement of the joints out of sight."""
         gone, legible = self._out_of_sight(notes)
         learned = {j: one for j, one in at.prepared.items() if j in gone}
         if not learned:
             return CoordinationDecision(
-                notes.unobserved[:0], NONE, NONE, NONE, NONE, gone, legible, notes.unobserved
+                notes.unobserved[:0],
+                NO_NUMBERS,
+                NO_NUMBERS,
+                NO_NUMBERS,
+                NO_NUMBERS,
+                gone,
+                legible,
+                notes.unobserved,
             )
         features, nv = self.features(at.state.q, at.state.v), self._model.nv
         mean, sd = np.zeros((2, 2 * nv))
@@ -220,7 +227,7 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         decision: CoordinationDecision,
         memory: CoordinationMemory,
     ) -> CoordinationMemory:
-        """What this frame showed, and what was learned of joints that are out of sight."""
+        """The noted frames and the relations of joints out of sight."""
         frame, noted, gone = memory.frame + 1, memory.noted, decision.gone
         if frame % self._every == 0 and decision.legible:
             note = self._noted(frame, posterior, decision.unobserved)
@@ -229,17 +236,11 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         return CoordinationMemory(frame, noted, gone, kept)
 
     def features(self, q: Array, v: Array) -> Array:
-        """(p,) pose of trunk and legs and its rates, wherever the body is and whichever way it faces."""
+        """(p,) pose of trunk and legs and its rates, independent of the body's place and heading."""
         return self._features(q, v, self.posture(q))
 
     def _features(self, q: Array, v: Array, posture: Array) -> Array:
-        """:meth:`features` with the rotation of every joint from neutral (nv,).
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity.
-            posture: (nv,) :meth:`posture` at q.
-        """
+        """:meth:`features` with the :meth:`posture` at q."""
         up = self._model.frames(q)[4 * self._root.joint_id : 4 * self._root.joint_id + 2, 2]
         rates = np.concatenate([v[self._root.v][3:], v[self._leading]])
         return np.concatenate([up, posture[self._leading], PACE_S * rates])
@@ -249,7 +250,7 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         return self._posture.deviation(q)[0]
 
     def _out_of_sight(self, notes: Notes) -> tuple[tuple[int, ...], bool]:
-        """Numbers of the joints out of sight, and whether trunk and legs are where the state has them."""
+        """Numbers of the joints out of sight, and True if trunk and legs are observed and the track is not lost."""
         if not len(notes.unobserved):
             return (), not notes.lost
         unseen = np.zeros(self._model.nv, dtype=bool)
@@ -258,7 +259,7 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         return tuple(unseen[self._first].nonzero()[0].tolist()), legible
 
     def _learned(self, memory: CoordinationMemory) -> dict[int, Followed]:
-        """Joints that were observed in the same frames are learned together."""
+        """Relations by number; those of joints that were observed in the same frames are learned together."""
         found = dict(memory.learned)
         fresh = np.array([j for j in memory.gone if j not in found], dtype=np.intp)
         if not len(fresh) or not memory.noted:

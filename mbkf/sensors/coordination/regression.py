@@ -1,9 +1,9 @@
-"""How parts of a body move together, learned from noted frames: a ridge regression with its error on frames left out.
+"""Ridge regression of some joints' movement on that of others, with its error on frames left out.
 
-Targets y are read off features f as ȳ + Wᵀ (f − f̄), the conditional mean of jointly Gaussian variables with a ridge
-λ² on the features' covariance (Bishop, *Pattern Recognition and Machine Learning*, 2006, 2.3.1 and 3.1.4). Frames that
-follow each other carry nearly the same information, so its errors are those on whole blocks of time that it has not
-seen. A target that the plain mean of the other blocks foretells as well keeps that mean.
+Targets y are predicted from features f as ȳ + Wᵀ (f − f̄), the conditional mean of jointly Gaussian variables with a
+ridge λ² on the features' covariance (Bishop, *Pattern Recognition and Machine Learning*, 2006, 2.3.1 and 3.1.4).
+Consecutive frames carry nearly the same information, so the errors are those on whole blocks of time left out. A target
+that the plain mean of the other blocks predicts as well keeps that mean.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mbkf.conventions import Array
 
 LEAST_BLOCKS, FEW_BLOCKS, FEW_SCATTER = 4, 2, 2.0
 """With fewer than four blocks the spread of a left-out block (Student's t of one degree less) is not finite. From two
-on the plain mean is taken then, with so many times the scatter that was seen for its error on four blocks."""
+on the plain mean is used then, with this many times its scatter for its error on four blocks."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Coordination:
         weights: (p, k) W; columns of zeros for targets that keep their mean.
         error_sd: (k,) root mean square error on blocks left out.
         novelty: (p, p) K: a variance is larger by the factor 1 + 1/B + (f − f̄)ᵀ K (f − f̄).
-        blocks: B, how many were shown.
+        blocks: B, number of blocks.
     """
 
     features: Array
@@ -43,7 +43,7 @@ class Coordination:
     blocks: int
 
     def predicted(self, features: Array) -> tuple[Array, Array]:
-        """Mean (k,) and standard deviation (k,) of the targets at features (p,): wider the less such ones were seen."""
+        """Mean (k,) and standard deviation (k,) of the targets at features (p,), wider for unusual features."""
         away = features - self.features
         known, few = 1.0 + 1.0 / self.blocks, (self.blocks - 1) / (self.blocks - 3)
         growth = known + self._reads * (away @ self.novelty @ away)
@@ -51,12 +51,12 @@ class Coordination:
 
     @cached_property
     def _reads(self) -> Array:
-        """(k,) 1 for targets that read the features, 0 for those that keep their mean."""
+        """(k,) 1 for targets that depend on the features, 0 for those that keep their mean."""
         return self.weights.any(axis=0).astype(float)
 
 
 def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: float) -> Coordination | None:
-    """The relation of targets to features, their mean where too few blocks were shown; None where hardly any were.
+    """Relation of targets to features; their mean for few blocks, None for a single one.
 
     A left-out block's error is (I − H_bb)⁻¹ (y − ŷ)_b with the hat matrix H of all frames, without another fit.
 
@@ -64,7 +64,7 @@ def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: floa
         features: (n, p).
         targets: (n, k).
         blocks: (n,) number of the block of time that each frame belongs to.
-        ridge: λ, in the features' unit: what varies by less is hardly read.
+        ridge: λ, in the features' unit: features that vary by less hardly count.
     """
     names = np.unique(blocks)
     if len(names) < FEW_BLOCKS:

@@ -1,4 +1,4 @@
-"""Where the parts of a body that may bear load besides its feet are, and how they move."""
+"""Places and speeds of the parts of a body that may carry load besides its feet."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class BearingPoints:
 
     Attributes:
         points_m: (B, 3) their middles in the world.
-        speeds_m_s: (B,) how fast these move.
+        speeds_m_s: (B,) speeds of the middles.
     """
 
     points_m: Array
@@ -26,16 +26,16 @@ class BearingPoints:
 
 
 class BearingParts:
-    """The parts of a body that may bear load besides its feet, in the order of the body file.
+    """The parts of a body that may carry load besides its feet, in the order of the body file.
 
     Attributes:
         model: The body.
         parts: The parts.
         joint_ids: Index of the joint that carries each one's segment.
         radii_m: (B,) from their middles to the skin.
-        levers_m: (B,) how far from its middle a part's centre of pressure may lie.
-        grips: Whether a part ends a limb and so may hold something: a hand.
-        seat: Place among them of the part on the root, which may sit; -1 for none.
+        levers_m: (B,) largest distance of a part's centre of pressure from its middle.
+        grips: True for a part at the end of a limb, which may hold something: a hand.
+        seat: Place among them of the part on the root, which may sit; -1 without one.
     """
 
     def __init__(self, model: Body) -> None:

@@ -1,15 +1,15 @@
-"""Other contacts, as a block: the wrench s on all parts that bear besides the feet.
+"""Other contacts, as a block: the wrench s on all parts that carry load besides the feet.
 
-    closed      X s = r            nothing else bears: r so small that s is 0
-    open        X s = r            about the middle of the parts that bear: the force is free, its lever and, on a floor
-                                   or a seat, its shear are known to a spread
+    closed      X s = r            only feet carry load: r so small that s is 0
+    open        X s = r            about the middle of the loaded parts: the force is free, its lever and, on a floor or
+                                   a seat, its shear are known to a spread
 
 X moves a wrench from the world's origin to that middle, or to the pelvis. Between frames s is a random walk about the
-same point. Newton's law (:mod:`mbkf.sensors.newton_euler`) has s among its wrenches; it tells of the sum over all parts
-only, so that they have one state, and how they share it follows (:mod:`mbkf.sensors.supports.sharing`).
+same point. Newton's law (:mod:`mbkf.sensors.newton_euler`) has s among its wrenches; it determines the sum over all
+parts only, so that they have one state, which :mod:`mbkf.sensors.supports.sharing` divides.
 
-Which parts bear when is found before a trial is filtered (:mod:`mbkf.sensors.supports.search`) and comes as a reading
-of every frame, flags (B,) under the name :data:`BEARING`.
+The loaded parts are found before a trial is filtered (:mod:`mbkf.sensors.supports.search`) and come as a reading of
+every frame, flags (B,) under the name :data:`BEARING`.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from mbkf.sensors.supports.bearings import BearingParts, BearingPoints
 from mbkf.sensors.supports.sharing import about
 
 BEARING = "bearing"
-"""Name of the readings that say which parts bear."""
+"""Name of the readings that flag the loaded parts."""
 
 
 @dataclass(frozen=True)
 class SupportSettings:
-    """What is expected of other contacts; moments about the middle of what bears.
+    """Spreads of other contacts; moments about the middle of the loaded parts.
 
     Attributes:
-        closed_force_n, closed_moment_nm: How exactly a body without other contacts has none.
+        closed_force_n, closed_moment_nm: Of the zero wrench of a body without other contacts.
         support_force, support_moment: Random walk of their wrench, N/√s and N m/√s.
-        support_force_n: Spread of the force about 0, N: what keeps it from drifting where nothing tells.
-        support_shear_share: Spread of the shear on a floor or a seat, as a share of the force.
-        support_lever_scale: Factor on how far from its middle each part may be pressed.
+        support_force_n: Of the force about 0, N, against drift.
+        support_shear_share: Of the shear on a floor or a seat, as a share of the force.
+        support_lever_scale: Factor on the levers of the parts' centres of pressure.
     """
 
     closed_force_n: float = 0.3
@@ -53,13 +53,13 @@ class SupportSettings:
 
 
 class SupportDecision(NamedTuple):
-    """Parts that bear in a frame.
+    """Parts that carry load in a frame.
 
     Attributes:
-        parts: The parts, in the order of the body's bearings; none where only feet bear.
-        fresh: Whether they have just begun or ceased to.
-        points: Where all parts are.
-        about_m: (3,) middle of those that bear, else the pelvis's origin.
+        parts: The parts, in the order of the body's bearings; empty if only feet carry load.
+        fresh: True if contacts begin or end.
+        points: Places of all parts.
+        about_m: (3,) middle of the loaded parts, else the pelvis's origin.
     """
 
     parts: tuple[int, ...]
@@ -69,23 +69,17 @@ class SupportDecision(NamedTuple):
 
 
 class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
-    """Contacts besides the feet's; remembers the parts that bore in the frame before.
+    """Contacts besides the feet's; its memory holds the parts loaded in the frame before.
 
     Attributes:
-        bearings: Parts that may bear.
-        settings: What is expected of them.
+        bearings: Parts that may carry load.
+        settings: Spreads.
     """
 
     prior = True
 
     def __init__(self, model: Body, dt_s: float, settings: SupportSettings = SupportSettings()) -> None:
-        """Makes the block.
-
-        Args:
-            model: The body.
-            dt_s: Time between frames.
-            settings: What is expected of other contacts.
-        """
+        """Args: model: the body; dt_s: time between frames; settings: spreads."""
         self.bearings, self.settings = BearingParts(model), settings
         self._weight_n = -float(model.pin_model.gravity.linear[2]) * model.mass_kg
         s = settings
@@ -99,17 +93,17 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
         return [ExtraState(SUPPORT, np.zeros(6), self._closed, np.zeros(6))]
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where the wrench stands in the state."""
+        """Keeps the slices of the wrench."""
         self._slice, self._extra = layout[SUPPORT], layout.extra_index(SUPPORT)
 
     def begin(self) -> tuple[int, ...]:
-        """Nothing bears."""
+        """Memory without a loaded part."""
         return ()
 
     def decide(
         self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: tuple[int, ...], notes: Notes
     ) -> SupportDecision:
-        """The parts that the frame's flags name."""
+        """The parts that the frame flags."""
         flags, state = frame.readings.get(BEARING), at.state
         parts = () if flags is None else tuple(np.flatnonzero(np.asarray(flags) > 0.0).tolist())
         points = self.bearings.at(state.q, state.v)
@@ -118,7 +112,7 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
         return SupportDecision(parts, bool(parts) != bool(memory), points, middle)
 
     def inflate(self, P: Array, decision: SupportDecision) -> None:
-        """The wrench's random walk about the middle of what bears; wide where it begins or ends."""
+        """Adds the wrench's random walk about the middle of the loaded parts; wide where a contact begins or ends."""
         if not decision.parts and not decision.fresh:
             return
         shift = about(-decision.about_m) * (self._jump if decision.fresh else self._walk)
@@ -139,11 +133,11 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
         decision: SupportDecision,
         memory: tuple[int, ...],
     ) -> tuple[int, ...]:
-        """The parts that bear."""
+        """The loaded parts."""
         return decision.parts
 
     def _sd(self, wrench: Array, decision: SupportDecision) -> Array:
-        """(6,) spread of the wrench of what bears about its middle."""
+        """(6,) spread of the wrench about the middle of the loaded parts."""
         s, parts = self.settings, list(decision.parts)
         force = max(float(np.linalg.norm(wrench[:3])), 0.1 * self._weight_n)
         points, levers = decision.points.points_m[parts], self.bearings.levers_m[parts]

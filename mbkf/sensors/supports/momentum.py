@@ -1,9 +1,8 @@
-"""The wrench that a body's motion asks for and its plates do not give: ṗ − m g − Σ f, and L̇ − Σ n.
+"""The wrench that a body's motion requires and its plates lack: ṗ − m g − Σ f, and L̇ − Σ n.
 
 Moments are about the centre of mass; p and L are linear and angular momentum (the centroidal momentum: D. E. Orin,
-A. Goswami, IROS 2008). The motion is that of markers alone, so that it does not know of any plate. Momentum less the
-plates' impulse is differentiated, by parabolas over a window (Savitzky and Golay 1964), so that both sides are
-smoothed alike.
+A. Goswami, IROS 2008). The motion is that of markers alone, independent of the plates. Momentum less the plates'
+impulse is differentiated, by parabolas over a window (Savitzky and Golay 1964), so that both sides are smoothed alike.
 """
 
 from __future__ import annotations
@@ -18,12 +17,12 @@ from mbkf.model.body import Body
 from mbkf.numerics.windows import slopes
 
 LEAST_WINDOW = 5
-"""Frames in a window, at least."""
+"""Least number of frames in a window."""
 
 
 @dataclass(frozen=True)
 class WholeBody:
-    """Momentum of a body in motion; NaN where it is not tracked.
+    """Momentum of a body in motion; NaN where untracked.
 
     Attributes:
         centre_m: (T, 3) centre of mass.
@@ -53,7 +52,7 @@ class WholeBody:
         return cls(centre, momentum, np.concatenate([gravity, np.zeros(3)]))
 
     def missing_wrench(self, given: Array, rate_hz: float, window_s: float) -> Array:
-        """(T, 6) force N and moment N m about the centre of mass that act besides weight and what is given.
+        """(T, 6) force N and moment N m about the centre of mass that act besides the weight and a given wrench.
 
         Args:
             given: (T, 6) wrench about the world's origin.

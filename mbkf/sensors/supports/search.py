@@ -1,8 +1,8 @@
-"""Finds which parts of the body bear load besides the feet, and when, before a trial is filtered.
+"""Search for parts of the body that carry load besides the feet, before a trial is filtered.
 
-Where plates read every foot, what the motion of the markers asks for and the plates do not give must act somewhere: its
-line of action leads through the part that bears (:mod:`mbkf.sensors.supports.momentum`). Where a foot stands beside the
-plates, or there are none, parts that lie low and still on the floor bear.
+While plates read every foot, the wrench that the motion of the markers requires and the plates lack acts elsewhere: its
+line of action leads through the loaded part (:mod:`mbkf.sensors.supports.momentum`). While a foot stands beside the
+plates, and without plates, parts that lie low and still on the floor carry load.
 """
 
 from __future__ import annotations
@@ -24,44 +24,44 @@ from mbkf.sensors.supports.momentum import WholeBody
 from mbkf.sensors.supports.seat import sits
 
 WINDOW_S, EDGE_WINDOW_S = 0.25, 0.1
-"""Durations over which a missing wrench is taken: to see that there is one, and when it begins and ends."""
+"""Durations over which a missing wrench is averaged: to detect it, and to time its begin and end."""
 
 LEAST_SHARE, LASTING_SHARE, EDGE_SHARE = 0.08, 0.04, 0.025
-"""A missing force of the first share of body weight is one, lasts as long as it is more than the second over the wide
-window, and begins and ends where it is more than the third over the narrow one."""
+"""Shares of body weight: a force is missing above the first, lasts while it is above the second over the wide window,
+and begins and ends where it is above the third over the narrow one."""
 
 LASTING_S = 0.25
-"""It lasts at least so long: what bodies' masses are wrong by swings faster in a step."""
+"""Least duration: the effect of wrong masses changes faster in a step."""
 
 EDGE_S = 0.15
-"""How far from the wide window's first and last frame its true begin and end are looked for."""
+"""Largest distance of begin and end from the wide window's first and last frame."""
 
 BODY_LEVER_M = 0.02
-"""Moment about the centre of mass, in body weights times m, that scaled bodies are wrong by."""
+"""Error of scaled bodies' moment about the centre of mass, in body weights times m."""
 
 FITS = 2.0
-"""A missing wrench acts on a part whose middle its line of action misses by less than this many deviations."""
+"""Largest distance, in standard deviations, of a missing wrench's line of action from its part's middle."""
 
 SOLE_LEVER_M = 0.1
-"""How far from the middle of a sole its centre of pressure may lie."""
+"""Largest distance of a centre of pressure from the middle of its sole."""
 
 PAIR_PENALTY = 0.5
-"""Two parts must fit better than one by this, squared deviations: they have a share that is free."""
+"""Least advantage of two parts over one, squared deviations: their share is a free parameter."""
 
 ON_FLOOR_M, RESTS_M_S, RESTS_S = 0.05, 0.4, 0.1
-"""A part whose surface is lower than this above the soles' floor, slower, for so long, lies on the floor."""
+"""Largest height over the soles' floor, largest speed and least duration of a part that lies on the floor."""
 
 ALWAYS_SHARE = 0.9
-"""A force that is missing in more than this share of the frames is no contact: mass or plates are wrong."""
+"""A force missing in more than this share of the frames is an error of mass or plates, not a contact."""
 
 
 @dataclass(frozen=True)
 class OtherContacts:
-    """Which parts bear besides the feet.
+    """Parts that carry load besides the feet.
 
     Attributes:
-        flags: (T, B) whether each of the body's bearings bears.
-        remarks: What a missing wrench is that no contact explains, in words.
+        flags: (T, B) loaded parts.
+        remarks: Remarks on missing wrenches that no contact explains.
     """
 
     flags: BoolArray
@@ -71,15 +71,15 @@ class OtherContacts:
 def other_contacts(
     model: Body, q: Array, v: Array, rate_hz: float, loads: FootLoads, read: BoolArray
 ) -> OtherContacts:
-    """Parts that bear in a trial.
+    """Parts that carry load in a trial.
 
     Args:
         model: The body.
         q: (T, nq) configurations from markers alone, NaN where untracked.
         v: (T, nv) velocities.
         rate_hz: Frame rate.
-        loads: What the plates give to the feet.
-        read: (T,) frames in which all plates were recorded, none where there are no plates.
+        loads: Loads of the feet by the plates.
+        read: (T,) frames in which all plates were recorded; all False without plates.
     """
     bearings = BearingParts(model)
     points, speeds = _moving(bearings, q, v)
@@ -88,7 +88,7 @@ def other_contacts(
     reached = np.concatenate([points, soles.mean(axis=2)], axis=1)
     flags, remarks = _missing(bearings, reached, body, rate_hz, loads, judged)
     lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
-    # Beside a part that is seen to bear on the floor, others that lie there bear as well.
+    # Beside a part that carries load on the floor, others that lie there do so as well.
     kneels = (flags & lying).any(axis=1)
     flags |= lying & (kneels | ~judged)[:, None]
     if not read.any() and bearings.seat >= 0:
@@ -115,29 +115,29 @@ def _missing(
     loads: FootLoads,
     judged: BoolArray,
 ) -> tuple[BoolArray, tuple[str, ...]]:
-    """(T, B) parts through which a missing wrench leads, and remarks on what leads through none.
+    """(T, B) parts through which a missing wrench leads, and remarks on wrenches that miss every part.
 
     Args:
         bearings: The parts.
         points: (T, B + 2, 3) their middles, and those of the soles of right and left foot.
         body: The body's momentum.
         rate_hz: Frame rate.
-        loads: What the plates give to the feet.
-        judged: (T,) frames in which they give all that the feet bear.
+        loads: Loads of the feet by the plates.
+        judged: (T,) frames in which plates read all loads of the feet.
     """
     flags = np.zeros((len(points), len(bearings)), dtype=bool)
     given = np.where(judged[:, None], loads.wrench.sum(axis=1), 0.0)
     weight_n = float(np.linalg.norm(body.weight))
     slow, fast = (body.missing_wrench(given, rate_hz, s) for s in (WINDOW_S, EDGE_WINDOW_S))
-    # A window that reaches into frames that cannot be judged cannot be either.
+    # Windows have to lie within judged frames.
     clear = judged & ~dilated(~judged, round(0.5 * WINDOW_S * rate_hz))
     size = np.where(clear, np.linalg.norm(slow[:, :3], axis=1), 0.0)
     lacks = size > LEAST_SHARE * weight_n
     if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
         share = 100.0 * float(np.mean(slow[lacks, 2])) / weight_n
         return flags, (
-            f"the motion asks for {share:+.0f} % of body weight more than the plates read, throughout: the mass, the "
-            "plates' scale or the axes may be wrong",
+            f"the motion requires {share:+.0f} % of body weight more than the plates read, throughout: check the mass, "
+            "the plates' scale and the axes",
         )
     remarks = []
     for run in _lasting(size > LASTING_SHARE * weight_n, rate_hz):
@@ -151,8 +151,8 @@ def _missing(
         if parts is None:
             much, since = float(np.linalg.norm(force)), run[0] / rate_hz
             remarks.append(
-                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion asks for {much:.0f} N that neither the "
-                "plates nor a part of the body that could bear it account for"
+                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion requires {much:.0f} N that neither the "
+                "plates nor a contact of another part explain: check plates and axes"
             )
         else:
             flags[frames[:, None], list(parts)] = True
@@ -160,13 +160,7 @@ def _missing(
 
 
 def _bridged(flags: BoolArray, judged: BoolArray, rate_hz: float) -> BoolArray:
-    """Flags (T, B) that go on through frames that cannot be judged: a contact does not pause for less than it lasts.
-
-    Args:
-        flags: (T, B) parts that bear.
-        judged: (T,) frames that can be judged.
-        rate_hz: Frame rate.
-    """
+    """Flags (T, B) continued through short stretches of frames that are not ``judged`` (T,)."""
     found = flags.copy()
     for run in stretches(~judged):
         sides = [t for t in (int(run[0]) - 1, int(run[-1]) + 1) if 0 <= t < len(flags)]
@@ -176,7 +170,7 @@ def _bridged(flags: BoolArray, judged: BoolArray, rate_hz: float) -> BoolArray:
 
 
 def _lasting(lacks: BoolArray, rate_hz: float) -> list[Array]:
-    """Stretches of a mask (T,) that last, across gaps shorter than that."""
+    """Stretches of a mask (T,) of the least duration, across shorter gaps."""
     gap = max(1, round(0.5 * LASTING_S * rate_hz))
     return [run for run in stretches(bridged(lacks, gap)) if len(run) >= LASTING_S * rate_hz]
 
@@ -184,7 +178,7 @@ def _lasting(lacks: BoolArray, rate_hz: float) -> list[Array]:
 def _edges(
     run: Array, fast: Array, force: Array, weight_n: float, rate_hz: float, judged: BoolArray
 ) -> NDArray[np.intp]:
-    """Frames of a stretch, moved to where the force along its mean direction begins and ends.
+    """Frames of a stretch, from begin to end of the missing force along its mean direction.
 
     Args:
         run: Frames of the stretch.
@@ -192,7 +186,7 @@ def _edges(
         force: (3,) its mean.
         weight_n: The body's weight.
         rate_hz: Frame rate.
-        judged: (T,) frames that can be judged.
+        judged: (T,) frames in which plates read all loads of the feet.
     """
     along = fast @ force / np.linalg.norm(force)
     acts = judged & (along > EDGE_SHARE * weight_n)
@@ -209,9 +203,9 @@ def _edges(
 
 
 def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: float) -> tuple[int, ...] | None:
-    """Parts through which a stretch's missing wrench leads best; None where it leads through none.
+    """Parts through which a stretch's missing wrench leads best; None if it misses every part.
 
-    A foot that no plate was seen to carry may be it as well: B for the right one, B + 1 for the left.
+    B is the right foot, B + 1 the left one, which may stand where no plate reads.
 
     Args:
         bearings: The parts.
@@ -230,7 +224,7 @@ def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: floa
 
 
 def _groups(bearings: BearingParts, force: Array) -> Iterator[tuple[int, ...]]:
-    """Parts, and pairs of like ones, that could bear a force (3,): what does not hold can only be pushed up."""
+    """Parts, and right and left ones together, that could carry a force (3,): hands alone if it does not push up."""
     pushes = float(force[2]) > 0.5 * float(np.linalg.norm(force))
     usable = [k for k in range(len(bearings)) if pushes or bearings.grips[k]]
     yield from ((k,) for k in usable)
@@ -245,7 +239,7 @@ def _off(arms: Array, missing: Array, lever_m: float, weight_n: float) -> float:
     Args:
         arms: (n, 1 or 2, 3) from the centre of mass to the parts' middles.
         missing: (n, 6) wrench about the centre of mass.
-        lever_m: How far from its middle a part may be pressed.
+        lever_m: Largest distance of a part's centre of pressure from its middle.
         weight_n: The body's weight.
     """
     force, moment = missing[:, :3], missing[:, 3:]
@@ -259,15 +253,7 @@ def _off(arms: Array, missing: Array, lever_m: float, weight_n: float) -> float:
 
 
 def _lying(bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float) -> BoolArray:
-    """(T, B) parts that lie on the floor.
-
-    Args:
-        bearings: The parts.
-        points: (T, B, 3) their middles.
-        speeds: (T, B) how fast they move.
-        rate_hz: Frame rate.
-        floor_m: Height of the floor.
-    """
+    """(T, B) parts with middles (T, B, 3) and speeds (T, B) that lie on the floor."""
     low = (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S)
     found = np.zeros_like(low)
     for k in range(len(bearings)):

@@ -1,8 +1,8 @@
-"""A seat where no plate reads: the ground's reaction as a whole acts beside the feet, towards the pelvis.
+"""A seat where no plate reads: the whole ground reaction acts beside the feet, towards the pelvis.
 
-The motion asks for a wrench whose centre of pressure on the floor is x = −(n_y + h f_x) / f_z, y = (n_x − h f_y) / f_z
+The motion requires a wrench whose centre of pressure on the floor is x = −(n_y + h f_x) / f_z, y = (n_x − h f_y) / f_z
 from the point below the centre of mass, at height h above the floor (D. A. Winter, Biomechanics and Motor Control of
-Human Movement, 4th ed. 2009, ch. 5.2). Feet alone can only have it between their soles.
+Human Movement, 4th ed. 2009, ch. 5.2). Under feet alone it lies between their soles.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ WINDOW_S = 0.25
 """Duration over which rates of momentum are taken."""
 
 BESIDE_M, NEAR_M = 0.12, 0.05
-"""A centre of pressure further than the first from the soles is not the feet's; a seat bears as long as it is further
-than the second."""
+"""Distances of the centre of pressure from the soles: beyond the first a seat carries load, as long as it is beyond the
+second."""
 
 LASTING_S, STILL_M_S = 0.25, 0.5
-"""It is so for so long, and the pelvis is slower than this."""
+"""Least duration, and largest speed of the pelvis, of sitting."""
 
 LOADED_SHARE = 0.3
-"""Share of body weight that the ground gives at least for its centre of pressure to count."""
+"""Least share of body weight on the ground for its centre of pressure to count."""
 
 
 def sits(
     body: WholeBody, soles: Array, seat_m: Array, speed_m_s: Array, rate_hz: float, floor_m: float
 ) -> BoolArray:
-    """(T,) frames in which a seat bears, if no plate reads.
+    """(T,) frames in which a seat carries load, for a trial without plates.
 
     Args:
         body: The body's momentum.
         soles: (T, 2, 3, 3) heel, ball and toe end of both soles, m.
         seat_m: (T, 3) the part that sits.
-        speed_m_s: (T,) how fast it moves.
+        speed_m_s: (T,) its speed.
         rate_hz: Frame rate.
         floor_m: Height of the floor.
     """
@@ -47,7 +47,7 @@ def sits(
     with np.errstate(invalid="ignore", divide="ignore"):
         pressed = centre_on_floor(asked, body.centre_m, floor_m)
         beside = distance_to_feet(pressed, soles[..., :2])
-        # On the way from the feet to the seat, and not on the other side of the feet.
+        # On the seat's side of the feet.
         feet = soles[..., :2].mean(axis=(1, 2))
         along = ((pressed - feet) * (seat_m[:, :2] - feet)).sum(axis=1) > 0.0
         loaded = asked[:, 2] > LOADED_SHARE * np.linalg.norm(body.weight)
@@ -60,7 +60,7 @@ def sits(
 
 
 def centre_on_floor(wrench: Array, centre_m: Array, floor_m: float) -> Array:
-    """(T, 2) where wrenches meet the floor: no moment about a horizontal axis is left there.
+    """(T, 2) points of the floor at which wrenches have no moment about a horizontal axis.
 
     Args:
         wrench: (T, 6) force N and moment N m about the points.

@@ -1,9 +1,9 @@
-"""How the parts that bear share a wrench: by their areas as far as its line of action allows; none pulls at a floor.
+"""Division of a wrench among the loaded parts: by their areas, as far as its line of action allows.
 
-Part i carries (f_i, n_i), its moment about its own middle c_i. Beforehand each has a share of the force that goes with
-its area, the square of its lever, with a spread of half the whole force, and a moment of its lever times its share.
-That their wrenches sum to the whole one conditions this Gaussian exactly; what is left of its covariance is the spread
-of the shares.
+Part i carries (f_i, n_i), its moment about its own middle c_i. A priori each has a share of the force by its area, the
+square of its lever, with a spread of half the whole force, and a moment of its lever times its share. That their
+wrenches sum to the whole one conditions this Gaussian exactly; the remaining covariance is the spread of the shares.
+Only hands may pull.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.rotations import skew
 
 SPREAD_SHARE = 0.5
-"""Spread of a part's force beforehand, as a share of the whole."""
+"""A priori spread of a part's force, as a share of the whole."""
 
 LEAST_FORCE_N = 10.0
-"""A whole that is smaller than this is shared as if it were this: only its shares' spread depends on it."""
+"""Least force by which the spread of the shares is computed."""
 
 
 class Shares(NamedTuple):
@@ -29,7 +29,7 @@ class Shares(NamedTuple):
     Attributes:
         wrench: (n, 6) about the world's origin.
         by_whole: (n, 6, 6) derivative by the whole wrench.
-        covariance: (6 n, 6 n) of the shares for a whole that is known.
+        covariance: (6 n, 6 n) of the shares of a known whole.
     """
 
     wrench: Array
@@ -38,13 +38,13 @@ class Shares(NamedTuple):
 
 
 def shares(whole: Array, points_m: Array, levers_m: Array, pulls: Sequence[bool]) -> Shares:
-    """A wrench shared by parts.
+    """A wrench divided among parts.
 
     Args:
         whole: (6,) force N and moment N m about the world's origin.
         points_m: (n, 3) middles of the parts.
-        levers_m: (n,) how far from them the centres of pressure may lie.
-        pulls: Which parts may pull: hands that hold something.
+        levers_m: (n,) largest distances of the centres of pressure from them.
+        pulls: True for parts that may pull: hands that hold something.
     """
     used = np.ones(len(points_m), dtype=bool)
     while True:
@@ -59,7 +59,7 @@ def _shared(whole: Array, points_m: Array, levers_m: Array, used: BoolArray) -> 
     n, areas = len(points_m), np.where(used, levers_m, 0.0) ** 2
     expected = areas / areas.sum()
     force = max(float(np.linalg.norm(whole[:3])), LEAST_FORCE_N)
-    # G takes (f_i, n_i) of all parts to the whole wrench about the origin, and mean to what is expected of them.
+    # G maps (f_i, n_i) of all parts to the whole wrench about the origin, mean the whole wrench to their prior.
     G, mean, variance = np.zeros((6, 6 * n)), np.zeros((6 * n, 6)), np.zeros(6 * n)
     for k in np.flatnonzero(used).tolist():
         own = slice(6 * k, 6 * k + 6)
@@ -77,7 +77,7 @@ def _shared(whole: Array, points_m: Array, levers_m: Array, used: BoolArray) -> 
 
 
 def about(point_m: Array) -> Array:
-    """(6, 6) that takes a wrench about the world's origin to one about a point (3,)."""
+    """(6, 6) transform of a wrench about the world's origin to a point (3,)."""
     X = np.eye(6)
     X[3:, :3] = -skew(point_m)
     return X

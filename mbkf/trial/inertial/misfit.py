@@ -16,8 +16,8 @@ from mbkf.filters.estimate import Recording
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
 from mbkf.sensors.block import AnyBlock, Rows
+from mbkf.sensors.body_sensors import BodySensors
 from mbkf.sensors.standing_feet import StandingFeet
-from mbkf.sensors.worn_sensors import WornSensors
 
 MOVING_RAD_S = 1.0
 """A sensor that turns faster shows that the person moves."""
@@ -44,7 +44,7 @@ def misfit(filter: TrackingFilter, recording: Recording) -> float:
         if t >= first:
             assert posterior.record.step is not None
             parts = posterior.record.step.readings.parts
-            rates.append(_of(filter, parts, WornSensors).reshape(-1, 2, 3)[:, 0].ravel())
+            rates.append(_of(filter, parts, BodySensors).reshape(-1, 2, 3)[:, 0].ravel())
             feet.append(_of(filter, parts, StandingFeet))
     if not rates:
         return np.inf

@@ -25,6 +25,7 @@ from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import AnyBlock
+from mbkf.sensors.body_sensors import BodySensors, BodySensorSettings
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.foot_contact import FootContact, FootContactSettings
 from mbkf.sensors.inertial_sensor import InertialSensor
@@ -37,7 +38,6 @@ from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.standing_feet import FOOT_REST, StandingFeet, StandingSettings
 from mbkf.sensors.unseen_moment import UnseenMoment, UnseenMomentSettings
-from mbkf.sensors.worn_sensors import WornSensors, WornSettings
 from mbkf.trial.inertial.on_body import frame_readings
 from mbkf.trial.preparation.filters import FilterInputs
 
@@ -60,7 +60,7 @@ class MotionSettings:
             posture: the usual weight, in every frame, would draw the mounts along.
     """
 
-    worn: WornSettings = field(default_factory=WornSettings)
+    worn: BodySensorSettings = field(default_factory=BodySensorSettings)
     standing: StandingSettings = field(default_factory=StandingSettings)
     stillness: StillnessSettings = field(default_factory=StillnessSettings)
     transfer: LoadTransferSettings = field(default_factory=LoadTransferSettings)
@@ -200,7 +200,7 @@ def worn_filter(
         Markers(inputs.sensor, inputs.noise_m, dt, unobservable, s.markers),
         *ground,
         StandingFeet(model, dt, settings.standing, standing_q),
-        WornSensors(sensors, worn.bias_rad_s, bias_sd, worn.turn_sd_rad, settings.worn),
+        BodySensors(sensors, worn.bias_rad_s, bias_sd, worn.turn_sd_rad, settings.worn),
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
         JointLimits(posture, unobservable, s.limits),
     ]

@@ -29,7 +29,7 @@ STAND_S = 2.0
 
 
 @dataclass(frozen=True)
-class LiveWornSettings:
+class LiveBodySensorSettings:
     """How a stream of inertial sensors is followed.
 
     Attributes:
@@ -63,7 +63,7 @@ class LiveWorn:
     inputs: FilterInputs
     filter: TrackingFilter
     body: MountErrors
-    settings: LiveWornSettings
+    settings: LiveBodySensorSettings
 
 
 class StandingSensors:
@@ -122,7 +122,7 @@ def live_worn(
     standing: Array,
     rate_hz: float,
     posture: Array | None = None,
-    settings: LiveWornSettings = LiveWornSettings(),
+    settings: LiveBodySensorSettings = LiveBodySensorSettings(),
 ) -> LiveWorn:
     """Calibrates sensors on a person who stands, and prepares the filter.
 

@@ -113,8 +113,8 @@ def test_a_force_that_leads_through_no_part_is_told():
     assert not result.flags.any()
     (remark,) = result.remarks
     force_n = 0.2 * weight_n(made)
-    told = float(remark.split("asks for ")[1].split(" N")[0])
-    assert 0.8 * force_n < told < 1.05 * force_n, "the mean over begin and end, too"
+    stated = float(remark.split("requires ")[1].split(" N")[0])
+    assert 0.8 * force_n < stated < 1.05 * force_n, "the mean over begin and end, too"
 
 
 def test_what_pushes_a_sole_is_a_foots():

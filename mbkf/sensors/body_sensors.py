@@ -1,11 +1,11 @@
-"""Inertial sensors that nothing else checks, as a block: their biases and how they sit on their segments are states.
+"""Inertial sensors without markers beside them, as a block: biases and mountings are states.
 
     z = C(θ) (ω, f)(q, v, a) + (b, 0) + r,  r ~ N(0, diag(σ_ω² I₃, σ_f² I₃)) per sensor
     C(θ) = R₀ᵀ Exp(−θ) R₀
 
-R₀ (sensor → segment) is the mounting as it was calibrated, θ (segment axes) how far it is turned from there, b the
-gyroscope's bias. Both are slow random walks. The joints' centres, which neighbouring sensors share, and feet that stand
-make them observable; no magnetometer is needed (M. Kok, J. D. Hol and T. B. Schön, IFAC Proceedings 47 (2014) 79–84).
+R₀ (sensor → segment) is the calibrated mounting, θ (segment axes) its turn since, b the gyroscope's bias. Both are slow
+random walks. The joints' centres, which neighbouring sensors share, and standing feet make them observable; no
+magnetometer is needed (M. Kok, J. D. Hol and T. B. Schön, IFAC Proceedings 47 (2014) 79–84).
 """
 
 from __future__ import annotations
@@ -31,14 +31,13 @@ BIASES, TURNS = "gyroscope biases", "turns of the mounts"
 
 
 @dataclass(frozen=True)
-class WornSettings:
-    """Noise of sensors on skin, and how biases and mounts change.
+class BodySensorSettings:
+    """Noise of sensors on skin, and random walks of biases and mounts.
 
     Attributes:
-        worn_rate_sd_rad_s: How far an angular velocity is from its segment's, per component and reading. It is
+        worn_rate_sd_rad_s: Difference between an angular velocity and its segment's, per component and reading. It is
             integrated: a larger value lets the filter lag behind fast turns.
-        worn_force_sd_m_s2: The same of a specific force. Skin, impacts and the sensor's place make it err for some
-            time, not anew with each reading.
+        worn_force_sd_m_s2: The same of a specific force. Its errors by skin, impacts and the sensor's place last.
         bias_walk: Random walk of a bias, rad/s/√s.
         turn_walk: Random walk of a mount's turn, rad/√s: a strap that slips.
     """
@@ -49,7 +48,7 @@ class WornSettings:
     turn_walk: float = 0.002
 
 
-class WornSensors(Block[LoadedState, None, Array | None, None]):
+class BodySensors(Block[LoadedState, None, Array | None, None]):
     """Inertial sensors with their biases and mounts' turns, on a state that begins with (q, v, a).
 
     Attributes:
@@ -65,15 +64,15 @@ class WornSensors(Block[LoadedState, None, Array | None, None]):
         bias_rad_s: Array,
         bias_sd_rad_s: Array,
         turn_sd_rad: Array,
-        settings: WornSettings = WornSettings(),
+        settings: BodySensorSettings = BodySensorSettings(),
     ) -> None:
         """Makes the block.
 
         Args:
             sensor: The sensors on the body, as calibrated.
             bias_rad_s: (S, 3) gyroscopes' biases at the start.
-            bias_sd_rad_s: (S, 3) how well they are known.
-            turn_sd_rad: (S, 3) how far each mount may be turned from the calibrated one, about its segment's axes.
+            bias_sd_rad_s: (S, 3) their standard deviations.
+            turn_sd_rad: (S, 3) standard deviation of each mount's turn about its segment's axes.
             settings: Noise.
         """
         s, count = settings, 3 * len(sensor.mounts)
@@ -92,13 +91,13 @@ class WornSensors(Block[LoadedState, None, Array | None, None]):
         return self._states
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Where they stand in the state."""
+        """Keeps the layout."""
         self._layout = layout
 
     def decide(
         self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: None, notes: Notes
     ) -> Array | None:
-        """The frame's readings (S, 6), None where none was read; joints they observe are noted."""
+        """The frame's readings (S, 6), None without any; the joints that they observe are noted."""
         if frame.imus is None or not np.isfinite(frame.imus).any():
             return None
         notes.imus, notes.observed = frame.imus, True

@@ -10,8 +10,8 @@ from mbkf.imu.placement import typical_mounts
 from mbkf.io.imu.mount import ImuMount
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.sensors.block import OperatingPoint
+from mbkf.sensors.body_sensors import BIASES, TURNS, BodySensors, BodySensorSettings
 from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.worn_sensors import BIASES, TURNS, WornSensors, WornSettings
 from tests.dynamics import singer
 from tests.motions import moderate_pose, reference_model
 
@@ -19,12 +19,12 @@ MODEL = reference_model()
 MOUNTS = typical_mounts(MODEL, ("pelvis", "right_thigh", "left_foot"), seed=3)
 RNG = np.random.default_rng(7)
 Q, V, A = moderate_pose(MODEL, RNG), RNG.normal(size=MODEL.nv), 3.0 * RNG.normal(size=MODEL.nv)
-SETTINGS = WornSettings(worn_rate_sd_rad_s=1.0, worn_force_sd_m_s2=1.0)
+SETTINGS = BodySensorSettings(worn_rate_sd_rad_s=1.0, worn_force_sd_m_s2=1.0)
 
 
 def block_of(mounts):
     count = len(mounts)
-    block = WornSensors(
+    block = BodySensors(
         InertialSensor(MODEL, mounts),
         np.zeros((count, 3)),
         np.ones((count, 3)),
