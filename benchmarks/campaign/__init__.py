@@ -1,4 +1,4 @@
-"""A thousand random short trials against truth: no result that is no person, and intervals that cover.
+"""A thousand random short trials against truth: no implausible result, and intervals that cover.
 
 Motion, person, instruments' errors, gaps, exchanged labels, dropped frames, plates late or missing: all by the seed.
 One trial again, as a row names it: ``python -m benchmarks.campaign --seed 17``.

@@ -147,7 +147,7 @@ def remarks(one: Trial, spoil: Callable[[Array], Array]) -> tuple[str, ...]:
     """
     markers = one.capture.markers
     capture = replace(one.capture, markers=replace(markers, positions_m=spoil(markers.positions_m)))
-    return innovations.told(reconstruct(capture, one.subject, settings=FAST))
+    return innovations.remarks(reconstruct(capture, one.subject, settings=FAST))
 
 
 def slid(places_m: Array, marker: int, by_m: float) -> Array:

@@ -1,4 +1,4 @@
-"""How much of a capture its marker protocol explains: which markers are used, which are ignored, and why."""
+"""Coverage of a capture by its marker protocol: markers used, markers ignored, and the reasons."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ MOST_NAMED = 8
 """Names that a line lists at most."""
 
 USE_KEY = "marker_use"
-"""Key of a subject's report under which the markers of its captures are told."""
+"""Key of a subject's report for the markers of its captures."""
 
 INFERRED_KEY = "inferred"
-"""Key of a subject's report under which an inferred marker set is told."""
+"""Key of a subject's report for an inferred marker set."""
 
 UNKNOWN = "the protocol does not know it"
 COMPUTED = "a computed point, read for scaling only"
@@ -30,7 +30,7 @@ TWICE = "another name of a marker that is there under its own"
 
 @dataclass(frozen=True)
 class MarkerUse:
-    """What became of a capture's markers: of those that have a name of their own and were seen.
+    """Use of a capture's markers: of those that have a name of their own and were seen.
 
     Attributes:
         protocol: Name of the protocol.
@@ -54,17 +54,17 @@ class MarkerUse:
 
     @property
     def share(self) -> float:
-        """Share of the markers that the protocol knows, used or not, 0 to 1; 1 where there are no markers."""
+        """Share of the markers that the protocol knows, used or not, 0 to 1; 1 without markers."""
         return 1.0 - len(self.unknown) / self.markers if self.markers else 1.0
 
     @property
     def accepted(self) -> bool:
-        """Whether it may be used without being asked for: it knows enough of the markers."""
+        """True where it may be used by default: it knows enough of the markers."""
         return self.share >= LEAST_SHARE
 
     @property
     def told(self) -> str:
-        """How much the protocol knows, in words."""
+        """The protocol's coverage, in words."""
         known = self.markers - len(self.unknown)
         return f"{self.protocol} knows {known} of {self.markers} markers ({100 * self.share:.0f} %)"
 
@@ -104,7 +104,7 @@ def listed(names: Collection[str]) -> str:
 
 
 def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) -> MarkerUse:
-    """What a protocol makes of the markers of a person's captures, each name counted once.
+    """Coverage of the markers of a person's captures by a protocol, each name counted once.
 
     Args:
         captures: Markers of the captures.
@@ -119,7 +119,7 @@ def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) 
 
 
 def _cut_from(protocol: Protocol) -> str:
-    """Name of the shipped protocol that this one is a part of, on another body; "" where it is no such part."""
+    """Name of the shipped protocol of which this one is a part, on another body; "" otherwise."""
     if protocol.name not in protocol_names():
         return ""
     body = load_protocol(protocol.name).body
@@ -127,7 +127,7 @@ def _cut_from(protocol: Protocol) -> str:
 
 
 def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
-    """What a scaled person's markers are in a trial.
+    """Use of a scaled person's markers in a trial.
 
     Args:
         markers: The trial's.
@@ -143,7 +143,7 @@ def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
 
 
 def _left_out(subject: Subject) -> dict[str, str]:
-    """What was left out of the person's marker set on purpose, with the reason."""
+    """Markers left out of the person's set on purpose, with the reason."""
     use = subject.report.get(USE_KEY)
     ignored = use["ignored"] if isinstance(use, dict) else {}
     return {name: reason for name, reason in ignored.items() if reason not in (UNKNOWN, NO_SEGMENT, TWICE)}
@@ -174,7 +174,7 @@ def _ignored(
         names: Names in the capture.
         used: Those that are used.
         own: The markers that are looked for.
-        protocol: The protocol's name; a shipped one also tells markers that are not looked for on this body.
+        protocol: The protocol's name; a shipped one also names markers that are not sought on this body.
     """
     others = {name for marker in own for name in (marker.name, *marker.aliases)}
     rest = [name for name in names if name not in used]

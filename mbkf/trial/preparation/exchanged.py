@@ -1,4 +1,4 @@
-"""Exchanged names of a named trial put right before it is used, and told."""
+"""Exchanged names of a named trial, corrected before it is used, and reported."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from mbkf.model.protocol import Protocol
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 STANDING_SD_M = 0.008
-"""How far a marker sits from where the standing trial has it."""
+"""Spread of a marker about its place in the standing trial."""
 
 
 def names_put_right(
     markers: MarkerTrajectories, subject: Subject
 ) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...]]:
-    """A trial's trajectories with exchanged names put right by the subject's geometry, and what was exchanged.
+    """A trial's trajectories with exchanged names put right by the subject's geometry, and the exchanges.
 
     Args:
         markers: (T, M, 3) m, under the subject's own names.
@@ -34,13 +34,13 @@ def names_put_right(
     )
     placed = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in own])
     found = find_exchanges(markers.positions_m, body_distances(sensor, placed))
-    return _changed(markers, found), _told(markers, found)
+    return _changed(markers, found), _exchanges(markers, found)
 
 
 def trials_put_right(
     static: MarkerTrajectories, trials: Sequence[Capture], protocol: Protocol
 ) -> tuple[list[Capture], tuple[tuple[str, str, int], ...]]:
-    """Trials with exchanged names put right by distances as the standing trial has them, and what was exchanged.
+    """Trials with exchanged names put right by distances as the standing trial has them, and the exchanges.
 
     Only markers that the standing trial shows take part: of a person not scaled yet, nothing else is known.
 
@@ -52,7 +52,7 @@ def trials_put_right(
     standing = {marker.name: name for name, marker in protocol.match(static.names).items()}
     there = np.asarray(static.present.any(axis=0))
     right: list[Capture] = []
-    told: list[tuple[str, str, int]] = []
+    exchanges: list[tuple[str, str, int]] = []
     for trial in trials:
         match = {
             name: marker
@@ -73,14 +73,14 @@ def trials_put_right(
             if match
             else ()
         )
-        told += _told(own, found)
+        exchanges += _exchanges(own, found)
         fresh = _changed(own, found)
         positions = trial.markers.positions_m.copy()
         positions[:, [trial.markers.names.index(name) for name in own.names]] = fresh.positions_m
         right.append(
             replace(trial, markers=replace(trial.markers, positions_m=positions)) if found else trial
         )
-    return right, tuple(told)
+    return right, tuple(exchanges)
 
 
 def exchange_notes(found: Sequence[tuple[str, str, int]]) -> tuple[str, ...]:
@@ -102,5 +102,5 @@ def _changed(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> Marker
     return replace(markers, positions_m=undo_exchanges(markers.positions_m, found)) if found else markers
 
 
-def _told(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> tuple[tuple[str, str, int], ...]:
+def _exchanges(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> tuple[tuple[str, str, int], ...]:
     return tuple((markers.names[one.a], markers.names[one.b], int(one.frames.sum())) for one in found)

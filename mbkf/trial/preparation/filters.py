@@ -29,11 +29,11 @@ from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 Blocks = Sequence[AnyBlock] | None
-"""Blocks of the dynamic filter; None for the standard ones."""
+"""Blocks of the dynamic filter; None: the standard ones."""
 
 
 class OwnParts(NamedTuple):
-    """Parts of a user's own in place of the dynamic filter's; None for the standard ones."""
+    """Parts of a user's own in place of the dynamic filter's; None: the standard ones."""
 
     blocks: Blocks = None
     plant: PlantMaker | None = None
@@ -50,8 +50,8 @@ class FilterInputs:
         dt_s: Time between frames.
         unobservable: (nv,) dofs that no marker of the trial moves with.
         kinematic, dynamic, torque: Settings of each filter.
-        inertial: Inertial sensors on the body, None where there are none.
-        spread_m: (M,) spread of one reading where noise stays for a while, None where no marker's does.
+        inertial: Inertial sensors on the body; None: no sensors.
+        spread_m: (M,) spread of one reading where noise stays for a while; None: white noise.
         remarks: Remarks on plate readings that were refused.
         other_contacts: Parts besides the feet bear load somewhere in the trial.
         body: Errors of the estimates because the person's body is not known exactly; None where they are not reported.
@@ -141,11 +141,11 @@ def tracking_filter(
     Args:
         name: One of :data:`FILTERS`.
         inputs: Body, markers, plates and settings.
-        blocks: Blocks of the dynamic filter; None for the standard ones.
-        plant: Makes the plant of the dynamic filter; None for the Singer plant.
+        blocks: Blocks of the dynamic filter; None: the standard ones.
+        plant: Makes the plant of the dynamic filter; None: the Singer plant.
 
     Raises:
-        UnknownName: There is no such filter.
+        UnknownName: The filter does not exist.
         InvalidInput: Blocks or a plant are given for another filter.
     """
     if name not in _MAKERS:

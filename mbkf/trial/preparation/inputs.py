@@ -23,7 +23,7 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.preparation.filters import FilterInputs
 
 MIN_PRESENT = 0.02
-"""A marker seen in a smaller share of the frames than this does not count for what can be observed."""
+"""A marker seen in a smaller share of the frames than this does not count as observing a dof."""
 
 
 class FilterSettings(Protocol):
@@ -45,10 +45,10 @@ class FilterSettings(Protocol):
 def trial_inputs(
     shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, settings: FilterSettings
 ) -> tuple[FilterInputs, Recording]:
-    """Body, markers and plates of a trial, and its readings; the plates without what this person cannot make them read.
+    """Body, markers and plates of a trial, and its readings; the plates without readings that this person cannot cause.
 
     Args:
-        shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
+        shown: (T, M, 3) m, under the subject's own names; hidden samples are NaN.
         plates: The plates that are read.
         subject: The person, with marker positions as they are to be used.
         settings: Settings of the filters.
@@ -80,7 +80,7 @@ def trial_inputs(
 def _body_errors(
     sensor: MarkerSensor, noise_m: Array, names: Sequence[str], subject: Subject
 ) -> BodyErrors | None:
-    """Errors by what scaling left unknown; a marker that it did not see may be anywhere that its session allows.
+    """Errors by the unknowns of scaling; a marker that it did not see may be anywhere that its session allows.
 
     Args:
         sensor: The markers on the body.

@@ -1,4 +1,4 @@
-"""A trial's motion as its markers alone tell it, before plates and Newton's law have a say."""
+"""A trial's motion by its markers alone, before plates and Newton's law."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def markers_alone(
     """The motion by the kinematic filter, smoothed.
 
     Args:
-        inputs: What filters are built from.
-        recording: What the instruments read.
+        inputs: Inputs of the filters.
+        recording: Readings of the instruments.
         progress: Called with frames done and frames in all.
     """
     filter, frames = motion_filter(inputs), len(recording)

@@ -18,13 +18,13 @@ from mbkf.trial.preparation.markers_alone import Motion
 def with_other_contacts(
     inputs: FilterInputs, recording: Recording, times_s: Array, motion: Motion
 ) -> tuple[FilterInputs, Recording]:
-    """Inputs and readings that know which parts bear besides the feet; unchanged where none does.
+    """Inputs and readings with the parts that bear load besides the feet; unchanged without such a part.
 
     Args:
-        inputs: What filters are built from.
-        recording: What the instruments read.
+        inputs: Inputs of the filters.
+        recording: Readings of the instruments.
         times_s: (T,) times of the frames.
-        motion: The motion that markers alone tell.
+        motion: The motion by markers alone.
     """
     if not inputs.sensor.model.description.bearings:
         return inputs, recording

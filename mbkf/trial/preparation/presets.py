@@ -30,11 +30,11 @@ def with_preset(
     Args:
         settings: All else.
         name: Name of a preset, or a file.
-        wanted_filter: The filter chosen by the user, None for the preset's.
+        wanted_filter: The filter chosen by the user; None: the preset's.
 
     Raises:
-        UnknownName: There is no such preset, filter or setting.
-        FileFormatError: The file is no preset.
+        UnknownName: The preset, filter or setting does not exist.
+        FileFormatError: The file does not hold a preset.
         InvalidInput: The preset is for another filter than the one chosen, or a value is not possible.
     """
     if name in BUILT_IN:
@@ -60,7 +60,7 @@ def with_values(settings: SettingsT, found: Preset, where: str) -> SettingsT:
         where: Name of the preset, for error messages.
 
     Raises:
-        UnknownName: There is no such setting, or it is no number.
+        UnknownName: The setting does not exist, or its value has another type.
         InvalidInput: A value is not positive.
     """
     kinds = {key: type(value) for key, value in flat(settings).items() if isinstance(value, int | float)}

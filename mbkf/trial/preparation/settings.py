@@ -1,4 +1,4 @@
-"""How a trial is reconstructed: filter, later frames, what is left out, how angles are read."""
+"""Settings of a reconstruction: filter, later frames, omissions, axes of angles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mbkf.kernel.loading import kernel_name
 
 @dataclass(frozen=True)
 class Hidden:
-    """Markers to take away between two times, s, to see what occlusion does."""
+    """Markers to take away between two times, s, to see the effect of occlusion."""
 
     names: tuple[str, ...]
     from_s: float
@@ -28,15 +28,15 @@ class Hidden:
 
 @dataclass(frozen=True)
 class ReconstructSettings:
-    """How a trial is reconstructed.
+    """Settings of a reconstruction.
 
     Attributes:
         filter: Which filter; "kinematic" is the marker filter followed by inverse dynamics, "torque" the thesis's
             dynamic filter, "dynamic" ours.
-        smooth: Whether all later frames correct earlier ones; None: unless there is a lag. False is the causal answer,
+        smooth: All later frames correct earlier ones; None: yes, unless a lag is set. False is the causal answer,
             which a live run gives.
         smoothing: How far they do.
-        lag_s: Instead of smoothing, the fixed lag: how long a frame waits for readings that correct it; 0 for none.
+        lag_s: Instead of smoothing, the fixed lag: time that a frame waits for readings that correct it; 0: no lag.
         kinematic, dynamic, torque: Settings of each filter.
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
@@ -44,12 +44,12 @@ class ReconstructSettings:
         pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
         angles: The axes that angles are read in: "model" for the body's own, "isb" for the ISB's, "pig" for
             Plug-in Gait's.
-        angles_zero: What is zero: "axes" where a joint's axes coincide, "static" for the posture of the static trial.
+        angles_zero: Zero of angles: "axes" where a joint's axes coincide, "static" for the posture of the static trial.
         keep_covariance: Whether full covariances are kept in memory.
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.
         checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.trial.checks`).
-        spreads: Which standard deviations are told besides those of configuration, velocity and wrenches: "torques" and
+        spreads: Standard deviations given besides those of configuration, velocity and wrenches: "torques" and
             "angles". Frames with an estimated load do not count as valid without those of the torques.
     """
 
@@ -72,7 +72,7 @@ class ReconstructSettings:
     spreads: tuple[str, ...] = ASKED
 
     def __post_init__(self) -> None:
-        """Refuses a lag that is no time, or beside smoothing, and standard deviations of something else.
+        """Refuses a negative or infinite lag, a lag beside smoothing, and unknown standard deviations.
 
         Raises:
             InvalidInput: It is so.
@@ -90,7 +90,7 @@ class ReconstructSettings:
 
     @property
     def smooths(self) -> bool:
-        """Whether all later frames are used."""
+        """True where all later frames are used."""
         return self.lag_s == 0.0 if self.smooth is None else self.smooth
 
 

@@ -1,1 +1,1 @@
-"""What a tracked trial becomes: clinical angles, reactions and torques, summary, errors against truth."""
+"""The result of a tracked trial: clinical angles, reactions and torques, summary, errors against truth."""

@@ -48,7 +48,7 @@ def assemble(
         settings: The filter and its settings.
         measured: (T, M, 3) the subject's markers.
         hidden: (T, M) those taken away on purpose.
-        inputs: What the filter was built from, with the plates it read.
+        inputs: Inputs of the filter, with the plates it read.
         result: The track.
     """
     model, times_s = inputs.sensor.model, measured.times_s

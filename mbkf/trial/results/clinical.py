@@ -27,7 +27,7 @@ def clinical_motion(
 ) -> tuple[Motion, Moments]:
     """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps; NaN where untracked.
 
-    The root's angles are told in the frame of progression; its position stays in the laboratory's axes. The heading
+    The root's angles are given in the frame of progression; its position stays in the laboratory's axes. The heading
     counts as known. Where it turns, rates are those against the turning axes: E (v − ψ̇ e), with e the vertical.
     Moments stay about the body's own axes, in whatever axes angles are read.
 
@@ -35,8 +35,8 @@ def clinical_motion(
         model: The body.
         track: The tracked trial.
         torques: The generalised forces.
-        frame: The frame of the root's angles; the laboratory's when None.
-        reading: The axes that angles are read in; the body's own when None.
+        frame: The frame of the root's angles; None: the laboratory's.
+        reading: The axes of angles; None: the body's own.
         zero_q: (nq,) posture in which the angles of joints are to be zero; the root's are not changed.
     """
     frame = frame or laboratory(len(track.q))
@@ -100,7 +100,7 @@ def _of_joints(clinical: ClinicalAngles, q: Array) -> Array:
 
 
 def _renewed(clinical: ClinicalAngles, in_laboratory: bool) -> Array:
-    """Columns whose spreads the filter tells in other axes than they are read in."""
+    """Columns whose spreads the filter gives in other axes than those of the result."""
     if clinical.reading.joints:
         return clinical.ball_columns.ravel()
     return clinical.root_angles[:0] if in_laboratory else clinical.root_angles

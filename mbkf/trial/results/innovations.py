@@ -1,4 +1,4 @@
-"""What a trial's innovations tell: near one by kind of reading where it is coherent, and what stays outside of that."""
+"""Normalised innovations of a trial: near one by kind of reading where it is coherent; remarks on those outside."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ BEFORE = "before_correction"
 """Newton's law by the motion of markers alone, before a filter makes it hold, beside :data:`READING_KINDS`."""
 
 BEFORE_MOST = 4.0
-"""What it is at most where plates and body agree: 2 standard deviations; 1.3 to 3 in public captures of known mass."""
+"""Largest value where plates and body agree: 2 standard deviations; 1.3 to 3 in public captures of known mass."""
 
 STRETCH_S, STRETCH_NIS = 0.5, 3.0
-"""A stretch of this length with more is told; at most 2.7 in the public captures."""
+"""A stretch of this length with more is reported; at most 2.7 in the public captures."""
 
 MARKER_NIS, MARKER_S = 2.0, 0.5
-"""A marker with more, seen for this long at least, is told; three markers of the public captures have 2.1 to 2.6."""
+"""A marker with more, seen for this long at least, is reported; three markers of public captures have 2.1 to 2.6."""
 
 MOST_NAMED = 4
 """So many markers or stretches are named."""
@@ -47,8 +47,8 @@ def per_reading(r: Reconstruction) -> float | None:
 def by_kind(r: Reconstruction) -> dict[str, float]:
     """Normalised innovation squared per reading of each kind that reads, and of Newton's law before correction.
 
-    The latter is the mean square of the force and moment that plates lack, in units of what soft tissue and segments'
-    masses explain (:mod:`mbkf.trial.checks.newton`).
+    The latter is the mean square of the force and moment that plates lack, in units of the share that soft tissue and
+    segments' masses explain (:mod:`mbkf.trial.checks.newton`).
     """
     found: dict[str, float] = {}
     if r.nis_by_kind is not None and r.nis_readings_by_kind is not None:
@@ -60,7 +60,7 @@ def by_kind(r: Reconstruction) -> dict[str, float]:
 
 
 def before_correction(checks: Sequence[Finding]) -> float | None:
-    """Mean square of the force and moment that plates lack over what is expected; None where it is not judged."""
+    """Mean square of the force and moment that plates lack over its expectation; None: not judged."""
     squared = [
         (one.value / one.expected_sd) ** 2
         for one in checks
@@ -81,12 +81,12 @@ def marker_noise_mm(r: Reconstruction) -> dict[str, float | None]:
     }
 
 
-def told(r: Reconstruction) -> tuple[str, ...]:
+def remarks(r: Reconstruction) -> tuple[str, ...]:
     """Remarks on innovations outside their band: of the markers as a whole, in stretches, and of single markers."""
-    return tuple(_told(r))
+    return tuple(_remarks(r))
 
 
-def _told(r: Reconstruction) -> Iterator[str]:
+def _remarks(r: Reconstruction) -> Iterator[str]:
     markers = by_kind(r).get("markers")
     if markers is not None and markers > BAND[1]:
         yield (
@@ -131,7 +131,7 @@ def _stretches(r: Reconstruction) -> Iterator[tuple[float, float, float, str]]:
         _moving(readings.sum(axis=1), width), 1.0
     )
     for opened, ended in runs(high):
-        # Windows begin before what raises them, and end after it.
+        # Windows begin before the frames that raise them, and end after them.
         mine = slice(opened, ended + width - 1)
         raised = opened + np.flatnonzero(squared[mine].sum(axis=1) > STRETCH_NIS * readings[mine].sum(axis=1))
         begin, end = raised[0], raised[-1] + 1

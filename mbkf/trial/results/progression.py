@@ -1,4 +1,4 @@
-"""The frame of progression of a motion: the horizontal axes that pelvis angles are told in.
+"""The frame of progression of a motion: the horizontal axes of pelvis angles.
 
 Walking and running go along the path of the pelvis, also round a bend. Standing, squats, jumps and a treadmill go
 nowhere: there the frame has the mean heading of pelvis and feet. So it has for backward and sideward steps, whose path
@@ -20,7 +20,7 @@ from mbkf.sensors.contact.soles import sole_points
 SMOOTHING_S, SMOOTHING_HEIGHTS = 0.5, 0.5
 """Least width of the window over which path and heading are smoothed (standard deviation), and the way that a person
 goes in it at least, in heights of the standing pelvis: about half a stride, at slow gait too, so that the sway of the
-pelvis from step to step is no turn of the path."""
+pelvis from step to step does not count as a turn."""
 
 TURNING_WINDOW = 0.5
 """Share of that window with which the heading of a turn is smoothed: over the whole one, a sharp bend would be cut."""
@@ -37,14 +37,14 @@ ASTRAY_RAD = float(np.deg2rad(45.0))
 """With a larger mean angle between path and body, the path is not where the person faces."""
 
 BEND_RAD = float(np.deg2rad(30.0))
-"""A path whose direction varies by more is a turn; what is left of the sway is a few degrees."""
+"""A path whose direction varies by more is a turn; the remaining sway is a few degrees."""
 
 SPIN_RAD = float(np.deg2rad(60.0))
 """Pelvis and feet that turn by more on the spot have no mean heading worth the name; a swing of the pelvis over
 standing feet counts half."""
 
 PATH, HEADING, LABORATORY = "progression", "heading", "laboratory"
-"""What a frame follows: the path of the pelvis, the heading of pelvis and feet, or the laboratory's x axis."""
+"""Reference of a frame: the path of the pelvis, the heading of pelvis and feet, or the laboratory's x axis."""
 
 PELVIS_FRAMES = ("progression", "lab")
 """Frames that can be asked for."""
@@ -55,7 +55,7 @@ class Progression:
     """The frame of progression of a trial.
 
     Attributes:
-        direction: What it follows: "progression" (the path), "heading" or "laboratory".
+        direction: Its reference: "progression" (the path), "heading" or "laboratory".
         heading_rad: (T,) angle of its forward axis from the world's x axis about the vertical, rad, without jumps;
             constant unless the person turns.
         turning_rad_s: (T,) its rate.
@@ -146,7 +146,7 @@ def frame_of(path_m: Array, facing: Array, times_s: Array, height_m: float) -> P
 
 @dataclass(frozen=True)
 class _Way:
-    """Path and heading of a person; what it gives has the n frames in which both are known.
+    """Path and heading of a person, in the n frames in which both are known.
 
     Attributes:
         path_m: (T, 2) horizontal positions of the pelvis.

@@ -31,12 +31,12 @@ class GroundReactions:
     """Loads of a trial, and the torques and the residual that follow from them.
 
     Attributes:
-        loads: On the feet: estimated, or measured where the filter estimates none.
+        loads: On the feet: estimated, or measured where the filter does not estimate them.
         supports: On other parts.
         torques: With all these loads; NaN where neither plates nor the filter know the loads.
         measured: (T,) every loaded foot on a measured plate, of its own or shared, and no other part bears.
         accounted: (T,) measured, or a load that no plate reads is estimated: a foot beside plates or another part; no
-            plate is loaded by something that is no foot.
+            plate is loaded by something other than a foot.
         warnings: Remarks for the reader.
     """
 
@@ -97,7 +97,7 @@ def ground_reactions(
 
 
 def _measured_loads(read: FootLoads) -> Reactions:
-    """Loads where the filter estimates none."""
+    """Loads where the filter does not estimate them."""
     return Reactions(
         foot_wrench=read.wrench,
         foot_cop_m=read.centre_of_pressure_m,
@@ -113,7 +113,7 @@ def _estimated_loads(
 
     Args:
         track: The tracked trial.
-        contact: (T, 2) what the feet stand on.
+        contact: (T, 2) support of the feet.
         read: Loads that the plates measured.
         plates: The plates.
     """
@@ -131,7 +131,7 @@ def _estimated_loads(
 
 
 def _plate_sources(loads: FootLoads) -> Array:
-    """(T, 2) sources of the feet's wrenches where plates alone tell them."""
+    """(T, 2) sources of the feet's wrenches known from plates alone."""
     foot = loads.foot_of_plate
     own = np.stack([(foot == side).any(axis=1) for side in range(2)], axis=1)
     shared = (foot == BOTH).any(axis=1)[:, None]
@@ -139,7 +139,7 @@ def _plate_sources(loads: FootLoads) -> Array:
 
 
 def _stray(loads: FootLoads, plates: tuple[PlateReadings, ...]) -> BoolArray:
-    """(T,) frames in which a plate is loaded by something that is no foot."""
+    """(T,) frames in which a plate is loaded by something other than a foot."""
     least = np.array([least_load(plate.threshold_n) for plate in plates])
     return np.asarray(((loads.plate_wrench[:, :, 2] >= least) & (loads.foot_of_plate < 0)).any(axis=1))
 
@@ -179,26 +179,26 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
 
 
 def _floating_warning(contact: Array, supported: BoolArray) -> list[str]:
-    """What is told where both feet were held to be in the air and the body did not fall.
+    """Remark on frames in which both feet were taken to be in the air and the body did not fall.
 
     Args:
-        contact: (T, 2) what the feet stand on.
+        contact: (T, 2) support of the feet.
         supported: (T,) frames in which the body does not fall.
     """
     floating = int(((contact == Contact.AIR).all(axis=1) & supported).sum())
     if floating <= FLOATING_SHARE * len(contact):
         return []
     return [
-        f"in {floating} of {len(contact)} frames no foot was seen to stand on anything, yet the body does not fall: "
-        "reactions and torques there are not to be trusted"
+        f"in {floating} of {len(contact)} frames neither foot was found on a support, yet the body does not fall: "
+        "do not use reactions and torques there"
     ]
 
 
 def _shared_warning(shared: BoolArray) -> list[str]:
-    """What is told of the frames (T,) in which both feet stand on one plate."""
+    """Remark on the frames (T,) in which both feet stand on one plate."""
     if not shared.any():
         return []
     return [
-        f"in {int(shared.sum())} frames both feet stand on one plate: how they share its load is estimated from where "
-        "they stand"
+        f"in {int(shared.sum())} frames both feet stand on one plate: their shares of its load are estimated from "
+        "their places"
     ]

@@ -24,7 +24,7 @@ ANGLES = (MODEL, ISB, PIG)
 
 AXES, STATIC = "axes", "static"
 ANGLES_ZERO = (AXES, STATIC)
-"""What is zero: a joint whose two sets of axes coincide, or the posture of the static trial."""
+"""Zero of angles: a joint whose two sets of axes coincide, or the posture of the static trial."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Point:
 
     Attributes:
         name: Its name, without the side.
-        marker: Name of Plug-in Gait's marker on it, without the side; "" where there is none.
+        marker: Name of Plug-in Gait's marker on it, without the side; "": no marker.
         landmark: The body's landmark, "" for a wand, which stands nowhere in particular.
         sided: Whether there are two.
     """
@@ -75,10 +75,10 @@ def angle_reading(asked: str, model: Body, subject: Subject, processing: Mapping
         asked: One of :data:`ANGLES`.
         model: The person's body.
         subject: The person, with their markers.
-        processing: What the capture tells of the person (:attr:`mbkf.io.records.Capture.processing`).
+        processing: Statements of the capture about the person (:attr:`mbkf.io.records.Capture.processing`).
 
     Raises:
-        UnknownName: There is no such way.
+        UnknownName: The reading does not exist.
         InvalidInput: The body lacks a landmark that the axes are made of.
     """
     if asked not in ANGLES:
@@ -91,10 +91,10 @@ def angle_reading(asked: str, model: Body, subject: Subject, processing: Mapping
 
 
 def zero_posture(asked: str, subject: Subject) -> Array | None:
-    """(nq,) the posture in which angles are to be zero; None where that is so by the axes.
+    """(nq,) the posture in which angles are to be zero; None: zero by the axes.
 
     Raises:
-        UnknownName: There is no such zero.
+        UnknownName: The zero does not exist.
         InvalidInput: The person was scaled without a static trial.
     """
     if asked not in ANGLES_ZERO:
@@ -155,7 +155,7 @@ def _landmark(model: Body, name: str) -> Landmark:
     """A landmark of the body.
 
     Raises:
-        InvalidInput: There is none.
+        InvalidInput: The subject file holds no posture of a static trial.
     """
     if name not in model.description.landmarks:
         raise InvalidInput(

@@ -22,10 +22,10 @@ _MM = 1e3
 
 
 def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Summary:
-    """The contents of summary.json, as plain data; None where a number does not apply.
+    """The contents of summary.json, as plain data; null where a number does not apply.
 
     Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the
-    body was tracked; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter
+    body was tracked; samples the innovation gate refused count, too. ``missing_fraction`` is the share that the filter
     did not receive.
 
     Args:

@@ -13,8 +13,8 @@ from mbkf.io.result_groups import SupportLoads
 from mbkf.model.body import Body
 from mbkf.sensors.supports.bearings import BearingParts
 
-TOLD = 6
-"""So many loads are told with their times."""
+MOST_LISTED = 6
+"""Number of loads that are listed with their times."""
 
 LEAST_N = 20.0
 """Size of a force from which it has a point where it acts."""
@@ -71,14 +71,14 @@ def pressed_points(parts: BearingParts, q: Array, wrench: Array) -> Array:
     )
 
 
-def supports_told(contacts: Sequence[ContactInterval]) -> tuple[str, ...]:
-    """What is told of loads on other parts than the feet: which, when and how much; nothing where there are none."""
+def supports_remarks(contacts: Sequence[ContactInterval]) -> tuple[str, ...]:
+    """Remarks on loads on other parts than the feet, with times and forces; empty without such loads."""
     others = [one for one in contacts if one.part not in FEET]
     if not others:
         return ()
     listed = [
         f"{one.part.replace('_', ' ')} {one.from_s:.2f}…{one.to_s:.2f} s (up to {one.peak_n:.0f} N)"
-        for one in others[:TOLD]
+        for one in others[:MOST_LISTED]
     ]
-    rest = f" and {len(others) - TOLD} more" if len(others) > TOLD else ""
+    rest = f" and {len(others) - MOST_LISTED} more" if len(others) > MOST_LISTED else ""
     return (f"other parts than the feet bear load, estimated from the motion: {', '.join(listed)}{rest}",)

@@ -10,7 +10,7 @@ FILE_NAME = "truth.h5"
 
 
 def truth_beside(trial: str | Path) -> Truth | None:
-    """The truth of a synthetic trial, or None where no ``truth.h5`` lies in its folder.
+    """The truth of a synthetic trial; None: its folder holds no ``truth.h5``.
 
     Static trials have their own posture, so only ``trial.c3d`` and ``raw.c3d`` have a truth.
     """

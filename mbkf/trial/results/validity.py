@@ -25,7 +25,7 @@ MOST_NM_PER_KG = 30.0
 
 
 def torques_possible(tau: Array, root_dofs: int, mass_kg: float) -> BoolArray:
-    """(T,) whether no joint's torque is beyond what a person's joints bear; where there is none, none is.
+    """(T,) frames in which every joint's torque is within the strength of people.
 
     Args:
         tau: (T, nv) generalised forces; the root's are left out.
@@ -60,7 +60,7 @@ def torques_known(
 
 
 def joints_to_root(model: Body, segment: str) -> list[str]:
-    """Segments from the given one towards the root, without the root: their joints are what a load on it changes."""
+    """Segments from the given one towards the root, without the root: a load on it changes their joints' torques."""
     parents = {one.name: one.parent for one in model.description.segments}
     found = []
     while segment != model.roles.root:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mbkf.conventions import BoolArray
+from mbkf.filters.plausibility import MOST_RAD_S
 from mbkf.filters.record import Track
 from mbkf.io.findings import Finding
 from mbkf.io.results import Reconstruction
@@ -13,7 +14,7 @@ from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.checks.judge import messages
 from mbkf.trial.preparation.coverage import INFERRED_KEY
 from mbkf.trial.results import innovations
-from mbkf.trial.results.supports import supports_told
+from mbkf.trial.results.supports import supports_remarks
 
 
 def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruction) -> tuple[str, ...]:
@@ -28,11 +29,11 @@ def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruct
     inferred, doubts = report.get(INFERRED_KEY), report.get(DOUBTS_KEY)
     return (
         *messages(tuple(checks)),
-        *innovations.told(found),
+        *innovations.remarks(found),
         *((str(inferred["told"]),) if isinstance(inferred, dict) else ()),
         *(f"the subject file: {doubt}" for doubt in (doubts if isinstance(doubts, list) else ())),
         *found.warnings,
-        *supports_told(found.contacts),
+        *supports_remarks(found.contacts),
     )
 
 
@@ -44,8 +45,8 @@ def track_warnings(
     Args:
         result: The track.
         names: (nv,) of the dofs.
-        unobservable: (nv,) those that no instrument tells of.
-        instrument: What tells of the others.
+        unobservable: (nv,) those that no instrument observes.
+        instrument: The instrument that observes the others.
     """
     warnings = []
     if unobservable.any():
@@ -61,14 +62,15 @@ def track_warnings(
         )
     if result.uncorrected.any():
         warnings.append(
-            f"what later frames made of {int(result.uncorrected.sum())} of {len(result.tracked)} frames is no person: "
-            "they stand as the filter alone had them; readings contradict each other, see the units and the checks"
+            f"smoothing failed in {int(result.uncorrected.sum())} of {len(result.tracked)} frames (joint rates above "
+            f"{MOST_RAD_S:g} rad/s, impossible loads, or a body away from its markers); these frames keep the filtered "
+            "estimate: readings contradict each other, check units, marker names and the checks"
         )
     gone = int((~result.known[result.starts[0] :]).sum()) if result.starts else 0
     if gone:
         warnings.append(
-            f"in {gone} frames the readings lead to no person that moves: nothing is told of them, and they do not "
-            "count as tracked; see the units and the checks"
+            f"in {gone} frames the estimate was implausible (joint rates above {MOST_RAD_S:g} rad/s or impossible "
+            "loads) and was dropped; they do not count as tracked: check units, marker names and the checks"
         )
     if len(result.starts) > 1:
         warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))

@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.io.findings import Finding
 from mbkf.trial.checks.newton import FORCE, MOMENT
-from mbkf.trial.results.innovations import by_kind, marker_noise_mm, per_reading, told
+from mbkf.trial.results.innovations import by_kind, marker_noise_mm, per_reading, remarks
 from tests.io.reconstructions import made_up
 
 T = 200
@@ -38,12 +38,12 @@ def test_a_coherent_trial_has_ones_and_no_remark():
     r = trial()
     assert by_kind(r) == {"markers": pytest.approx(1.0), "plates": pytest.approx(1.0)}
     assert marker_noise_mm(r) == {"A": pytest.approx(2.0), "B": pytest.approx(2.0)}
-    assert told(r) == ()
+    assert remarks(r) == ()
 
 
 def test_an_older_file_tells_nothing_by_kind():
     r = made_up()
-    assert by_kind(r) == {} and marker_noise_mm(r) == {} and told(r) == ()
+    assert by_kind(r) == {} and marker_noise_mm(r) == {} and remarks(r) == ()
 
 
 def test_newtons_law_before_correction_is_the_mean_of_force_and_moment():
@@ -57,21 +57,21 @@ def test_a_stretch_is_told_with_its_time_and_kind():
     r = trial()
     squared = r.nis_by_kind.copy()
     squared[100:150, 1] *= 12.0
-    (remark,) = told(trial(nis_by_kind=squared))
+    (remark,) = remarks(trial(nis_by_kind=squared))
     assert "1.50–1.99 s (plates 12.0)" in remark
 
 
 def test_markers_above_their_band_are_told():
     squared = trial().nis_by_kind.copy()
     squared[:, 0] *= 1.6
-    (remark,) = told(trial(nis_by_kind=squared))
+    (remark,) = remarks(trial(nis_by_kind=squared))
     assert remark.startswith("innovations of markers: 1.6 per reading")
 
 
 def test_a_single_marker_is_told_by_name_where_it_is_seen_for_long_enough():
     nis = trial().marker_nis.copy()
     nis[:, 1] = 4.0
-    (remark,) = told(trial(marker_nis=nis))
+    (remark,) = remarks(trial(marker_nis=nis))
     assert f"{made_up().marker_names[1]} (4.0)" in remark
     nis[80:, 1] = np.nan
-    assert told(trial(marker_nis=nis)) == ()
+    assert remarks(trial(marker_nis=nis)) == ()

@@ -158,7 +158,7 @@ def feet(*changes):
         (feet((slice(7), [0, 1], Contact.UNMEASURED)), "in 7 frames both feet do", "one plate"),
         (
             feet((slice(9), [0, 1], Contact.SHARED)),
-            "in 9 frames both feet stand on one plate: how they share its load is estimated from where they stand",
+            "in 9 frames both feet stand on one plate: their shares of its load are estimated from their places",
             "no plate",
         ),
     ],
@@ -187,7 +187,7 @@ def test_one_plate_under_both_feet_is_shared_and_that_is_told():
         found.foot_wrench[:, :, 2], truly()[:, :, 2], 0.1 * trial("squat").model.mass_kg * GRAVITY_M_S2
     )
     assert (found.foot_wrench[:, :, 2] > 0.0).all() and found.measured.all()
-    told = f"in {FRAMES} frames both feet stand on one plate: how they share its load is estimated"
+    told = f"in {FRAMES} frames both feet stand on one plate: their shares of its load are estimated"
     assert any(warning.startswith(told) for warning in found.warnings)
     assert not any("one plate" in warning for warning in found_with(followed(), plates()).warnings)
     estimated = found_with(followed(truly(), feet((slice(None), [0, 1], Contact.SHARED))), one_plate())

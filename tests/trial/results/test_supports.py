@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.io.contacts import ContactInterval
 from mbkf.sensors.supports.bearings import BearingParts
-from mbkf.trial.results.supports import LEAST_N, pressed_points, supports_of, supports_told
+from mbkf.trial.results.supports import LEAST_N, pressed_points, supports_of, supports_remarks
 from tests.motions import assert_near, moderate_pose, random_model, track_of
 
 
@@ -91,8 +91,8 @@ def test_a_filter_that_does_not_ask_has_no_parts(model, rng):
 
 def test_loads_on_other_parts_are_told_with_their_times():
     feet = [ContactInterval("left_foot", 0.0, 2.0, 800.0, 5.0, "measured")]
-    assert supports_told(feet) == ()
-    (told,) = supports_told([*feet, ContactInterval("right_hand", 0.5, 1.25, 92.4, 8.0, "estimated")])
+    assert supports_remarks(feet) == ()
+    (told,) = supports_remarks([*feet, ContactInterval("right_hand", 0.5, 1.25, 92.4, 8.0, "estimated")])
     assert told.endswith("right hand 0.50…1.25 s (up to 92 N)")
     many = [ContactInterval("pelvis", float(k), k + 0.5, 500.0, 9.0, "estimated") for k in range(9)]
-    assert supports_told(many)[0].endswith(" and 3 more")
+    assert supports_remarks(many)[0].endswith(" and 3 more")
