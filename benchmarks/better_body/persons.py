@@ -91,7 +91,7 @@ def with_true_lengths(from_trial: Trial) -> Subject:
         problem = made(*given)
         factors = np.array([from_trial.person.scale_factors[name] for name in problem.body.scale_factors])
         exactly = KNOWN_SD**2 * np.eye(len(factors))
-        return problem.believing(replace(problem.prior, factors=factors, factor_covariance=exactly))
+        return problem.with_prior(replace(problem.prior, factors=factors, factor_covariance=exactly))
 
     with patch.object(fit, "scaling_problem", knowing):
         return scaled(from_trial, moving=True)

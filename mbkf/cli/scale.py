@@ -119,8 +119,7 @@ def warn_of_fit(subject: Subject) -> None:
 
 def warn_of_markers(subject: Subject) -> None:
     """Prints an inferred set's doubts, exchanged names, and a protocol that knows too few of the person's markers."""
-    from mbkf.trial.preparation.exchanged import exchange_notes
-    from mbkf.trial.scale import EXCHANGED_KEY
+    from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, exchange_notes
 
     inferred = subject.report.get("inferred")
     for name, odds in inferred["doubtful"].items() if isinstance(inferred, dict) else ():

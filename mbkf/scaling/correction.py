@@ -1,8 +1,7 @@
 """Local marker correction on the trial itself (thesis section 4.1.1): markers sit a little elsewhere in every session.
 
-Skin shifts between standing with spread arms and walking, markers fall off and are stuck on again. With the scale
-factors fixed, each marker's offset in its segment is found anew over frames of the whole trial, near where the subject
-file has it.
+Skin shifts between standing with spread arms and walking, and markers are attached anew. With the scale factors fixed,
+each marker's offset in its segment is found anew over frames of the whole trial, near its place in the subject file.
 
 A trial does not separate a rigid displacement of all markers of a segment from another pose of that segment. Left to
 the offsets of single markers, it would move joint centres by a centimetre, and torques with them. On the segments
@@ -29,26 +28,26 @@ from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, FrameWeights, ScalingP
 from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
-LOOKS = 10.0
+OBSERVATIONS = 10.0
 """Effective number of independent readings of a marker in the frames of one trial (skin moves slowly)."""
 
-POSTURE_LOOKS = 1.0
+POSTURE_OBSERVATIONS = 1.0
 """The same for the posture: the mean posture of a movement is as far from neutral as one posture is."""
 
 OUTLIER_M = 0.06
-"""A sample further than this from the fitted body is a wrong point and left out."""
+"""Distance from the fitted body beyond which a sample is a wrong point and left out."""
 
 COMMON_SD_M = 0.003
 """Spread of a steady segment's markers in each of the six directions of a rigid displacement."""
 
-STRANGE_M = 0.01
-"""A marker further away than this was put on anew, or swapped, and does not count for the common displacement."""
+MOVED_M = 0.01
+"""Distance beyond which a marker was attached anew, or exchanged, and does not count for the common displacement."""
 
 FIXED_FACTOR_SD = 1e-5
 
 
 def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
-    """The subject with marker positions as this trial has them; markers not in the trial keep theirs.
+    """The subject with the marker positions of this trial; markers not in the trial keep theirs.
 
     Args:
         subject: A scaled subject.
@@ -66,29 +65,33 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     outliers = problem.outliers(state, OUTLIER_M)
     if outliers.sum() > 0.5 * problem.seen.sum():
         raise NotConverged(
-            f"most markers do not fit the subject's body within {1e3 * OUTLIER_M:.0f} mm; is it this subject, "
-            "and are unit and axes right (--unit, --up)?"
+            f"most markers do not fit the subject's body within {1e3 * OUTLIER_M:.0f} mm; check that subject and trial "
+            "belong together, and unit and axes (--unit, --up)"
         )
-    strange = np.linalg.norm(state.offsets_m, axis=1) > STRANGE_M
-    if outliers.any() or strange.any():
-        precision = _offset_precision(problem.markers, subject, problem.body.roles.steady, ~strange)
-        problem = problem.without(outliers).expecting(precision)
+    moved = np.linalg.norm(state.offsets_m, axis=1) > MOVED_M
+    if outliers.any() or moved.any():
+        precision = _offset_precision(problem.markers, subject, problem.body.roles.steady, ~moved)
+        problem = _with_precision(problem.without(outliers), precision)
         solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
         state = solution.state
     learnt = learnt_prior(problem, state, solution.equations.schur_complement())
-    problem = problem.expecting(learnt.offset_precision)
+    problem = _with_precision(problem, learnt.offset_precision)
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
-    moved = {marker.name: position for marker, position in zip(problem.markers, local, strict=True)}
+    found = {marker.name: position for marker, position in zip(problem.markers, local, strict=True)}
     before = subject.covariance
     if before is not None:
         before = corrected_covariance(before, problem, solution.equations.schur_complement())
     return replace(
         subject,
-        markers=tuple(replace(m, position_m=moved.get(m.name, m.position_m)) for m in subject.markers),
+        markers=tuple(replace(m, position_m=found.get(m.name, m.position_m)) for m in subject.markers),
         covariance=before,
     )
+
+
+def _with_precision(problem: ScalingProblem, offset_precision: Array) -> ScalingProblem:
+    return problem.with_prior(replace(problem.prior, offset_precision=offset_precision))
 
 
 def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
@@ -99,10 +102,7 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
     frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body, own), FRAMES)
     count = len(frames.measured_m)
     markers = tuple(
-        replace(
-            m,
-            position_m=m.position_m / (body.segment(m.segment).scale_matrix @ factors),
-        )
+        replace(m, position_m=m.position_m / (body.segment(m.segment).scale_matrix @ factors))
         for m in frames.markers
     )
     prior = ScalingPrior(
@@ -114,18 +114,19 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         ),
     )
     keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)
-    looks = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_LOOKS
-    return ScalingProblem(body, markers, frames.measured_m, FrameWeights.moving(count, LOOKS, looks), prior)
+    posture = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_OBSERVATIONS
+    weights = FrameWeights.moving(count, OBSERVATIONS, posture)
+    return ScalingProblem(body, markers, frames.measured_m, weights, prior)
 
 
 def _offset_precision(
-    markers: tuple[ProtocolMarker, ...], subject: Subject, steady: tuple[str, ...], familiar: BoolArray
+    markers: tuple[ProtocolMarker, ...], subject: Subject, steady: tuple[str, ...], unmoved: BoolArray
 ) -> Array:
-    """(3 M, 3 M): each marker has its own freedom, familiar ones of a steady segment hardly any in common."""
+    """(3 M, 3 M): spread of each marker, and the small common displacement of unmoved ones of a steady segment."""
     own_sd = {marker.name: marker.session_sd_m for marker in subject.markers}
     precision = np.diag(np.repeat([own_sd[marker.name] ** -2 for marker in markers], 3))
     for segment in steady:
-        here = np.array([marker.segment == segment for marker in markers]) & familiar
+        here = np.array([marker.segment == segment for marker in markers]) & unmoved
         if here.any():
             rigid = rigid_displacements(np.array([m.position_m for m in markers])[here])
             rows = np.flatnonzero(np.repeat(here, 3))

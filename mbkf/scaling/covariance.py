@@ -1,7 +1,7 @@
-"""What scaling leaves unknown: covariance of scale factors and of marker places in their segments' frames.
+"""Covariance of scale factors and of marker places in their segments' frames after scaling.
 
-Solved for are factors k and offsets δ; a marker's place is p = D_b(k) m̄ + δ. At the minimum the
-inverse of the information on (k, δ), frames eliminated, is their covariance; that of (k, p) follows linearly.
+The unknowns are factors k and offsets δ; a marker's place is p = D_b(k) m̄ + δ. At the minimum the inverse of the
+information on (k, δ), frames eliminated, is their covariance; that of (k, p) follows linearly.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovarian
 def corrected_covariance(
     before: BodyCovariance, problem: ScalingProblem, information: Array
 ) -> BodyCovariance:
-    """The covariance of (k, p) after places alone were found anew on a trial, with the factors as they were.
+    """The covariance of (k, p) after places alone were found anew on a trial, with unchanged factors.
 
     With J = J_d + Π, the information of the trial and of the prior about the places before,
 
         p̂ − p = J⁻¹ (Π (p̂₀ − p₀) − J_d,pk (k̂ − k) + noise),
 
-    and the noise of the trial together with how far markers moved between sessions has the covariance J⁻¹.
+    where the noise of the trial and the movement of markers between sessions together have the covariance J⁻¹.
 
     Args:
         before: That of scaling.

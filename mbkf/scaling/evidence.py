@@ -1,7 +1,7 @@
-"""How far this person's markers and proportions stray from the protocol and the table: told by the fit itself.
+"""Spreads of this person's markers and proportions about protocol and table, learnt from the fit.
 
-A prior states how far markers of people sit from their landmarks and how proportions differ, wide enough for anybody.
-How careful this laboratory was shows in the fit. With residuals u of a group of unknowns (markers at landmarks, markers
+The prior's spreads of markers about their landmarks and of proportions are wide enough for anybody. The spreads of this
+laboratory and person show in the fit. With residuals u of a group of unknowns (markers at landmarks, markers
 anywhere, proportions) under the prior precision Λ₀, posterior covariance Σ and prior covariance Λ₀⁻¹, the evidence of
 the data is largest where the prior's variance is multiplied by
 
@@ -20,18 +20,18 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.scaling.problem import ScalingPrior, ScalingProblem, ScalingState
 
-BELIEF = 1.0
-"""b: the prior's own spread counts as so many unknowns that the data determine."""
+PRIOR_WEIGHT = 1.0
+"""b: weight of the prior's own spread, in unknowns that the data determine."""
 
 RANGE = (0.2, 2.0)
 """Least and greatest factor s on a spread."""
 
 ROUNDS = 12
-"""How often s² is found anew; the last rounds change it by a few percent."""
+"""Number of iterations of s²; the last ones change it by a few percent."""
 
 
 def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Array) -> ScalingPrior:
-    """The prior with the spreads that a fit has shown.
+    """The prior with spreads learnt from a fit.
 
     Args:
         problem: The problem that was solved; offsets of markers of different kinds are independent beforehand.
@@ -45,7 +45,7 @@ def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Arra
     kinds = np.array([""] * count + [m.kind for m in problem.markers for _ in range(3)])
     groups = [kinds == kind for kind in np.unique(kinds)]
     away = np.concatenate([state.factors - prior.factors, (state.offsets_m - prior.offsets_m).ravel()])
-    squares = learnt_squares(information, precision, away, groups)
+    squares = variance_factors(information, precision, away, groups)
     learnt = prior.offset_precision.copy()
     factor = 1.0
     for group, square in zip(groups, squares, strict=True):
@@ -57,13 +57,15 @@ def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Arra
     return replace(prior, factor_covariance=factor * prior.factor_covariance, offset_precision=learnt)
 
 
-def learnt_squares(information: Array, precision: Array, away: Array, groups: list[BoolArray]) -> list[float]:
+def variance_factors(
+    information: Array, precision: Array, away: Array, groups: list[BoolArray]
+) -> list[float]:
     """s² of each group of unknowns.
 
     Args:
         information: (n, n) on all unknowns at the minimum, the prior's included.
         precision: (n, n) Λ₀, block by block by groups.
-        away: (n,) the unknowns at the minimum minus what the prior expects.
+        away: (n,) the unknowns at the minimum minus the prior's mean.
         groups: Masks (n,) of the groups.
     """
     data, pull = information - precision, information @ away
@@ -73,10 +75,11 @@ def learnt_squares(information: Array, precision: Array, away: Array, groups: li
         covariance = np.linalg.inv(data + scaled)
         u = covariance @ pull
         determined = 1.0 - np.einsum("ij,ji->i", covariance, scaled)
-        strayed = u * (precision @ u)
+        squared = u * (precision @ u)
         squares = np.array(
             [
-                (BELIEF + max(0.0, strayed[group].sum())) / (BELIEF + max(0.0, determined[group].sum()))
+                (PRIOR_WEIGHT + max(0.0, squared[group].sum()))
+                / (PRIOR_WEIGHT + max(0.0, determined[group].sum()))
                 for group in groups
             ]
         )

@@ -28,7 +28,7 @@ from mbkf.scaling.problem import (
     ScalingSettings,
     ScalingState,
 )
-from mbkf.scaling.verdict import DOUBTS_KEY, as_each_other, doubts, refusal
+from mbkf.scaling.verdict import DOUBTS_KEY, FitQuality, as_each_other
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -36,10 +36,10 @@ MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
 MIN_SESSION_SD_M = 0.005
 MAX_RMS_M = 0.05
-"""Markers that fit worse than this, and than their noise explains, are not this protocol on a person."""
+"""Greatest RMS distance of the markers, unless their noise explains more."""
 
 MAX_RMS_PER_NOISE = 2.5
-"""Greatest RMS distance over the noise per coordinate; noise alone gives 1.7."""
+"""The same over the noise per coordinate; noise alone gives 1.7."""
 
 
 def scale_subject(
@@ -61,20 +61,22 @@ def scale_subject(
         mass_kg: Body mass.
         height_m: Body height, if known.
         settings: Weights of the priors.
-        progress: Called with accepted iterations and the most there can be.
+        progress: Called with accepted iterations and their greatest number.
 
     Raises:
-        InvalidInput: Mass or height is not positive, no trial is given, or the static trial shows no upright person.
+        InvalidInput: An impossible mass or height, no trial, or a static trial without an upright person.
         NotObservable: Too few markers of the protocol.
-        NotConverged: The fit is so poor, or the body so made, that the markers cannot be this protocol on a person.
+        NotConverged: The fit is poor, or the proportions are impossible: the markers are not this protocol's.
     """
     settings = settings or ScalingSettings()
     if not (np.isfinite(mass_kg) and mass_kg > 0):
-        raise InvalidInput(f"mass must be positive, got {mass_kg} kg; give --mass KG")
+        raise InvalidInput(f"the body mass must be positive, got {mass_kg} kg; give --mass KG")
     if height_m is not None and not 0.5 < height_m < 2.6:
-        raise InvalidInput(f"height must be between 0.5 and 2.6 m, got {height_m} m")
+        raise InvalidInput(
+            f"the body height must be between 0.5 and 2.6 m, got {height_m} m; give --height M"
+        )
     if not static and not dynamic:
-        raise InvalidInput("scaling needs a static trial or at least one --trial")
+        raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
     problem = scaling_problem(frames, len(static), protocol, height_m, settings)
     start = problem.start(first_poses(problem))
@@ -82,79 +84,71 @@ def scale_subject(
     dropped = problem.outliers(solution.state, settings.outlier_m)
     if dropped.sum() > 0.5 * problem.seen.sum():
         raise NotConverged(
-            f"most markers lie further than {1e3 * settings.outlier_m:.0f} mm from the fitted body; is "
-            f"'{protocol.name}' their protocol (--protocol) and are their unit and axes right (--unit, --up)?"
+            f"most markers lie further than {1e3 * settings.outlier_m:.0f} mm from the fitted body; check that "
+            f"'{protocol.name}' is their protocol (--protocol), and their unit and axes (--unit, --up)"
         )
     if dropped.any():
         problem = problem.without(dropped)
         solution = _minimise(problem, solution.state, progress)
-    learnt = learnt_prior(problem, solution.state, solution.equations.schur_complement())
-    problem = problem.believing(learnt)
+    problem = problem.with_prior(learnt_prior(problem, solution.state, solution.equations.schur_complement()))
     solution = _minimise(problem, solution.state, progress)
-    errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
-    rms = float(np.sqrt(np.nanmean(errors**2)))
-    if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * float(np.sqrt((problem.noise_m**2).mean()))):
+    rms = float(np.sqrt(np.nanmean(np.linalg.norm(problem.errors_m(solution.state), axis=2) ** 2)))
+    noise = float(np.sqrt((problem.noise_m**2).mean()))
+    if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * noise):
         raise NotConverged(
-            f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?"
+            f"the markers fit the body only to {1e3 * rms:.0f} mm RMS; check that '{protocol.name}' is their protocol "
+            "(--protocol)"
         )
     standing = solution.state.poses[frames.trial < len(static)]
     _require_upright(standing)
-    noise = float(np.sqrt((problem.noise_m**2).mean()))
-    refused = refusal(solution.state.factors, settings.proportion_sd, rms / noise, solution.converged)
-    if refused:
-        raise NotConverged(refused)
+    factors = dict(zip(problem.body.scale_factors, solution.state.factors.tolist(), strict=True))
+    quality = FitQuality(
+        factors,
+        tuple(name for name, k in factors.items() if _at_bound(k)),
+        settings.proportion_sd,
+        rms / noise,
+        float(dropped.sum() / problem.seen.sum()),
+        solution.converged,
+    )
+    if quality.refusal:
+        raise NotConverged(quality.refusal)
     subject = _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
-    doubtful = _doubts(subject, rms / noise, float(dropped.sum() / problem.seen.sum()), settings)
-    doubtful += _names_doubted(problem, solution.state)
-    if doubtful:
-        subject.report[DOUBTS_KEY] = list(doubtful)
+    doubts = [*quality.doubts, *_exchanged(problem, solution.state)]
+    if doubts:
+        subject.report[DOUBTS_KEY] = doubts
     if len(standing):
         model = problem.posture.model
         subject.report[STANDING_KEY] = [round(float(x), 7) for x in _middle(model, standing)]
     return subject
 
 
-def _doubts(
-    subject: Subject, rms_per_noise: float, share_left_out: float, settings: ScalingSettings
-) -> tuple[str, ...]:
-    """What speaks against the fit, in words.
-
-    Args:
-        subject: The fitted person.
-        rms_per_noise: RMS distance of the markers over their noise per coordinate.
-        share_left_out: Share of the samples that were left out.
-        settings: Weights of the priors.
-    """
-    low, high = FACTOR_BOUNDS
-    factors = subject.scale_factors
-    at_bound = tuple(name for name, k in factors.items() if k <= low + 1e-9 or k >= high - 1e-9)
-    settled = bool(subject.report["converged"])
-    return doubts(factors, at_bound, settings.proportion_sd, rms_per_noise, share_left_out, settled)
+def _at_bound(factor: float) -> bool:
+    return factor <= FACTOR_BOUNDS[0] + 1e-9 or factor >= FACTOR_BOUNDS[1] - 1e-9
 
 
-def _names_doubted(problem: ScalingProblem, state: ScalingState) -> tuple[str, ...]:
-    """Markers that sit where another one of their segment should, in words."""
+def _exchanged(problem: ScalingProblem, state: ScalingState) -> tuple[str, ...]:
+    """A sentence about markers that are at the place of another one of their segment."""
     names, segments = zip(*((m.name, m.segment) for m in problem.markers), strict=True)
     found = problem.local_m(state.factors, state.offsets_m)
     places = problem.local_m(state.factors, np.zeros_like(state.offsets_m))
     pairs = [f"{names[i]} and {names[j]}" for i, j in as_each_other(segments, places, found)]
-    return (f"{', '.join(pairs)} sit where the other should: are their names exchanged?",) if pairs else ()
+    return (f"{', '.join(pairs)} are at each other's places; check for exchanged names",) if pairs else ()
 
 
 def _middle(model: Body, poses: Array) -> Array:
-    """(nq,) mean of poses (N, nq) that are alike: the mean of their differences from the first."""
+    """(nq,) mean of similar poses (N, nq): that of their differences from the first."""
     away = np.mean([model.difference(poses[0], pose) for pose in poses], axis=0)
     return model.integrate(poses[0], away)
 
 
 def _require_upright(standing: Array) -> None:
-    """Refuses standing poses (N, nq) whose pelvis lies: the up axis of the file was mistaken."""
+    """Refuses standing poses (N, nq) with a lying pelvis: the file's up axis is wrong."""
     x, y = standing[:, 3], standing[:, 4]
     tilt = np.degrees(np.arccos(np.clip(1.0 - 2.0 * (x**2 + y**2), -1.0, 1.0)))
     if len(tilt) and np.median(tilt) > MAX_STANDING_TILT_DEG:
         raise InvalidInput(
-            f"in the static trial the pelvis is tilted by {np.median(tilt):.0f}° from upright; "
-            "which axis points up? give --up"
+            f"in the static trial the pelvis is tilted by {np.median(tilt):.0f}° from upright; give the axis that "
+            "points up (--up)"
         )
 
 
@@ -204,7 +198,7 @@ def factor_covariance(body: BodyDescription, stature_sd: float, settings: Scalin
 
 
 def _weights(frames: ScalingFrames, static_trials: int, settings: ScalingSettings) -> FrameWeights:
-    """What each frame counts for, in standing and in movement."""
+    """Weights of the frames of standing and moving trials."""
     counts = np.bincount(frames.trial)
     stands = np.arange(len(counts)) < static_trials
     keypoints = any(marker.kind == "keypoint" for marker in frames.markers)
@@ -220,7 +214,7 @@ def _weights(frames: ScalingFrames, static_trials: int, settings: ScalingSetting
 
 
 def first_poses(problem: ScalingProblem) -> Array:
-    """(N, nq) poses from the markers whose place is known beforehand, and all of a segment that has none."""
+    """(N, nq) poses from the markers whose place is known beforehand, and all markers of a segment without any."""
     state = problem.start(np.zeros((0, problem.posture.model.nq)))
     sensor = problem.sensor(state)
     anatomical = np.array([m.kind != "technical" for m in problem.markers])
@@ -292,9 +286,9 @@ def _subject(
 
 
 def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:
-    """How far a marker may sit elsewhere in the next trial: a share of the freedom its protocol gives it.
+    """Spread of a marker's place in the next trial: a share of its spread in the protocol.
 
-    Nobody sticks keypoints on anew: what a network takes for a knee it takes for one in the next trial, too.
+    Keypoints are not attached anew: the network finds the same point in the next trial.
     """
     if seen and marker.kind == "keypoint":
         return MIN_SESSION_SD_M
@@ -308,7 +302,7 @@ def _report(
     dropped: BoolArray,
     settings: ScalingSettings,
 ) -> dict[str, object]:
-    """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, markers left out."""
+    """Plain numbers: fit per marker (mm), factors with standard errors and bounds reached, markers left out."""
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)
     count = len(body.scale_factors)
@@ -332,7 +326,7 @@ def _report(
             name: {
                 "value": round(float(k), 5),
                 "standard_error": round(float(error), 5),
-                "at_bound": bool(k <= FACTOR_BOUNDS[0] + 1e-9 or k >= FACTOR_BOUNDS[1] - 1e-9),
+                "at_bound": _at_bound(float(k)),
             }
             for name, k, error in zip(body.scale_factors, state.factors, errors, strict=True)
         },

@@ -1,4 +1,4 @@
-"""Which samples of which trials enter scaling, on one common list of markers."""
+"""Samples of the trials that enter scaling, on one common list of markers."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import Protocol, ProtocolMarker
 
 MIN_PRESENT = 0.05
-"""A marker seen in a smaller share of the chosen frames than this is left out."""
+"""Least share of the chosen frames in which a marker is seen."""
 
 MIN_MARKERS = 6
-"""Fewer markers than this in a frame cannot place a pelvis and anything on it."""
+"""Least number of markers in a frame: fewer do not determine a pelvis and a limb."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class ScalingFrames:
         markers: The M protocol markers seen.
         measured_m: (N, M, 3) positions, NaN where missing.
         trial: (N,) index of the trial a frame came from.
-        left_out: Why a capture's marker does not take part, by name.
+        left_out: Reason by name of each of the captures' markers that is left out.
     """
 
     markers: tuple[ProtocolMarker, ...]
@@ -46,7 +46,7 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
         per_trial: Greatest number of frames of each trial.
 
     Raises:
-        NotObservable: No marker of the protocol is there, or no frame shows enough of them.
+        NotObservable: Too few markers of the protocol, or no frame that shows enough of them.
     """
     left_out: dict[str, str] = {}
     matches = [protocol.match(trial.names) for trial in trials]
@@ -57,8 +57,8 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
     if len(markers) < MIN_MARKERS:
         names = ", ".join(trials[0].names[:6]) or "none"
         raise NotObservable(
-            f"the trial has {len(markers)} markers of protocol '{protocol.name}' (its own: {names}); "
-            "give --protocol"
+            f"the trial has {len(markers)} markers of protocol '{protocol.name}' (its own: {names}), scaling needs "
+            f"{MIN_MARKERS}; give --protocol"
         )
     column = {marker.name: i for i, marker in enumerate(markers)}
     blocks, sources = [], []
@@ -72,7 +72,10 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
         sources.append(np.full(len(chosen), index))
     measured = np.concatenate(blocks)
     if len(measured) == 0:
-        raise NotObservable(f"no frame shows {MIN_MARKERS} markers of protocol '{protocol.name}' at once")
+        raise NotObservable(
+            f"no frame shows {MIN_MARKERS} markers of protocol '{protocol.name}' at once; give --protocol, or a "
+            "capture with fewer gaps"
+        )
     share = (~np.isnan(measured).any(axis=2)).mean(axis=0)
     keep = share >= MIN_PRESENT
     left_out.update(
@@ -87,7 +90,7 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
 
 
 def _well_seen(block: Array, count: int) -> NDArray[np.intp]:
-    """Frame numbers: the trial is cut in ``count`` equal stretches, and each gives its best-seen frame."""
+    """Frame numbers: the best-seen frame of each of ``count`` equal parts of the trial."""
     seen = (~np.isnan(block).any(axis=2)).sum(axis=1)
     best = seen.max(initial=0)
     enough = np.flatnonzero(seen >= max(MIN_MARKERS, 0.6 * best))

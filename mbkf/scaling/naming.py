@@ -1,13 +1,13 @@
-"""Which marker of a protocol each trajectory is, by the cost of the person scaled from all of them together.
+"""Names of trajectories, judged by the cost of the person scaled from all of them together.
 
-Scaling from wrong names absorbs the error in the offsets of the markers. The cost of this is the cost of scaling itself
-(thesis eq. 4.1), with its spreads counted, so that names can be compared:
+Scaling from wrong names absorbs the error in the offsets of the markers, at a cost: that of scaling itself (thesis
+eq. 4.1), with the normalisation of its densities, so that names can be compared:
 
     E = C(poses, factors, offsets) + Σ 6 ln σ_p − Σ 2 ln P
 
-over the markers that the trajectories are, with placement σ_p and the odds P that a marker is worn in a moving trial;
-twice the negative logarithm of the posterior, but for a constant. With poses and factors held fixed, E is a sum over
-pairs of a trajectory and a marker.
+over the markers of the trajectories, with placement σ_p and the probability P that a marker is worn in a moving trial;
+twice the negative logarithm of the posterior, up to a constant. At fixed poses and factors E is a sum over pairs of a
+trajectory and a marker.
 """
 
 from __future__ import annotations
@@ -29,30 +29,30 @@ from mbkf.scaling.problem import ScalingSettings, ScalingState
 Indices = NDArray[np.intp]
 
 FRAMES = 12
-"""Frames that names are judged on; skin moves slowly, so that a short trial has hardly more independent looks."""
+"""Frames by which names are judged; skin moves slowly, so that a short trial has few independent observations."""
 
 SETTINGS = ScalingSettings(dynamic_posture_frames=10.0, dynamic_marker_frames=FRAMES)
-"""Names are told apart by how well a person fits them, in an ordinary posture: both count fully."""
+"""Weights for the comparison of names: markers and posture count fully."""
 
 STILL_WORN = 0.05
-"""Odds that a marker meant for static trials only is worn in a moving one."""
+"""Probability that a marker of static trials only is worn in a moving one."""
 
 FAR = 4.0
-"""A trajectory further from its marker's place than so many of its placement sd is hardly that marker."""
+"""Distance from its marker's place, in placement standard deviations, beyond which a trajectory's name is doubtful."""
 
 TOLERANCE = 1e-3
-"""The fit of a person ends where a step lowers its cost by less than this share."""
+"""Relative decrease of the cost below which the fit of a person ends."""
 
 
 @dataclass(frozen=True)
 class Naming:
-    """Names of U trajectories, and the person that goes with them.
+    """Names of U trajectories, and the person scaled from them.
 
     Attributes:
         marker: (U,) marker of every trajectory, no marker twice.
         state: Poses, factors and offsets of all M markers.
         cost: E.
-        misfit: C of each coordinate that was measured: about ¼ for a person, more than 1 where it is none.
+        misfit: C per measured coordinate: about ¼ for a person, more than 1 for other points.
     """
 
     marker: Indices
@@ -65,8 +65,8 @@ class NamingProblem:
     """U trajectories, and the M markers that they may be.
 
     Attributes:
-        markers: The protocol's, less those that software computes. All have the same noise: the skin moves alike under
-            each name, and a name must not gain by a larger or smaller noise.
+        markers: The protocol's, without computed ones. All have the same noise: skin movement does not depend on the
+            name, and a name must not gain by a larger or smaller noise.
         first: (U,) the names to begin with.
         body: The reference body.
     """
@@ -117,7 +117,7 @@ class NamingProblem:
         """
         named = np.full((len(self._shown_m), len(self.markers), 3), np.nan)
         named[:, marker] = self._shown_m
-        problem = self._problem.measuring(named)
+        problem = self._problem.with_measurements(named)
         found = minimise(
             problem.start(first_poses(problem)) if start is None else start,
             problem.linearise,
@@ -131,7 +131,7 @@ class NamingProblem:
         return Naming(marker, found.state, cost + float(self._worn[marker].sum()), misfit)
 
     def shares(self, state: ScalingState) -> tuple[Array, Array]:
-        """(U, M) share in E of a trajectory that is a marker, poses and factors fixed, and its offset (U, M, 3) then.
+        """(U, M) share of each pair of trajectory and marker in E at fixed poses and factors, and its offset (U, M, 3).
 
         The offset δ minimises n |ȳ − δ|² / σ² + |δ|² / σ_p², with mean ȳ of n samples about the protocol's place.
         """
@@ -150,9 +150,9 @@ class NamingProblem:
         return share, mean * (self._placement_m**2 / spread)[:, :, None]
 
     def offsets_m(self, naming: Naming) -> Array:
-        """(U,) how far each trajectory is from the protocol's place of its marker."""
+        """(U,) distance of each trajectory from the protocol's place of its marker."""
         return np.asarray(np.linalg.norm(naming.state.offsets_m[naming.marker], axis=1))
 
     def far(self, naming: Naming) -> BoolArray:
-        """(U,) trajectories further from their markers' places than the protocol allows."""
+        """(U,) True for trajectories further from their markers' places than the protocol allows."""
         return np.asarray(self.offsets_m(naming) > FAR * self._placement_m[naming.marker])

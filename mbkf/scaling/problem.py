@@ -13,7 +13,7 @@ reference place, shared by all frames. Residuals, each divided by its standard d
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
 from mbkf.model.scale_derivatives import origin_derivatives
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
-from mbkf.scaling.standing import Standing
+from mbkf.scaling.standing import UprightPosture
 from mbkf.scaling.usual_posture import UsualPosture
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -32,29 +32,29 @@ FACTOR_BOUNDS = (0.5, 1.6)
 """Range of a scale factor; one that ends here is reported as an active bound."""
 
 KEYPOINT_POSTURE_FRAMES = 0.5
-"""How many independent looks at the posture a moving trial of keypoints counts for: they leave joints so much freedom
+"""Number of independent observations of the posture in a moving trial of keypoints: these leave joints so much freedom
 that a squat would otherwise be scaled to look like standing."""
 
 OUTLYING_SD = 4.0
-"""A sample within so many standard deviations of its noise is no outlier: of three coordinates 0.1 % lie further."""
+"""Least distance of an outlier in standard deviations of its noise: of three coordinates 0.1 % lie further."""
 
 
 @dataclass(frozen=True)
 class ScalingSettings:
-    """How much the priors of scaling weigh.
+    """Weights of the priors of scaling.
 
     Attributes:
         proportion_sd: Spread of a factor about the person's overall size.
-        side_sd: Spread of a factor about that of both sides; limbs of one person differ by a hundredth in length.
+        side_sd: Spread of a factor about the mean of both sides; a person's limbs differ by a hundredth in length.
         stature_sd: Spread of overall size when no height is given.
         known_stature_sd: Spread of overall size when the height is given.
         standing_sd_rad: Spread of a joint's angle about neutral in a static trial, rad.
-        static_posture_frames: How many independent looks at the posture a static trial counts for.
-        dynamic_posture_frames: The same for a dynamic trial.
-        dynamic_marker_frames: How many independent looks at the markers a dynamic trial counts for: skin moves with the
+        static_posture_frames: Number of independent observations of the posture in a static trial.
+        dynamic_posture_frames: The same in a dynamic trial.
+        dynamic_marker_frames: Number of independent observations of the markers in a dynamic trial: skin moves with the
             posture and not anew in every frame.
-        frames_per_trial: Most frames taken from one trial.
-        outlier_m: A sample further than this from the fitted body is left out, m.
+        frames_per_trial: Greatest number of frames taken from one trial.
+        outlier_m: Distance from the fitted body beyond which a sample is left out, m.
     """
 
     proportion_sd: float = 0.06
@@ -80,18 +80,18 @@ class ScalingState:
 
 @dataclass(frozen=True)
 class FrameWeights:
-    """What each of N frames counts for.
+    """Weights of N frames.
 
     Attributes:
-        markers: (N,) independent looks at the markers.
-        posture: (N,) independent looks at the posture.
-        stands: (N,) whether the person stands straight.
+        markers: (N,) independent observations of the markers.
+        posture: (N,) independent observations of the posture.
+        standing: (N,) True where the person stands straight.
         upright: (N,) weight of flat feet and an upright root.
     """
 
     markers: Array
     posture: Array
-    stands: BoolArray
+    standing: BoolArray
     upright: Array
 
     @classmethod
@@ -99,12 +99,12 @@ class FrameWeights:
         """Frames of a movement.
 
         Args:
-            frames: How many.
-            markers: Looks at the markers in all of them, at most one in each.
+            frames: Number of frames.
+            markers: Observations of the markers in all of them, at most one in each.
             posture: The same for the posture.
         """
-        shares = [np.full(frames, min(1.0, looks / max(1, frames))) for looks in (markers, posture)]
-        return cls(shares[0], shares[1], np.zeros(frames, dtype=bool), np.zeros(frames))
+        shares = [np.full(frames, min(1.0, count / max(1, frames))) for count in (markers, posture)]
+        return cls(*shares, np.zeros(frames, dtype=bool), np.zeros(frames))
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class ScalingPrior:
 
 @dataclass(frozen=True)
 class _Shown:
-    """What N frames of M markers show, whitened; 0 where a marker is missing.
+    """Errors of N frames of M markers with derivatives, whitened; 0 where a marker is missing.
 
     Attributes:
         errors: (N, M, 3) modelled minus measured.
@@ -148,9 +148,10 @@ class ScalingProblem:
         body: The reference body.
         markers: The M protocol markers.
         measured_m: (N, M, 3) measured positions, NaN where missing.
-        weights: What each frame counts for.
+        weights: Weights of the frames.
         prior: Prior of factors and offsets.
-        seen: (N, M) whether a marker is there.
+        standing_sd_rad: Spread of a joint's angle about neutral in straight standing.
+        seen: (N, M) True where a marker is present.
     """
 
     def __init__(
@@ -162,16 +163,6 @@ class ScalingProblem:
         prior: ScalingPrior,
         standing_sd_rad: float = ScalingSettings.standing_sd_rad,
     ) -> None:
-        """Makes the problem.
-
-        Args:
-            body: The reference body.
-            markers: The M protocol markers.
-            measured_m: (N, M, 3) measured positions, NaN where missing.
-            weights: What each frame counts for.
-            prior: Prior of factors and offsets.
-            standing_sd_rad: Spread of a joint's angle about neutral in straight standing.
-        """
         self.body, self.markers, self.prior, self.weights = body, markers, prior, weights
         self.measured_m = read_only(measured_m)
         self.seen = np.asarray(~np.isnan(self.measured_m).any(axis=2))
@@ -182,11 +173,11 @@ class ScalingProblem:
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
         self.posture = PostureSensor(HumanModel.scaled(body=body))
         self._usual = UsualPosture(self.posture, standing_sd_rad)
-        self._standing = Standing(self.posture.model)
+        self._upright = UprightPosture(self.posture.model)
         self._built: tuple[ScalingState, MarkerSensor] | None = None
 
     def start(self, poses: Array) -> ScalingState:
-        """State with factors and offsets as expected."""
+        """State with the prior's factors and offsets."""
         return ScalingState(poses, self.prior.factors, self.prior.offsets_m)
 
     def local_m(self, factors: Array, offsets_m: Array) -> Array:
@@ -205,9 +196,9 @@ class ScalingProblem:
         return np.asarray(self.reference_m[:, :, None] * self._segment_scale)
 
     def sensor(self, state: ScalingState) -> MarkerSensor:
-        """The markers on the body as the state has it.
+        """The markers on the body of a state.
 
-        The last one is kept: a state whose cost was good is linearised next, and building a body takes milliseconds.
+        The last one is cached: a state of accepted cost is linearised next, and building a body takes milliseconds.
         """
         if self._built is None or self._built[0] is not state:
             model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
@@ -228,22 +219,16 @@ class ScalingProblem:
     def without(self, samples: BoolArray) -> ScalingProblem:
         """The same problem without some samples (N, M)."""
         kept = np.where(samples[:, :, None], np.nan, self.measured_m)
-        return self.measuring(kept)
+        return self.with_measurements(kept)
 
-    def measuring(self, measured_m: Array) -> ScalingProblem:
+    def with_measurements(self, measured_m: Array) -> ScalingProblem:
         """The same problem with other samples (N, M, 3)."""
         other = copy(self)
         other.measured_m = read_only(measured_m)
         other.seen = np.asarray(~np.isnan(other.measured_m).any(axis=2))
         return other
 
-    def expecting(self, offset_precision: Array) -> ScalingProblem:
-        """The same problem with another precision (3 M, 3 M) of the offsets."""
-        other = copy(self)
-        other.prior = replace(self.prior, offset_precision=offset_precision)
-        return other
-
-    def believing(self, prior: ScalingPrior) -> ScalingProblem:
+    def with_prior(self, prior: ScalingPrior) -> ScalingProblem:
         """The same problem with another prior."""
         other = copy(self)
         other.prior = prior
@@ -260,9 +245,9 @@ class ScalingProblem:
         total = 0.0
         for t, q in enumerate(state.poses):
             if self.weights.posture[t]:
-                total += self.weights.posture[t] * self._usual.cost(q, bool(self.weights.stands[t]))
+                total += self.weights.posture[t] * self._usual.cost(q, bool(self.weights.standing[t]))
             if self.weights.upright[t]:
-                tilt = self._standing.residuals(self.posture.model, q)
+                tilt = self._upright.residuals(self.posture.model, q)
                 total += self.weights.upright[t] * float(tilt @ tilt)
         return total
 
@@ -301,12 +286,12 @@ class ScalingProblem:
             [across @ by_factors, np.swapaxes(by_offset, 1, 2).reshape(len(state.poses), nv, -1)], axis=2
         )
         for t, q in enumerate(state.poses):
-            usual, pull = self._usual.equations(q, bool(self.weights.stands[t]))
+            usual, pull = self._usual.equations(q, bool(self.weights.standing[t]))
             frames[t] += self.weights.posture[t] * usual
             frame_gradient[t] += self.weights.posture[t] * pull
             upright = self.weights.upright[t]
             if upright:
-                tilt, by_tilt = self._standing.linearised(self.posture.model, q)
+                tilt, by_tilt = self._upright.linearised(self.posture.model, q)
                 frames[t] += upright * (by_tilt.T @ by_tilt)
                 frame_gradient[t] += upright * (by_tilt.T @ tilt)
         corner, corner_gradient = self._prior_equations(state)
@@ -315,7 +300,7 @@ class ScalingProblem:
         return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, cost)
 
     def _add_shared(self, shown: _Shown, corner: Array, gradient: Array) -> None:
-        """Adds what the markers say about factors and offsets: the offsets of two markers have no term in common."""
+        """Adds the markers' terms of factors and offsets: the offsets of two markers have no term in common."""
         count, markers = len(self.body.scale_factors), np.arange(len(self.markers))
         flat = shown.by_factors.reshape(-1, count)
         corner[:count, :count] += flat.T @ flat

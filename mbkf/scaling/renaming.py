@@ -1,9 +1,9 @@
-"""The likeliest names of trajectories, searched from names that may be wrong, and the rivals that come near to them.
+"""The likeliest names of trajectories, searched from names that may be wrong, and the alternatives tried.
 
-Poses and names are brought into line by turns: a person is fitted to the names, the names are assigned anew to that
-person. E falls at every turn (:mod:`mbkf.scaling.naming`), but may come to rest where names are best only for poses
-that suit them. So single names are then changed, the most promising first, with the person fitted anew; and where
-markers are still far from their places, whole limbs are exchanged with those of the other side.
+A person is fitted to the names, and names are assigned anew to that person, in turns. E falls at every turn
+(:mod:`mbkf.scaling.naming`), but may end in a local minimum of poses and names. Single names are therefore changed,
+the most promising first, with the person fitted anew; and where markers are still far from their places, whole limbs
+are exchanged with those of the other side.
 """
 
 from __future__ import annotations
@@ -19,27 +19,27 @@ from mbkf.model.sides import mirrored
 from mbkf.scaling.naming import Indices, Naming, NamingProblem
 
 TURNS = 8
-"""Names and poses are brought into line at most so often."""
+"""Greatest number of turns of fitting and assigning."""
 
 LEAST_GAIN = 1.0
-"""Names are changed for a gain in E of more than this."""
+"""Least gain in E for which names are changed."""
 
 TRIED = 60
-"""So many changes of one name are tried before names are taken to be the likeliest."""
+"""Changes of one name that are tried in vain before the search ends."""
 
 MOST_CHANGES = 40
-"""Names that are still not settled after so many changes are left."""
+"""Greatest number of changes."""
 
 LOOK_STEPS, STEPS, FIRST_STEPS = 2, 6, 40
-"""Steps of a first look at a change, of the fit that judges it, and of one that begins from nothing."""
+"""Iterations of a first fit after a change, of the fit that judges it, and of a fit without a start."""
 
 HOPELESS = 60.0
-"""A change that costs more than this at the first look is not fitted any further."""
+"""A change that costs more than this after the first fit is not fitted any further."""
 
 
 @dataclass(frozen=True)
 class Renamed:
-    """The likeliest names, and those that were tried instead of them with their costs, the cheapest first."""
+    """The likeliest names, and the alternatives tried, the cheapest first."""
 
     naming: Naming
     rivals: tuple[Naming, ...]
@@ -50,10 +50,10 @@ def likeliest(problem: NamingProblem, progress: Callable[[int, int], None] | Non
 
     Args:
         problem: Trajectories and markers.
-        progress: Called with changes tried and changes to be tried before the names are settled.
+        progress: Called with changes tried and changes to be tried.
     """
     report = progress or (lambda *_: None)
-    found = _changed(problem, in_line(problem), report)
+    found = _changed(problem, settled_names(problem), report)
     sided = _on_their_sides(problem, found.naming)
     if sided is not found.naming:
         found = _changed(problem, sided, report)
@@ -62,7 +62,7 @@ def likeliest(problem: NamingProblem, progress: Callable[[int, int], None] | Non
 
 
 def _changed(problem: NamingProblem, naming: Naming, report: Callable[[int, int], None]) -> Renamed:
-    """Names with single ones changed as long as that makes them likelier."""
+    """Names after changes of single ones that make them likelier."""
     rivals: list[Naming] = []
     for _ in range(MOST_CHANGES):
         rivals.clear()
@@ -78,16 +78,16 @@ def _changed(problem: NamingProblem, naming: Naming, report: Callable[[int, int]
             rivals.append(one)
         if better is None:
             break
-        naming = _in_line(problem, better)
+        naming = _settled(problem, better)
     return Renamed(naming, tuple(sorted(rivals, key=lambda one: one.cost)))
 
 
-def in_line(problem: NamingProblem) -> Naming:
-    """The first names and the poses that go with them brought into line."""
-    return _in_line(problem, problem.fitted(problem.first, None, FIRST_STEPS))
+def settled_names(problem: NamingProblem) -> Naming:
+    """Names and poses that agree, from the first names."""
+    return _settled(problem, problem.fitted(problem.first, None, FIRST_STEPS))
 
 
-def _in_line(problem: NamingProblem, naming: Naming) -> Naming:
+def _settled(problem: NamingProblem, naming: Naming) -> Naming:
     for _ in range(TURNS):
         share, _ = problem.shares(naming.state)
         marker = np.asarray(linear_sum_assignment(share)[1], dtype=np.intp)
@@ -103,8 +103,8 @@ def _in_line(problem: NamingProblem, naming: Naming) -> Naming:
 def _on_their_sides(problem: NamingProblem, naming: Naming) -> Naming:
     """Names with those of whole limbs exchanged between left and right, where that is likelier.
 
-    Looked for only where markers are far from their places. Names brought into line with a limb on the wrong side are
-    scrambled, so that the first ones are exchanged, too.
+    Tried only where markers are far from their places. Names that settled with a limb on the wrong side are scrambled,
+    so that the first names are exchanged as well.
     """
     mirror = _mirror_images(problem)
     for limb in _limbs(problem):
@@ -112,14 +112,14 @@ def _on_their_sides(problem: NamingProblem, naming: Naming) -> Naming:
             crossed = np.where(limb[names], mirror[names], names)
             if not problem.far(naming).any() or (crossed == names).all():
                 continue
-            other = _in_line(problem, problem.fitted(crossed, None, FIRST_STEPS))
+            other = _settled(problem, problem.fitted(crossed, None, FIRST_STEPS))
             if other.cost < naming.cost - LEAST_GAIN:
                 naming = other
     return naming
 
 
 def _mirror_images(problem: NamingProblem) -> Indices:
-    """(M,) the marker at the same place of the other side, or the marker itself where there is none."""
+    """(M,) the marker at the same place of the other side, else the marker itself."""
     place = np.array([marker.position_m for marker in problem.markers])
     segments = [marker.segment for marker in problem.markers]
     image = np.arange(len(place))
@@ -132,7 +132,7 @@ def _mirror_images(problem: NamingProblem) -> Indices:
 
 
 def _limbs(problem: NamingProblem) -> list[BoolArray]:
-    """(M,) markers of a segment that has another side, of the segments beyond it, and of the same on that side."""
+    """(M,) True for markers of a paired segment and of the segments beyond it, on both sides."""
     body, segments = problem.body, [marker.segment for marker in problem.markers]
     found = []
     for segment in body.segments:
@@ -148,7 +148,7 @@ def _limbs(problem: NamingProblem) -> list[BoolArray]:
 
 
 def _refitted(problem: NamingProblem, naming: Naming, marker: Indices, steps: int) -> Naming:
-    """The person that other names make, sought from the poses of those before."""
+    """The person fitted to other names, from the poses of the names before."""
     _, offsets = problem.shares(naming.state)
     start = np.zeros_like(naming.state.offsets_m)
     start[marker] = offsets[np.arange(len(marker)), marker]
@@ -156,9 +156,9 @@ def _refitted(problem: NamingProblem, naming: Naming, marker: Indices, steps: in
 
 
 def _changes(share: Array, marker: Indices) -> list[Indices]:
-    """Names with one trajectory's changed, the most promising first, by the change of E with the poses fixed.
+    """Names after a change of one trajectory's, the most promising first, by the change of E with the poses fixed.
 
-    The trajectory whose name it takes gets the best of the names that are free then.
+    The trajectory whose name it takes gets the best of the names that are then free.
     """
     owner = {int(one): u for u, one in enumerate(marker)}
     own = share[np.arange(len(share)), marker]

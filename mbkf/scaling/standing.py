@@ -1,8 +1,8 @@
-"""A person who stands for a static trial stands upright on flat feet: what keypoints alone do not tell.
+"""Prior of a static trial: the person stands upright on flat feet, which keypoints do not show.
 
-Joint centres do not show how a foot is pitched or a pelvis tilted beyond what the places of keypoints are known to, and
-these by one or two centimetres only: on a foot that is six degrees. Of standing more is known. Residuals per segment,
-each divided by its standard deviation: the two horizontal components of its long axis, A_b(x) e_z.
+The places of keypoints are known to one or two centimetres, which leaves the pitch of a foot uncertain by six degrees,
+and the tilt of the pelvis likewise. In standing both are known better. Residuals per segment, each divided by its
+standard deviation: the two horizontal components of its long axis, A_b(x) e_z.
 """
 
 from __future__ import annotations
@@ -14,21 +14,20 @@ from mbkf.model.body import Body
 from mbkf.model.sides import mirrored
 
 FLAT_SD_RAD = np.deg2rad(3.0)
-"""How far a sole is from level in standing."""
+"""Spread of a sole's inclination in standing."""
 
 UPRIGHT_SD_RAD = np.deg2rad(6.0)
-"""How far a pelvis is from the reference posture's."""
+"""Spread of the inclination of pelvis and trunk about the reference posture's."""
 
 
-class Standing:
-    """Residuals of upright standing.
+class UprightPosture:
+    """Residuals of upright standing on flat feet.
 
     Attributes:
         sd: (S, 1) spread of the inclination of each segment, rad.
     """
 
     def __init__(self, model: Body) -> None:
-        """Args: the body, whose roles name the feet and the root."""
         segments = model.description.segments
         trunk = [s.name for s in segments if s.parent == model.roles.root and s.name == mirrored(s.name)]
         names = [*model.roles.feet, model.roles.root, *trunk]

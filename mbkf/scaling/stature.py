@@ -1,4 +1,4 @@
-"""A person of whom only mass and height are known: the reference body, larger or smaller as a whole."""
+"""A person of given mass and height: the reference body, larger or smaller as a whole."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mbkf.io.subject import Subject
 from mbkf.model.body_file import load_body
 
 HEIGHT_M, MASS_KG = (0.5, 2.5), (5.0, 400.0)
-"""No one is shorter or taller, lighter or heavier."""
+"""Ranges of a person's height and mass."""
 
 
 def person_of_stature(mass_kg: float, height_m: float, body: str = "human18") -> Subject:
@@ -21,12 +21,12 @@ def person_of_stature(mass_kg: float, height_m: float, body: str = "human18") ->
         body: Name of the reference body.
 
     Raises:
-        InvalidInput: Mass or height is no person's.
+        InvalidInput: Mass or height is outside a person's range.
         UnknownName: There is no such body.
     """
     for name, value, (low, high) in (("mass", mass_kg, MASS_KG), ("height", height_m, HEIGHT_M)):
         if not (np.isfinite(value) and low <= value <= high):
-            raise InvalidInput(f"--{name} {value:g}: a person's is between {low:g} and {high:g}")
+            raise InvalidInput(f"--{name} {value:g}: give a {name} between {low:g} and {high:g}")
     description = load_body(body)
     share = height_m / description.reference_height_m
     factors = dict.fromkeys(description.scale_factors, float(share))

@@ -34,7 +34,7 @@ COORDINATES = (
 
 
 LABELLED = "labelled.c3d"
-"""The raw capture with the names it was given."""
+"""The raw capture with its labels."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class CoordinateError:
 
     Attributes:
         name: Clinical coordinate.
-        angle_offset: Mean difference of the angle (where the scaled segment's axes point elsewhere).
+        angle_offset: Mean difference of the angle, from different axes of the scaled segment.
         angle_rms: RMS of the angle without that offset.
         moment_rms: RMS of the torque.
         moment_range: Range of the true torque.
@@ -80,14 +80,14 @@ def run_demo(
 
     Args:
         motion: Name of a registered motion, see :mod:`mbkf.synthesis.motions`.
-        folder: Where the capture goes, and the result into its subfolder ``result``.
+        folder: Folder of the capture; the result is in its subfolder ``result``.
         seconds: Duration; the motion's usual one when None.
         seed: Chooses person, motion and noise.
-        filter_name: Which filter.
+        filter_name: Name of the filter.
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        MbkfError: The folder is a file, or motion, duration or filter make no sense.
+        MbkfError: The folder is a file, or motion, duration or filter is impossible.
     """
     folder = check_folder(folder)
     person, capture = synthesise(motion, seconds=seconds, seed=seed, progress=progress)

@@ -17,10 +17,10 @@ from mbkf.trial.exchange.result_c3d import write_result_c3d
 from mbkf.trial.exchange.result_glb import write_result_glb
 
 FORMATS = {"urdf": to_urdf, "mjcf": to_mjcf}
-"""What a subject can be exported to, by name."""
+"""Formats of a subject, by name."""
 
 RESULT_FORMATS = {"c3d": write_result_c3d, "bvh": write_result_bvh, "glb": write_result_glb}
-"""What a result can be exported to, by name."""
+"""Formats of a result, by name."""
 
 
 def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
@@ -33,7 +33,7 @@ def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
 
     Raises:
         UnknownName: The format, the body, or a marker's segment is unknown.
-        FileFormatError: A folder stands where the file is needed.
+        FileFormatError: The path is a folder.
         OSError: The file cannot be written.
     """
     _check(kind, FORMATS, path)
@@ -50,12 +50,12 @@ def export_result(reconstruction: Reconstruction, kind: str, path: str | Path) -
         reconstruction: The result, e.g. of :func:`mbkf.reconstruct` or :func:`mbkf.read_reconstruction`.
         kind: "c3d" (Mokka, Visual3D, Nexus: markers, angles, moments, powers, joint centres, reactions, events), "bvh"
             (animation: the segments' rotations, cm, y up) or "glb" (glTF 2.0: the moving body, m, y up).
-        path: The file to write; that of a C3D file ends in ``.c3d``.
+        path: The file to write; the name of a C3D file ends in ``.c3d``.
 
     Raises:
         UnknownName: The format or the subject's body is unknown.
-        FileFormatError: A folder stands where the file is needed.
-        InvalidInput: There is no motion in the result, or a C3D file is named otherwise.
+        FileFormatError: The path is a folder.
+        InvalidInput: The result holds no motion, or the name of a C3D file ends otherwise.
         OSError: The file cannot be written.
     """
     _check(kind, RESULT_FORMATS, path)
@@ -66,4 +66,4 @@ def _check(kind: str, formats: Iterable[str], path: str | Path) -> None:
     if kind not in formats:
         raise UnknownName("format", kind, formats)
     if Path(path).is_dir():
-        raise FileFormatError(path, "is a folder; name a file")
+        raise FileFormatError(path, "is a folder; give a file name")

@@ -6,22 +6,20 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from mbkf.conventions import BoolArray
 from mbkf.errors import MbkfError, UnknownName
 from mbkf.io.axes import axes_matrix, axes_text
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
 from mbkf.model.protocol import detect_protocol
+from mbkf.numerics.runs import runs
 from mbkf.trial.axes.captures import find_axes_by_names
-from mbkf.trial.preparation.coverage import MarkerUse, use_by_protocol
+from mbkf.trial.preparation.coverage import use_by_protocol
 from mbkf.trial.protocol.choice import shipped_protocol
-from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
+from mbkf.trial.protocol.inferred import infer_marker_set
 
 
 @dataclass(frozen=True)
 class MarkerSummary:
-    """How completely one marker was seen.
+    """Visibility of one marker.
 
     Attributes:
         name: Its name.
@@ -36,7 +34,7 @@ class MarkerSummary:
 
 @dataclass(frozen=True)
 class PlateSummary:
-    """What one force plate recorded.
+    """Recording of one force plate.
 
     Attributes:
         name: Its name.
@@ -70,15 +68,15 @@ class ChannelSummary:
 
 @dataclass(frozen=True)
 class AxesSummary:
-    """How a capture's axes were read, and what the body in it says.
+    """Axes of a capture as read, and as the body in it shows them.
 
     Attributes:
         read: Axes of the file that were taken as forward, left and up.
-        source: Where that is known from.
-        verdict: What was found: "right", "put right", "kept", "unclear" (somebody lies), "refused", "unknown" (too few
-            markers whose names are known) or "given".
+        source: Source of that reading.
+        verdict: "right", "put right", "kept", "unclear" (the person lies), "refused", "unknown" (too few markers with
+            known names) or "given".
         used: Axes that the other commands would use.
-        note: One line about it, "" where there is nothing to tell.
+        note: A sentence about it, "" where nothing was changed.
     """
 
     read: str
@@ -90,16 +88,16 @@ class AxesSummary:
 
 @dataclass(frozen=True)
 class ProtocolSummary:
-    """The marker set that `mbkf scale` would use, and how much of the capture it explains.
+    """The marker set that `mbkf scale` would use, and the share of the capture's markers that it knows.
 
     Attributes:
         name: Its name.
-        known: Number of markers that it knows, of those that have a name and were seen.
-        markers: Number of these.
+        known: Number of markers that it knows.
+        markers: Number of markers that have a name and were seen.
         share: The first over the second, 0 to 1.
-        accepted: Whether `mbkf scale` takes it unasked.
-        ignored: Why a marker is not used, by its name.
-        told: What was inferred, in one line; "" for a shipped protocol.
+        accepted: True where `mbkf scale` uses it by default.
+        ignored: Reason why a marker is not used, by its name.
+        told: Summary of an inferred set; "" for a shipped protocol.
         doubtful: Segments of every doubtful marker with their probabilities, of an inferred set.
     """
 
@@ -115,7 +113,7 @@ class ProtocolSummary:
 
 @dataclass(frozen=True)
 class CaptureSummary:
-    """What a capture holds.
+    """Contents of a capture.
 
     Attributes:
         path: The file.
@@ -135,10 +133,10 @@ class CaptureSummary:
         derived: Number of derived points by kind.
         channels: Each analog channel.
         events: Labelled instants.
-        notes: What the reader noticed.
-        axes: How the axes were read, and what the body says.
+        notes: Remarks of the reader.
+        axes: The axes as read, and as the body shows them.
         protocol: The marker set: a shipped protocol or an inferred one, else the protocol that knows most of the names;
-            None where there is neither.
+            None without any.
     """
 
     path: str
@@ -164,14 +162,7 @@ class CaptureSummary:
 
 
 def describe(capture: Capture) -> CaptureSummary:
-    """Summarise a capture.
-
-    Args:
-        capture: What a reader returned.
-
-    Returns:
-        Counts, shares and ranges, ready to be shown.
-    """
+    """Counts, shares and ranges of a capture."""
     markers = capture.markers
     present = markers.present
     seen = markers.positions_m[present]
@@ -191,7 +182,7 @@ def describe(capture: Capture) -> CaptureSummary:
         missing_fraction=float(1.0 - present.mean()) if present.size else 0.0,
         extent_m=extent,
         markers=tuple(
-            MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, count_pieces(column))
+            MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, len(runs(column)))
             for name, column in zip(markers.names, present.T, strict=True)
         ),
         plates=tuple(_plate(plate) for plate in capture.plates),
@@ -205,31 +196,22 @@ def describe(capture: Capture) -> CaptureSummary:
 
 
 def _protocol(capture: Capture) -> ProtocolSummary | None:
-    """The shipped protocol that knows enough of the names, else an inferred one; None without a person."""
-    shipped = shipped_protocol([capture])
-    if shipped is None:
-        try:
-            inferred = infer_marker_set(None, [capture])
-        except MbkfError:
-            return _nearest(capture)
-        return _summary(use_by_protocol([capture.markers], inferred.protocol), inferred)
-    return _summary(use_by_protocol([capture.markers], shipped), None)
-
-
-def _nearest(capture: Capture) -> ProtocolSummary | None:
-    """The shipped protocol that knows most of the names, though too few."""
+    """The shipped protocol that knows enough of the names, else an inferred one, else the one that knows most."""
+    inferred, protocol = None, shipped_protocol([capture])
     try:
-        protocol = detect_protocol(capture.markers.names)
-    except UnknownName:
-        return None
-    return _summary(use_by_protocol([capture.markers], protocol), None)
-
-
-def _summary(use: MarkerUse, inferred: InferredSet | None) -> ProtocolSummary:
+        if protocol is None:
+            inferred = infer_marker_set(None, [capture])
+            protocol = inferred.protocol
+    except MbkfError:
+        try:
+            protocol = detect_protocol(capture.markers.names)
+        except UnknownName:
+            return None
+    use = use_by_protocol([capture.markers], protocol)
     known = use.markers - len(use.unknown)
-    told, doubts = ("", {}) if inferred is None else (inferred.line, inferred.doubts)
+    line, doubts = ("", {}) if inferred is None else (inferred.line, inferred.doubts)
     return ProtocolSummary(
-        use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored), told, doubts
+        use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored), line, doubts
     )
 
 
@@ -242,18 +224,6 @@ def _axes(capture: Capture) -> AxesSummary:
         used=axes_text(found.turn @ axes_matrix(capture.axes)),
         note=found.note,
     )
-
-
-def count_pieces(present: BoolArray) -> int:
-    """Number of contiguous stretches in which something is seen.
-
-    Args:
-        present: (T,) whether it is seen in a frame.
-
-    Returns:
-        The number of stretches, 0 where it is never seen.
-    """
-    return int(np.count_nonzero(np.diff(np.concatenate([[False], present]).astype(int)) == 1))
 
 
 def _plate(plate: PlateReadings) -> PlateSummary:

@@ -1,7 +1,7 @@
-"""Labels, a marker set and a scaled subject from an unlabelled capture of which nothing is known but the body mass.
+"""Labels, a marker set and a scaled subject from an unlabelled capture, given only the body mass.
 
-The tracks of the capture take the place of names: a marker set is inferred from them, tracks that are pieces of one
-marker are brought together, the person is scaled from them, and the capture is labelled by the scaled person.
+The tracks of the capture replace names: a marker set is inferred from them, tracks that are pieces of one marker are
+joined, the person is scaled from them, and the capture is labelled by the scaled person.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ STAGE = "Inferring the marker set"
 """Name of the first stage in progress reports."""
 
 LEAST_SEEN = 0.1
-"""Share of the frames that a track must be seen in to be a marker by itself."""
+"""Least share of the frames in which a track of its own is seen."""
 
 SAME_PLACE_M = 0.04
-"""Two tracks that are never seen together are one marker where their places on a segment are nearer than this."""
+"""Greatest distance of the places, on one segment, of two tracks of one marker that are never seen together."""
 
 
 def label_nameless(
@@ -42,7 +42,7 @@ def label_nameless(
     height_m: float | None = None,
     progress: StageCallback | None = None,
 ) -> tuple[Labelling, Subject, InferredSet]:
-    """Names the points of a capture whose marker set nobody knows, after landmarks and segments of the body.
+    """Names the points of a capture of unknown marker set, after landmarks and segments of the body.
 
     Args:
         capture: Unlabelled points; names are ignored, columns may be tracks or shuffled in every frame.
@@ -54,9 +54,9 @@ def label_nameless(
         The labels, the person, and the marker set with its doubts.
 
     Raises:
-        InvalidInput: No mass, or a mass or height that cannot be.
-        NotObservable: Too few points, or no person is found among them.
-        NotConverged: The points do not fit a person.
+        InvalidInput: No mass, or an impossible mass or height.
+        NotObservable: Too few points, or no body is found among them.
+        NotConverged: The points do not fit a body.
     """
     report = progress or (lambda *_: None)
     mass = capture.subject_mass_kg if mass_kg is None else mass_kg
@@ -95,7 +95,7 @@ def label_nameless(
 
 
 def _turn(before: MarkerTrajectories, after: Capture) -> Array:
-    """(3, 3) what the capture was turned by when its axes were put right."""
+    """(3, 3) rotation by which the capture's axes were corrected."""
     one, other = before.positions_m, after.markers.positions_m
     seen = ~np.isnan(one).any(axis=2)
     turn, *_ = np.linalg.lstsq(one[seen], other[seen], rcond=None)
@@ -103,19 +103,19 @@ def _turn(before: MarkerTrajectories, after: Capture) -> Array:
 
 
 def _named(inferred: Protocol, tracks: Tracks, number: dict[str, int]) -> tuple[Protocol, Indices]:
-    """The marker set with pieces of one marker brought together and names of the body, and each track's marker.
+    """The marker set with the pieces of a marker joined and named after the body, and each track's marker.
 
     Args:
         inferred: Its markers are tracks.
         tracks: The tracks.
-        number: Track by the name it was given.
+        number: Number of the track by its name.
     """
     lives = tracks.visible()
     groups: list[tuple[ProtocolMarker, list[int]]] = []
     seen_most = sorted(inferred.markers, key=lambda marker: -lives[number[marker.name]].sum())
     for marker in seen_most:
         track = number[marker.name]
-        home = next(
+        known = next(
             (
                 members
                 for first, members in groups
@@ -125,10 +125,10 @@ def _named(inferred: Protocol, tracks: Tracks, number: dict[str, int]) -> tuple[
             ),
             None,
         )
-        if home is None:
+        if known is None:
             groups.append((marker, [track]))
         else:
-            home.append(track)
+            known.append(track)
     owner = np.full(tracks.count, HIDDEN, dtype=np.intp)
     used: Counter[str] = Counter()
     markers = []

@@ -1,4 +1,4 @@
-"""Which degrees of freedom a marker protocol determines, and which go with named markers."""
+"""Degrees of freedom that a marker protocol determines, and those lost with named markers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ProtocolObservability:
         markers: Names of the markers that were counted, without the lost ones.
         lost: Names of the markers taken away.
         before: Observability with all markers.
-        after: What the remaining ones determine; the same as ``before`` when none is lost.
+        after: Observability with the remaining ones; the same as ``before`` when no marker is lost.
     """
 
     protocol: Protocol
@@ -33,7 +33,7 @@ class ProtocolObservability:
 
     @property
     def lost_dofs(self) -> tuple[str, ...]:
-        """Dofs that the loss takes: determined before in every posture, afterwards not in every one."""
+        """Dofs that are determined in every posture before the loss, and not in every posture after it."""
         seen_before = (
             set(self.before.dofs) - set(self.before.unobserved) - set(self.before.sometimes_unobserved)
         )
@@ -44,7 +44,7 @@ class ProtocolObservability:
 def check_protocol(protocol: Protocol, lost: Collection[str] = ()) -> ProtocolObservability:
     """Observability of a protocol on its reference body, and without the lost markers.
 
-    Computed points (joint centres) do not count: they are never tracked.
+    Computed points (joint centres) are left out: they are never tracked.
 
     Args:
         protocol: The protocol.
@@ -58,7 +58,9 @@ def check_protocol(protocol: Protocol, lost: Collection[str] = ()) -> ProtocolOb
     gone = _resolve(protocol, followed, lost)
     left = [marker for marker in followed if marker.name not in gone]
     if not left:
-        raise NotObservable(f"protocol {protocol.name} has no marker left without {', '.join(gone)}")
+        raise NotObservable(
+            f"protocol {protocol.name} has no marker left without the {len(gone)} lost ones; give fewer"
+        )
     model = HumanModel.scaled(body=protocol.body)
     before = _analyse(model, followed)
     return ProtocolObservability(

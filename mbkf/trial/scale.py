@@ -20,17 +20,14 @@ from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
-from mbkf.trial.preparation.exchanged import trials_put_right
+from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right
 from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set, inferred_choice
 
-EXCHANGED_KEY = "names_exchanged"
-"""Key of a subject's report under which names are told that trials exchange: ``[a, b, frames]`` by pair."""
-
 EXPECTED = 4.0
-"""Markers that fit worse (RMS) than so many times their noise may not be those that their names say."""
+"""RMS distance of the markers, over their noise, above which the names may belong to other markers."""
 
 BETTER = 0.7
-"""An inferred marker set takes a shipped one's place where its markers fit to so much of that one's RMS, or better."""
+"""Greatest RMS distance of an inferred marker set, as a share of the shipped one's, with which it is used instead."""
 
 
 def scale(
@@ -54,21 +51,21 @@ def scale(
         protocol: Protocol, its name or its file; by default the shipped one that the marker names belong to, else one
             inferred from the captures.
         body: The reference body: its name, a file of your own, or what :func:`mbkf.load_body` read; by default the one
-            the protocol was written for. Markers of segments it does not have are left out.
+            the protocol was written for. Markers of segments that it lacks are left out.
         settings: Weights of the priors.
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: No trial, no mass, a mass or height that cannot be, a protocol placed on another body, axes or a
-            unit that cannot be right.
+        InvalidInput: No trial, no mass, an impossible mass or height, a protocol placed on another body, or axes or a
+            unit that contradict the body.
         UnknownName: There is no such protocol or body, or it names unknown segments.
         FileFormatError: The body's or the protocol's file is missing or damaged.
-        NotObservable: Too few markers of the protocol, or no person is found among markers that none knows.
-        NotConverged: The markers do not fit a person.
+        NotObservable: Too few markers of the protocol, or markers without a protocol among which no body is found.
+        NotConverged: The markers do not fit a body.
     """
     captures = ([] if static is None else [static]) + list(trials)
     if not captures:
-        raise InvalidInput("scaling needs a static trial or at least one --trial")
+        raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     if mass_kg is None:
         mass_kg = next((c.subject_mass_kg for c in captures if c.subject_mass_kg is not None), None)
     if mass_kg is None:
@@ -101,7 +98,7 @@ def scale(
 def _better(
     scaled: Callable[[ChosenSet], Subject], shipped: ChosenSet, inferred: Callable[[], ChosenSet]
 ) -> Subject:
-    """The person scaled by a shipped protocol; by an inferred set where the protocol's names fit no body well."""
+    """The person scaled by a shipped protocol, or by an inferred set where that fits clearly better."""
     subject, refused = None, None
     try:
         subject = scaled(shipped)
@@ -137,7 +134,7 @@ def _scaled(
     settings: ScalingSettings | None,
     progress: Callable[[int, int], None] | None,
 ) -> Subject:
-    """The person scaled by a marker set, with what became of the markers in the report."""
+    """The person scaled by a marker set; the report also holds the use of the markers, axes and exchanged names."""
     protocol = chosen.protocol
     use = use_by_protocol([one.markers for one in captures], protocol)
     checked = checked_for_protocol(chosen.captures, protocol)
@@ -157,13 +154,13 @@ def _scaled(
             settings=settings,
             progress=progress,
         )
-    told = corrected_axes(captures, checked)
+    axes = corrected_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
     extra: dict[str, object] = {USE_KEY: use.as_report()}
     if exchanged:
         extra[EXCHANGED_KEY] = [list(one) for one in exchanged]
-    if told:
-        extra[REPORT_KEY] = told
+    if axes:
+        extra[REPORT_KEY] = axes
     if chosen.inferred is not None:
         extra[INFERRED_KEY] = {"told": chosen.inferred.line, "doubtful": chosen.inferred.doubts}
     return replace(subject, report={**subject.report, **extra})

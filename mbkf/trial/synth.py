@@ -1,4 +1,4 @@
-"""Makes a synthetic capture with exact truth and writes it to a folder, as a laboratory would have stored it."""
+"""A synthetic capture with exact truth, written to a folder as a laboratory stores its captures."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def synthesise(
         seed: Chooses motion and noise, and the subject where none is given.
         rate_hz: Camera rate.
         settings: Errors of the instruments.
-        subject: Who moves; a random person when None.
+        subject: The person who moves; a random one when None.
         progress: Called with the stage, items done and items in all.
 
     Raises:
         UnknownName: There is no such motion.
-        InvalidInput: Duration or rate make no sense.
-        NotConverged: This person cannot perform the motion; another seed can.
+        InvalidInput: Duration or rate is impossible.
+        NotConverged: This person cannot perform the motion; use another seed.
     """
     report = progress or (lambda *_: None)
     subject = subject or synthesise_subject(seed)
@@ -60,7 +60,7 @@ def write_folder(subject: Subject, capture: SyntheticCapture, folder: str | Path
     Args:
         subject: The person.
         capture: The synthetic capture and its truth.
-        folder: Folder to write; made where it does not exist.
+        folder: Folder to write; it is made where it does not exist.
 
     Raises:
         FileFormatError: The folder is a file.

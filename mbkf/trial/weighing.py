@@ -1,4 +1,4 @@
-"""A scaled person's mass by the plates of the captures: standing, or over any movement by their impulse."""
+"""A scaled person's mass by the plates of the captures: by standing, or by the impulse of any movement."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 PROVISIONAL_KG = 70.0
-"""A mass to scale with before it is known; scale factors and markers do not depend on it."""
+"""Mass to scale with while it is unknown; scale factors and markers do not depend on it."""
 
 PASSES = 2
-"""Which readings no plate under a person gives depends on the mass: the second pass knows it."""
+"""Number of passes: the second judges impossible readings by the mass of the first."""
 
 MASS_KEY = "mass"
-"""Key of a subject's report under which it stands by which capture a person was weighed."""
+"""Key of a subject's report for the capture by which a person was weighed."""
 
 
 def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
-    """The person with the mass that plates tell best, and a note of it in the report.
+    """The person with the mass of least standard deviation that plates give, noted in the report.
 
     Args:
         subject: The scaled person, of any mass.
-        captures: Captures of the person; those with plates count.
+        captures: Captures of the person, some of them with plates.
 
     Raises:
-        InvalidInput: No capture tells the mass.
+        InvalidInput: The plates of no capture give the mass.
     """
     found, why = [], "no capture has plates"
     for capture in captures:
@@ -48,14 +48,14 @@ def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
         if finding.better is not None and finding.expected_sd is not None:
             found.append((finding.expected_sd, finding.better, Path(capture.path).name))
     if not found:
-        raise InvalidInput(f"the plates do not tell the body mass ({why}); give --mass KG")
+        raise InvalidInput(f"the plates do not give the body mass ({why}); give --mass KG")
     sd, mass_kg, name = min(found)
-    told: dict[str, object] = {"kg": mass_kg, "sd_percent": sd, "capture": name}
-    return replace(subject, mass_kg=mass_kg, report={**subject.report, MASS_KEY: told})
+    note: dict[str, object] = {"kg": mass_kg, "sd_percent": sd, "capture": name}
+    return replace(subject, mass_kg=mass_kg, report={**subject.report, MASS_KEY: note})
 
 
 def _weighed(subject: Subject, capture: Capture) -> Finding:
-    """What the plates of a capture say of the mass."""
+    """The finding about the mass from the plates of a capture."""
     finding = mass.undetermined("the capture has too few of the subject's markers")
     for _ in range(PASSES):
         with single_threaded():

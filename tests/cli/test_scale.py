@@ -118,7 +118,7 @@ def test_a_doubtful_body_is_told_first_and_kept_and_an_impossible_one_leaves_no_
     around = ("RKNE", "RANK", "LELB", "C7", "RHEE", "LKNE", "LANK", "RELB")
     impossible = renamed(tmp_path / "impossible.c3d", *around)
     assert scale(impossible, "--protocol", "reference36", "--out", out) == 2
-    assert "no person is made so" in capsys.readouterr().err
+    assert "proportions that people do not have" in capsys.readouterr().err
     assert not out.exists()
 
 
@@ -127,7 +127,7 @@ def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):
     with pytest.raises(ArgumentTypeError, match="heavy"):
         mass_option("heavy")
     assert scale("--trial", person.trial_trc, "--mass", "auto", "--out", tmp_path / "s.toml") == 2
-    assert "the plates do not tell the body mass (no capture has plates)" in capsys.readouterr().err
+    assert "the plates do not give the body mass (no capture has plates)" in capsys.readouterr().err
     assert not (tmp_path / "s.toml").exists()
 
 

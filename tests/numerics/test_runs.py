@@ -14,6 +14,14 @@ def test_runs_at_the_ends_and_between():
     assert runs(np.zeros(4, dtype=bool)) == runs(np.zeros(0, dtype=bool)) == []
 
 
+@pytest.mark.parametrize(
+    ("mask", "count"),
+    [([], 0), ([0, 0], 0), ([1], 1), ([1, 1, 0, 1], 2), ([0, 1, 0, 1, 0, 1, 1], 3), ([1, 0, 0, 1], 2)],
+)
+def test_number_of_runs(mask, count):
+    assert len(runs(np.array(mask, dtype=bool))) == count
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_runs_cover_the_true_samples_and_never_touch(seed):
     mask = np.random.default_rng(seed).random(200) < 0.6

@@ -62,7 +62,7 @@ def test_scaling_errs_as_it_says(problem):
         q = moderate_pose(model, rng, 0.0)
         true = ScalingState(q[None], factors, offsets)
         seen = problem.sensor(true).positions(q) + noise_m * rng.normal(size=(len(MARKERS), 3))
-        one = problem.measuring(seen[None])
+        one = problem.with_measurements(seen[None])
         solution = minimise(true, one.linearise, one.cost, one.move, tolerance=1e-4)
         found, known = solution.state, body_covariance(one, solution.equations.schur_complement())
         away = np.r_[

@@ -242,7 +242,7 @@ def test_impossible_heights_are_refused(person, height):
 
 
 def test_no_trial_is_refused():
-    with pytest.raises(InvalidInput, match="static trial or at least one --trial"):
+    with pytest.raises(InvalidInput, match="a static trial, or at least one --trial"):
         scale_subject([], [], PROTOCOL, mass_kg=72.0)
 
 
@@ -322,7 +322,7 @@ def test_one_exchanged_pair_of_a_standing_trial_is_doubted(person):
 
 def test_a_standing_trial_whose_names_go_round_is_no_person_though_it_fits(person):
     one = exchanged(person.standing(), "RKNE", "RANK", "LELB", "C7", "RHEE", "LKNE", "LANK", "RELB")
-    with pytest.raises(NotConverged, match="no person is made so"):
+    with pytest.raises(NotConverged, match="proportions that people do not have"):
         scale_subject([one], [], PROTOCOL, mass_kg=72.0)
 
 
@@ -330,4 +330,4 @@ def test_a_fit_that_is_cut_short_is_told(person, monkeypatch):
     monkeypatch.setattr(fit, "MAX_ITERATIONS", 1)
     found = scale_subject([person.standing()], [person.moving()], PROTOCOL, mass_kg=72.0)
     assert not found.report["converged"]
-    assert found.report[DOUBTS_KEY][0] == "the fit did not settle"
+    assert found.report[DOUBTS_KEY][0] == "the fit did not converge"

@@ -71,7 +71,7 @@ def test_shares_tell_what_other_names_cost_with_poses_fixed(problem, true):
         best[marker] = offsets[rows, marker]
         named = np.full((12, len(problem.markers), 3), np.nan)
         named[:, marker] = problem._shown_m
-        with_names = problem._problem.measuring(named)
+        with_names = problem._problem.with_measurements(named)
         cost = with_names.cost(replace(true.state, offsets_m=best))
         placement = np.array([one.placement_sd_m for one in problem.markers])[marker]
         expected.append(cost + 6.0 * np.log(placement).sum())
@@ -85,7 +85,7 @@ def test_shares_are_least_at_their_offsets(problem, true):
     rows = np.arange(len(problem.first))
     named = np.full((12, len(problem.markers), 3), np.nan)
     named[:, problem.first] = problem._shown_m
-    one = problem._problem.measuring(named)
+    one = problem._problem.with_measurements(named)
     best = np.zeros_like(true.state.offsets_m)
     best[problem.first] = offsets[rows, problem.first]
     least = one.cost(replace(true.state, offsets_m=best))

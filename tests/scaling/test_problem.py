@@ -105,7 +105,9 @@ def test_gradient_by_poses_factors_and_offsets(problem, state, jacobian):
 @pytest.mark.parametrize("stands", [False, True])
 def test_gradient_is_half_the_slope_of_the_cost(problem, state, stands):
     rng, h = np.random.default_rng(3), 1e-6
-    weights = replace(problem.weights, stands=np.full(FRAMES, stands), upright=np.full(FRAMES, 0.7 * stands))
+    weights = replace(
+        problem.weights, standing=np.full(FRAMES, stands), upright=np.full(FRAMES, 0.7 * stands)
+    )
     problem = ScalingProblem(BODY, MARKERS, problem.measured_m, weights, problem.prior)
     equations = problem.linearise(state)
     for _ in range(5):
@@ -136,7 +138,7 @@ def test_missing_markers_say_nothing(problem, state):
 def test_other_samples_make_the_problem_that_they_alone_would(problem, state):
     other = np.where(np.isnan(problem.measured_m), 0.1, np.nan)
     alone = ScalingProblem(BODY, MARKERS, other, problem.weights, problem.prior)
-    found = problem.measuring(other)
+    found = problem.with_measurements(other)
     assert (found.seen == alone.seen).all()
     assert (found.seen != problem.seen).all()
     assert found.cost(state) == pytest.approx(alone.cost(state))

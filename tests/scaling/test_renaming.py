@@ -8,7 +8,7 @@ import pytest
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling import renaming
 from mbkf.scaling.naming import NamingProblem
-from mbkf.scaling.renaming import in_line, likeliest
+from mbkf.scaling.renaming import likeliest, settled_names
 from tests.scaling.test_naming import trial
 
 pytestmark = pytest.mark.slow
@@ -57,7 +57,7 @@ def test_wrong_names_are_put_right(wrong, few):
     trajectory = {column[names[m]]: u for u, m in enumerate(problem.first)}
     for k, name in enumerate(worn_trial().names):
         assert names[found.naming.marker[trajectory[k]]] == name
-    truth = in_line(NamingProblem(worn_trial(), PROTOCOL))
+    truth = settled_names(NamingProblem(worn_trial(), PROTOCOL))
     assert found.naming.cost == pytest.approx(truth.cost, abs=2.0)
     assert told[-1][0] == told[-1][1]
     costs = [one.cost for one in found.rivals]
@@ -77,8 +77,8 @@ def test_legs_are_not_left_on_the_other_side(few):
         if marker.segment.endswith(beyond_knee)
     }
     problem = NamingProblem(worn_trial(swapped), PROTOCOL)
-    assert in_line(problem).cost > 0.0
-    truth = in_line(NamingProblem(worn_trial(), PROTOCOL))
+    assert settled_names(problem).cost > 0.0
+    truth = settled_names(NamingProblem(worn_trial(), PROTOCOL))
     assert likeliest(problem).naming.cost == pytest.approx(truth.cost, abs=2.0)
 
 

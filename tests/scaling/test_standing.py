@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from mbkf.scaling.standing import FLAT_SD_RAD, UPRIGHT_SD_RAD, Standing
+from mbkf.scaling.standing import FLAT_SD_RAD, UPRIGHT_SD_RAD, UprightPosture
 from tests.motions import assert_near, central_difference, moderate_pose, reference_model
 
 MODEL = reference_model()
-STANDING = Standing(MODEL)
+STANDING = UprightPosture(MODEL)
 
 
 def test_a_person_in_neutral_posture_stands():

@@ -1,4 +1,6 @@
-"""What a fitted body is worth: proportions that no person has, fits that did not settle."""
+"""Quality of a fitted body: proportions that people do not have, fits that did not converge."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +10,8 @@ from mbkf.scaling.verdict import (
     IMPOSSIBLE_NOISE,
     IMPOSSIBLE_SPREADS,
     MOVED_M,
+    FitQuality,
     as_each_other,
-    doubts,
-    proportion_spreads,
-    refusal,
 )
 
 SD = 0.06
@@ -22,49 +22,51 @@ def factors(spreads, mean=1.0, count=10):
     return mean * (1.0 + spreads * SD * np.tile([-1.0, 1.0], count // 2))
 
 
+def quality(spreads=1.0, mean=1.0, **changes):
+    names = ("left_thigh", "head", "right_thigh", "left_shank")
+    values = dict(zip(names, factors(spreads, mean, len(names)).tolist(), strict=True))
+    return replace(FitQuality(values, (), SD, 0.9, 0.02, converged=True), **changes)
+
+
 @pytest.mark.parametrize("mean", [0.6, 1.0, 1.3])
 @pytest.mark.parametrize("spreads", [0.0, 1.0, 4.0])
 def test_the_spread_of_proportions_does_not_depend_on_size(spreads, mean):
-    assert proportion_spreads(factors(spreads, mean), SD) == pytest.approx(spreads)
+    assert quality(spreads, mean).proportion_spread == pytest.approx(spreads)
 
 
 def test_a_body_of_impossible_proportions_is_refused_however_well_it_fits():
-    assert refusal(factors(0.99 * IMPOSSIBLE_SPREADS), SD, 0.1, settled=True) == ""
-    assert "no person is made so" in refusal(factors(1.01 * IMPOSSIBLE_SPREADS), SD, 0.1, settled=True)
-    assert refusal(factors(1.01 * IMPOSSIBLE_SPREADS), 2.0 * SD, 0.1, settled=True) == ""
+    assert quality(0.99 * IMPOSSIBLE_SPREADS, rms_per_noise=0.1).refusal == ""
+    refused = quality(1.01 * IMPOSSIBLE_SPREADS, rms_per_noise=0.1)
+    assert "0.73 to 1.27 of the reference body's, proportions that people do not have" in refused.refusal
+    assert replace(refused, proportion_sd=2.0 * SD).refusal == ""
 
 
 @pytest.mark.parametrize(
-    ("share", "settled", "refused"), [(1.01, False, True), (1.01, True, False), (0.99, False, False)]
+    ("share", "converged", "refused"), [(1.01, False, True), (1.01, True, False), (0.99, False, False)]
 )
-def test_a_fit_that_neither_settles_nor_fits_is_refused(share, settled, refused):
-    assert bool(refusal(factors(0.0), SD, share * IMPOSSIBLE_NOISE, settled)) is refused
-
-
-GOOD = {"rms_per_noise": 0.9, "share_left_out": 0.02, "settled": True, "at_bound": (), "spreads": 1.0}
+def test_a_fit_that_neither_converges_nor_fits_is_refused(share, converged, refused):
+    found = quality(0.0, rms_per_noise=share * IMPOSSIBLE_NOISE, converged=converged)
+    assert bool(found.refusal) is refused
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("found", "doubts"),
     [
-        ({}, ()),
-        ({"settled": False}, ("the fit did not settle",)),
-        ({"rms_per_noise": 2.1}, ("markers lie 2.1 times",)),
-        ({"share_left_out": 0.11}, ("11 % of the samples",)),
-        ({"spreads": 1.01 * DOUBTFUL_SPREADS}, ("proportions are unusual (left thigh 0.85, head 1.15",)),
-        ({"at_bound": ("left_shank",)}, ("proportions are unusual (left shank 1.06",)),
-        ({"settled": False, "share_left_out": 0.2}, ("the fit did not settle", "20 % of the samples")),
+        (quality(), ()),
+        (quality(converged=False), ("the fit did not converge",)),
+        (quality(rms_per_noise=2.1), ("markers lie 2.1 times",)),
+        (quality(rms_per_noise=1.9), ()),
+        (quality(share_left_out=0.11), ("11 % of the samples",)),
+        (quality(share_left_out=0.09), ()),
+        (quality(1.01 * DOUBTFUL_SPREADS), ("proportions are unusual (left thigh 0.85, head 1.15",)),
+        (quality(0.99 * DOUBTFUL_SPREADS), ()),
+        (quality(at_bound=("left_shank",)), ("proportions are unusual (left shank 1.06",)),
+        (quality(converged=False, share_left_out=0.2), ("the fit did not converge", "20 % of the samples")),
     ],
 )
-def test_every_doubt_is_told(changes, told):
-    known = GOOD | changes
-    names = ("left_thigh", "head", "right_thigh", "left_shank")
-    values = dict(zip(names, factors(known["spreads"], count=4).tolist(), strict=True))
-    found = doubts(
-        values, known["at_bound"], SD, known["rms_per_noise"], known["share_left_out"], known["settled"]
-    )
-    assert len(found) == len(told)
-    assert all(line.startswith(start) for line, start in zip(found, told, strict=True))
+def test_every_doubt_is_a_sentence(found, doubts):
+    assert len(found.doubts) == len(doubts)
+    assert all(line.startswith(start) for line, start in zip(found.doubts, doubts, strict=True))
 
 
 PLACES_M = np.array([[0.03, 0.0, -0.24], [-0.03, 0.0, -0.24], [0.0, 0.05, -0.1], [0.03, 0.0, -0.24]])

@@ -15,16 +15,8 @@ from mbkf.io.records import (
     PlateReadings,
 )
 from mbkf.io.turning import turned
-from mbkf.trial.info import AxesSummary, count_pieces, describe
+from mbkf.trial.info import AxesSummary, describe
 from tests.captures import made_capture
-
-
-@pytest.mark.parametrize(
-    ("present", "pieces"),
-    [([], 0), ([0, 0], 0), ([1], 1), ([1, 1, 0, 1], 2), ([0, 1, 0, 1, 0, 1, 1], 3), ([1, 0, 0, 1], 2)],
-)
-def test_pieces(present, pieces):
-    assert count_pieces(np.array(present, dtype=bool)) == pieces
 
 
 def capture() -> Capture:

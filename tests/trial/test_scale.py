@@ -56,7 +56,7 @@ def test_a_stated_mass_is_used_and_an_own_one_goes_before_it():
 def test_without_a_mass_or_a_trial_nothing_is_scaled():
     with pytest.raises(InvalidInput, match="do not state the body mass; give --mass KG"):
         scale(made(2))
-    with pytest.raises(InvalidInput, match="static trial or at least one --trial"):
+    with pytest.raises(InvalidInput, match="a static trial, or at least one --trial"):
         scale(mass_kg=70.0)
 
 

@@ -1,1 +1,1 @@
-"""The parts of labelling: the search, one pass through time, offline decisions, doubts, score and files."""
+"""Parts of labelling: starts, passes through time, offline relabelling, doubts, score and files."""

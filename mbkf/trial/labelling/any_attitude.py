@@ -20,10 +20,10 @@ STAGE = "Searching any attitude"
 """Name of the stage in progress reports; it takes seconds."""
 
 KEYFRAMES = 6
-"""Keyframes at which a body is matched with the tracks at once."""
+"""Number of keyframes at which a body is matched with the tracks."""
 
 ENOUGH = 3
-"""So many frames that can be labelled suffice."""
+"""Number of labelled frames after which the search ends."""
 
 
 def name_tracks_of_frame(
@@ -33,7 +33,7 @@ def name_tracks_of_frame(
 
     Args:
         sensor: The markers on a body whose geometry may be rough.
-        sd_m: (M,) how far each marker may be from its place on its segment.
+        sd_m: (M,) spread of each marker about its place on its segment.
         points_m: (T, C, 3) points of the capture.
         tracks: Their tracks.
         frame: The frame.
@@ -70,7 +70,7 @@ class AnyAttitude:
         return link_tracks(self._positions_m, self._rate_hz)
 
     def at(self, frame: int) -> FirstFrame | None:
-        """Labels of a frame's points, in the order of their columns, or None where none are plausible."""
+        """Labels of a frame's points, in the order of their columns, or None without a plausible body."""
         points = self._positions_m[frame]
         columns = np.flatnonzero(~np.isnan(points).any(axis=1))
         sensor, sd = self.search.sensor, self.search.sd_m
@@ -83,11 +83,11 @@ class AnyAttitude:
     def starts(
         self, looks: Sequence[int], progress: Callable[[int, int], None]
     ) -> list[tuple[int, FirstFrame]]:
-        """Frames that can be labelled with their labels, surest first; a few of them suffice.
+        """A few frames that can be labelled, with their labels, the most likely first.
 
         Args:
-            looks: Frames to look at.
-            progress: Called with frames looked at and frames in all.
+            looks: Frames to search.
+            progress: Called with frames searched and frames in all.
         """
         found: list[tuple[int, FirstFrame]] = []
         for done, frame in enumerate(looks):

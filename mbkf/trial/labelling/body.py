@@ -1,4 +1,4 @@
-"""A subject's markers ready to be looked for among unlabelled points: body, search and the settings of the labeller."""
+"""A subject's markers on the body, with the search and the labeller that find them among unlabelled points."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ from mbkf.trial.labelling.any_attitude import AnyAttitude
 from mbkf.trial.labelling.single_pass import LabellingPass
 
 CORRECTED_SD_M = 0.006
-"""How far a marker sits from where a first pass over the capture found it."""
+"""Spread of a marker about its place as a first pass over the capture found it."""
 
 
 @dataclass(frozen=True)
 class LabelBody:
-    """A subject's markers ready to be looked for.
+    """A subject's markers, with the search that finds them.
 
     Attributes:
         subject: The person.
-        markers: Those that may be worn.
-        sensor: They on the person's body.
+        markers: The markers that may be worn.
+        sensor: These markers on the person's body.
         search: Finds labels in frames without a prediction.
-        settings: How labels are kept from frame to frame.
+        settings: Settings of the labeller.
     """
 
     subject: Subject
@@ -54,7 +54,7 @@ class LabelBody:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the M markers."""
+        """Names of the M markers."""
         return tuple(m.name for m in self.markers)
 
     def tracking_filter(self, dt_s: float) -> TrackingFilter:
@@ -64,7 +64,7 @@ class LabelBody:
         return TrackingFilter(KinematicReport(kalman), WarmStart(kalman))
 
     def labeller(self, dt_s: float) -> RunningLabeller:
-        """A labeller that knows nothing yet."""
+        """A labeller without memory."""
         placement = np.array([m.session_sd_m for m in self.markers])
         return RunningLabeller(self.noise_m, placement, dt_s, self.settings)
 
@@ -74,7 +74,7 @@ class LabelBody:
         Args:
             positions_m: (T, C, 3) points, NaN where a column is empty.
             dt_s: Time between frames.
-            known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
+            known: (T, C) marker of the points that carry a reliable name; None where none does.
         """
         any_attitude = AnyAttitude(self.search, positions_m, 1.0 / dt_s)
         return LabellingPass(
@@ -83,10 +83,10 @@ class LabelBody:
 
 
 def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> LabelBody:
-    """The body with the markers that scaling saw, or all where the subject does not list these.
+    """The body with the markers that scaling saw, or with all where the subject does not list these.
 
     Args:
-        markers: Markers to look for.
+        markers: Markers to search for.
         subject: The scaled person.
         settings: Settings of the labeller.
     """
@@ -99,7 +99,7 @@ def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: Run
 
 
 def corrected_body(body: LabelBody, found: MarkerTrajectories) -> LabelBody | None:
-    """The body with the markers shown, at the places where they are found, or None where these fit no body."""
+    """The body with the markers shown, corrected to their places, or None where these fit no body."""
     try:
         subject = correct_markers(body.subject, found)
     except MbkfError:

@@ -1,7 +1,7 @@
-"""Ambiguous labels: pairs of names that fit nearly as well the other way round, with their odds, as warnings.
+"""Ambiguous labels: names that fit nearly as well when exchanged, with their odds, as warnings.
 
-Two markers of a cluster whose places a protocol leaves open, or one of two neighbours of which one is not worn, may fit
-a capture nearly as well by either name. Only a labelled standing trial settles such a case.
+Two markers of a cluster whose places a protocol leaves open, or two neighbours of which one is not worn, may fit a
+capture nearly as well by either name. Only a labelled standing trial decides such a case.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from mbkf.scaling.naming import NamingProblem
 from mbkf.scaling.renaming import Renamed
 
 DOUBTFUL_ODDS = 20.0
-"""Names are doubtful that are fewer times likelier than others."""
+"""Names are doubtful where they are fewer times more likely than others."""
 
 MISFIT = 1.0
-"""A person that fits no better (:class:`mbkf.scaling.naming.Naming`) may be none: limbs or sides are mistaken."""
+"""Misfit (:class:`mbkf.scaling.naming.Naming`) above which limbs or sides may be confused."""
 
 _MM = 1e3
 
@@ -31,9 +31,9 @@ class Doubt:
 
     Attributes:
         labels: The labels in doubt.
-        others: What each of them may be.
-        odds: How many times likelier the labels are as they stand.
-        off_m: How far each is from where the protocol has it on this person.
+        others: The other name of each.
+        odds: Ratio of the likelihoods of the given labels and of the others.
+        off_m: Distance of each from its place in the protocol on this person.
         others_off_m: The same by the other name.
     """
 
@@ -44,14 +44,14 @@ class Doubt:
     others_off_m: tuple[float, ...]
 
     def text(self) -> str:
-        """The doubt in words, with its evidence."""
+        """The doubt as a sentence, with its evidence."""
         names = " and ".join(
             f"{own} may be {other} ({_MM * off:.0f} and {_MM * other_off:.0f} mm from their places)"
             for own, other, off, other_off in zip(
                 self.labels, self.others, self.off_m, self.others_off_m, strict=True
             )
         )
-        return f"{names}; {self.odds:.1f} times likelier as it stands"
+        return f"{names}; the label given is {self.odds:.1f} times more likely"
 
     def summary(self) -> dict[str, object]:
         """Plain numbers for the summary."""
@@ -69,15 +69,15 @@ class Doubts:
     """Possible errors in the labels of a person.
 
     Attributes:
-        cases: Labels that may be others, the likeliest others first.
-        far_m: Labels further from their place than their protocol allows, and how far.
-        misfit: Mean squared distance of person and points, in squares of what is usual.
-        nameless: Tracks seen in half of the frames that fit no marker.
-        unused: Markers of the protocol that were found nowhere.
-        scaled: Whether the person was scaled before, so that places are those of the standing trial.
-        rare: Labels seen much more rarely than others, and in which share of the frames.
-        names: Lines about names of the capture that the labels do not keep.
-        odds: How many times likelier each label is than the likeliest other.
+        cases: Labels that may be others, the most likely others first.
+        far_m: Distances from their places of labels that are further away than their protocol allows.
+        misfit: Mean squared distance of person and points, in units of the usual one.
+        nameless: Number of tracks seen in half of the frames that have no label.
+        unused: Markers of the protocol without a track.
+        scaled: True where the person was scaled before, so that places are those of the standing trial.
+        rare: Share of the frames of labels that are seen much more rarely than others.
+        names: Sentences about names of the capture that the labels do not keep.
+        odds: Ratio of the likelihoods of each label and of the most likely other one.
     """
 
     cases: tuple[Doubt, ...]
@@ -92,53 +92,56 @@ class Doubts:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """The labels in doubt, each once."""
+        """The doubtful labels, each once."""
         return tuple(
             dict.fromkeys([*self.far_m, *self.rare, *(label for case in self.cases for label in case.labels)])
         )
 
     def warnings(self) -> tuple[str, ...]:
-        """Warnings in words: the person as a whole, labels far from their places, names, and what settles them."""
+        """Warnings: the person as a whole, labels far from their places, ambiguous names, and the remedy."""
         if self.scaled:
             return self._against_standing()
         found = []
         if self.misfit > MISFIT:
             found.append(
-                f"the points fit no person well (misfit {self.misfit:.1f}, usually 0.1 to 0.4): limbs or sides may be "
-                "mistaken, and any label wrong"
+                f"the points fit the body poorly (misfit {self.misfit:.1f}, usually 0.1 to 0.4); limbs or sides may be "
+                "confused: check all labels"
             )
         if 0 < self.nameless <= len(self.unused):
             found.append(
-                f"{self.nameless} tracks seen in half of the frames fit no marker, though {len(self.unused)} markers "
-                "of the protocol were found nowhere: labels near them may be wrong"
+                f"{self.nameless} tracks seen in at least half of the frames have no label, and {len(self.unused)} "
+                "markers of the protocol have no track: check the labels near them"
             )
         if self.far_m:
-            names = ", ".join(f"{name} ({_MM * off:.0f} mm)" for name, off in self.far_m.items())
-            found.append(f"further from their places than their protocol allows, hence hardly right: {names}")
+            found.append(
+                f"labels further from their places than the protocol allows: {self._far()}; check them"
+            )
         found += [_group_text(group) for group in _groups(self.cases)]
         if found:
             found.append(
-                f"{len(self.labels)} labels are in doubt; a labelled standing trial settles it: --static LABELLED"
+                f"{len(self.labels)} labels are doubtful; a labelled standing trial decides them: --static LABELLED"
             )
         return tuple(found)
 
     def _against_standing(self) -> tuple[str, ...]:
-        """Warnings where places are those of the standing trial."""
+        """Warnings where the places are those of a standing trial."""
         found = list(self.names)
         if self.nameless > 0 and self.unused:
             found.append(
-                f"{self.nameless} tracks seen in half of the frames fit no marker, and found nowhere are "
-                f"{', '.join(self.unused)}: are these other markers, or moved far?"
+                f"{self.nameless} tracks seen in at least half of the frames have no label, and these markers have no "
+                f"track: {', '.join(self.unused)}; check for other markers, and for markers that moved far"
             )
         if self.far_m:
-            names = ", ".join(f"{name} ({_MM * off:.0f} mm)" for name, off in self.far_m.items())
             found.append(
-                f"far from where scaling found them, hence moved since, other markers, or ghosts: {names}"
+                f"labels far from their places in scaling: {self._far()}; these markers moved, or are others or ghosts"
             )
         if self.rare:
             names = ", ".join(f"{name} ({100.0 * share:.0f} %)" for name, share in self.rare.items())
-            found.append(f"labelled in few of the frames, hence perhaps ghosts: {names}")
+            found.append(f"labels in few of the frames: {names}; they may be ghosts")
         return (*found, *(_group_text(group) for group in _groups(self.cases)))
+
+    def _far(self) -> str:
+        return ", ".join(f"{name} ({_MM * off:.0f} mm)" for name, off in self.far_m.items())
 
     def summary(self) -> dict[str, object]:
         """Plain numbers for the summary."""
@@ -155,18 +158,18 @@ class Doubts:
 
 
 def doubts(problem: NamingProblem, renamed: Renamed, nameless: int) -> Doubts:
-    """What was nearly as likely as the names that were found, and how well these fit.
+    """Doubts about the names that were found: others nearly as likely, and labels far from their places.
 
     Args:
         problem: The trajectories and markers.
-        renamed: Their likeliest names and those tried instead.
-        nameless: Tracks seen in half of the frames that fit no marker.
+        renamed: Their most likely names and the alternatives tried.
+        nameless: Number of tracks seen in half of the frames that have no label.
     """
     own, names = renamed.naming, [marker.name for marker in problem.markers]
     off = problem.offsets_m(own)
     found = []
     for rival in renamed.rivals:
-        # E is twice a logarithm; a rival not worse at all is as likely as not.
+        # E is twice a logarithm; the odds of a rival that is not worse are 1.
         odds = math.exp(0.5 * max(0.0, min(rival.cost - own.cost, 700.0)))
         if odds > DOUBTFUL_ODDS:
             continue
@@ -187,7 +190,7 @@ def doubts(problem: NamingProblem, renamed: Renamed, nameless: int) -> Doubts:
 
 
 def _groups(cases: Sequence[Doubt]) -> list[list[Doubt]]:
-    """Cases that hang together by their names, the likeliest first."""
+    """Cases that share names, the most likely first."""
     groups: list[list[Doubt]] = []
     for case in cases:
         names = {*case.labels, *case.others}
@@ -198,14 +201,14 @@ def _groups(cases: Sequence[Doubt]) -> list[list[Doubt]]:
 
 
 def _group_text(group: Sequence[Doubt]) -> str:
-    """A group in words; its evidence where it is one case only."""
+    """A group as a sentence, with evidence for a single case."""
     if len(group) == 1:
         return group[0].text()
     labels = dict.fromkeys(label for case in group for label in case.labels)
     others = [name for name in dict.fromkeys(n for case in group for n in case.others) if name not in labels]
-    worn = f", or {' or '.join(others)}" if others else ""
+    worn = f" or be {' or '.join(others)}" if others else ""
     odds = min(case.odds for case in group)
-    return f"{', '.join(labels)} may have each other's names{worn}; {odds:.1f} times likelier as they stand"
+    return f"{', '.join(labels)} may be exchanged{worn}; the labels given are {odds:.1f} times more likely"
 
 
 def _numbers(values: Array) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""A labelled capture on disk, and beside it the summary of its labelling."""
+"""Files of a labelled capture and of the summary beside it."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ def write_labels(
         raw: The capture as recorded.
         found: Its labels.
         path: The labelled file.
-        compared: The labels against a truth.
+        compared: Comparison of the labels with a truth.
 
     Raises:
         FileFormatError: The file cannot be written.
     """
     path = Path(path)
-    told = path.with_suffix(".json")
+    beside = path.with_suffix(".json")
     labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
-    told.unlink(missing_ok=True)  # so that none ever stands beside another capture than its own
+    beside.unlink(missing_ok=True)  # a summary must not stay beside another capture
     write_capture(labelled, path)
-    with replacing(told) as partial:
+    with replacing(beside) as partial:
         partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
     return summary

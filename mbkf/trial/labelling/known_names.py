@@ -1,8 +1,7 @@
-"""Names that a capture has already, as knowledge: which of its points carry a name that the body does not contradict.
+"""Reliable names of a capture: those that the body does not contradict.
 
-A name counts per tracklet, for a column may take up another marker after a gap. Names whose points jump from frame to
-frame, as in captures shuffled in every frame, mean nothing; nor do those of a capture most of which contradict the
-body.
+A name is judged per tracklet, since a column may hold another marker after a gap. All names are ignored where their
+points change from frame to frame, as in shuffled captures, or where most of them contradict the body.
 """
 
 from __future__ import annotations
@@ -22,32 +21,32 @@ from mbkf.labelling.tracks import columns_are_tracks
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 PLACED_SD_M = 0.015
-"""A marker may sit so far from where the static trial had it, besides what the subject says."""
+"""Spread of a marker about its place in the static trial, besides that of the subject file."""
 
 CONTRADICTED = 3.0
-"""A name is contradicted whose distances to its neighbours are off by so many variances in the mean."""
+"""Mean squared deviation of a name's distances to its neighbours, in variances, from which it is contradicted."""
 
 LEAST_NEIGHBOURS = 2.0
-"""Names with fewer named neighbours at hand are taken as they are."""
+"""Least number of named neighbours by which a name is judged; with fewer it is kept."""
 
 UNKNOWN_M = 1e3
-"""Spread of a distance that is not known."""
+"""Spread of an unknown distance."""
 
 MOST_CONTRADICTED = 0.5
-"""Where a larger share of a capture's named samples contradicts the body, its names mean nothing."""
+"""Share of a capture's named samples contradicting the body above which all names are ignored."""
 
 LOOKS = 60
-"""Frames by which it is judged whether names stay on their points."""
+"""Frames in which the points of named columns are compared with those of the frame before."""
 
 
 @dataclass(frozen=True)
 class KnownNames:
-    """What the names of a capture say.
+    """Names of a capture.
 
     Attributes:
-        claimed: (T, C) marker that each point is named as, ``HIDDEN`` where its name says nothing.
-        trusted: (T, C) the same where the body does not contradict it.
-        ignored: Why all names are ignored, "" where they are not.
+        claimed: (T, C) marker by each point's name, ``HIDDEN`` where it has none.
+        trusted: (T, C) the same, without names that the body contradicts.
+        ignored: Reason why all names are ignored, "" where they are used.
     """
 
     claimed: Indices
@@ -56,16 +55,12 @@ class KnownNames:
 
     @property
     def names(self) -> bool:
-        """Whether any name is known."""
+        """True where some name is reliable."""
         return bool((self.trusted != HIDDEN).any())
 
 
 def no_names(points: MarkerTrajectories) -> KnownNames:
-    """Nothing is known of a capture's names.
-
-    Args:
-        points: The capture.
-    """
+    """A capture without names."""
     nothing = np.full(points.positions_m.shape[:2], HIDDEN, dtype=np.intp)
     return KnownNames(nothing, nothing)
 
@@ -73,7 +68,7 @@ def no_names(points: MarkerTrajectories) -> KnownNames:
 def known_names(
     points: MarkerTrajectories, markers: Sequence[SubjectMarker], sensor: MarkerSensor
 ) -> KnownNames:
-    """The names of a capture that can be relied on.
+    """The reliable names of a capture.
 
     Args:
         points: The capture, wholly, partly or not named.
@@ -91,7 +86,7 @@ def known_names(
         return nothing
     named = np.array(list(column), dtype=np.intp)
     if not columns_are_tracks(points.positions_m, named, LOOKS):
-        return replace(nothing, ignored="they change their points from frame to frame")
+        return replace(nothing, ignored="their points change from frame to frame")
     owner = np.array(list(column.values()), dtype=np.intp)
     placed = np.array([np.hypot(np.hypot(m.noise_m, m.session_sd_m), PLACED_SD_M) for m in markers])
     distances = body_distances(sensor, placed)
@@ -112,13 +107,9 @@ def known_names(
 
 
 def with_claims(labels: Indices, names: KnownNames) -> Indices:
-    """(T, C) labels with the names of points that no label fits, where nothing else has that name.
+    """(T, C) labels, in which a point without one keeps the capture's name where no other point has it.
 
-    A marker that was put on elsewhere contradicts the body and is still that marker.
-
-    Args:
-        labels: (T, C) marker of every point, ``HIDDEN`` where none.
-        names: What the names of the capture say.
+    A marker that was moved on its segment contradicts the body and is still that marker.
     """
     if names.ignored or not names.names:
         return labels
@@ -138,7 +129,7 @@ def _contradicted(positions_m: Array, claimed: Indices, tracklets: Tracklets, di
 
 
 def _trusted(positions_m: Array, right: Indices, tracklets: Tracklets, distances: Distances) -> Indices:
-    """(T, C) names of the tracklets that go with the body; the worst is dropped first, for it spoils its neighbours."""
+    """(T, C) names of the tracklets that fit the body; the worst is dropped first, since it affects its neighbours."""
     label = np.array([_most(right[f, c]) for f, c in tracklets.pieces], dtype=np.intp)
     markers = len(distances.expected_m)
     dropped = np.zeros(len(label), dtype=bool)
@@ -155,7 +146,7 @@ def _trusted(positions_m: Array, right: Indices, tracklets: Tracklets, distances
 
 
 def _most(names: Indices) -> int:
-    """The name that most points of a tracklet carry, ``HIDDEN`` where fewer than half carry one."""
+    """The most frequent name of a tracklet's points, ``HIDDEN`` among them."""
     values, counts = np.unique(names, return_counts=True)
     return int(values[counts.argmax()])
 
@@ -163,7 +154,7 @@ def _most(names: Indices) -> int:
 def _mean_misfits(
     positions_m: Array, label: Indices, tracklets: Tracklets, distances: Distances, markers: int
 ) -> Array:
-    """(n,) mean misfit of every named tracklet, 0 where too few neighbours are at hand."""
+    """(n,) mean misfit of every named tracklet, 0 where it has too few neighbours."""
     shown = np.full((len(positions_m), markers, 3), np.nan)
     named: BoolArray = np.asarray(label != HIDDEN)
     for k in np.flatnonzero(named):

@@ -1,8 +1,8 @@
 """Labels of a scaled person that may be wrong: the capture shows a marker elsewhere than the standing trial did.
 
-Markers are put on anew, fall off or are added between the trials, and a ghost may take the place of one that is not
-worn. A label is then judged by where its points lie on the smoothed body: near the place that scaling found, or as
-near to that of a neighbour.
+Markers are moved, lost or added between the trials, and a ghost may take the place of one that is not worn. A label is
+judged by the distance of its points, on the smoothed body, from the place that scaling found and from those of
+neighbours.
 """
 
 from __future__ import annotations
@@ -24,32 +24,32 @@ from mbkf.trial.labelling.known_names import KnownNames
 from mbkf.trial.labelling.relabelling import Relabelled, trajectories
 
 MOVED_SD_M = 0.008
-"""A marker that was not touched is found no better than this where scaling had it."""
+"""Spread of an untouched marker about its place in scaling."""
 
 FAR, NAMED_FAR = 1.2, 2.0
-"""A label is in doubt that lies so many standard deviations from its place, or so many where the capture names it."""
+"""A label is doubtful at so many standard deviations from its place, or at so many where the capture names it."""
 
 RARE = 0.5
-"""... or that is seen in a smaller share of the usual number of frames, unless the capture names it."""
+"""A label is doubtful in a smaller share of the usual number of frames, unless the capture names it."""
 
 NAMED_ODDS = 1e3
-"""How many times likelier a name makes its label."""
+"""Odds that a name adds to its label."""
 
 NAMED_SHARE = 0.5
-"""A label counts as named where the capture names so large a share of its points."""
+"""Share of its points named by the capture from which a label counts as named."""
 
 MOST_ODDS = 1e6
 
 
 @dataclass(frozen=True)
 class _Found:
-    """The N markers found, by their number among the subject's, and what the capture shows of them.
+    """The N markers found, as the capture shows them.
 
     Attributes:
-        markers: (N,) numbers.
+        markers: (N,) their numbers among the subject's.
         local_m: (N, 3) mean place in the segment's frame.
         share: (N,) share of the frames that show it.
-        named: (N,) share of its points that the capture names so.
+        named: (N,) share of its points to which the capture gives the same name.
     """
 
     markers: Indices
@@ -61,23 +61,23 @@ class _Found:
 def scaled_doubts(
     body: LabelBody, points: MarkerTrajectories, found: Relabelled, names: KnownNames
 ) -> Doubts:
-    """What may be wrong in the labels of a scaled person.
+    """Doubts about the labels of a scaled person.
 
     Args:
         body: The subject as scaled.
         points: The capture.
         found: The labels, with the body by which they were judged.
-        names: What the names of the capture say.
+        names: The capture's names.
     """
-    told = _contradictions(body, points, found, names)
+    lines = _contradictions(body, points, found, names)
     labels = found.label_of_point
     unused = tuple(name for m, name in enumerate(body.names) if not (labels == m).any())
-    nothing = Doubts((), {}, 0.0, _nameless(points, labels), unused, scaled=True, names=told)
+    doubts = Doubts((), {}, 0.0, _nameless(points, labels), unused, scaled=True, names=lines)
     if found.places is None or found.body is None:
-        return nothing
+        return doubts
     shown = _found(body, points, found, found.body, names)
     if not len(shown.markers):
-        return nothing
+        return doubts
     place, spread = body.sensor.local_m, _spread(body)
     off = np.linalg.norm(shown.local_m - place[shown.markers], axis=1)
     deviation = off / spread[shown.markers]
@@ -95,7 +95,7 @@ def scaled_doubts(
     }
     cases, odds = _rivals(body, shown)
     return replace(
-        nothing,
+        doubts,
         cases=tuple(sorted(cases, key=lambda case: case.odds)),
         far_m=far,
         misfit=float(np.mean(deviation**2) / 3.0),
@@ -105,7 +105,7 @@ def scaled_doubts(
 
 
 def _spread(body: LabelBody) -> Array:
-    """(M,) how far each marker of the subject may be from its place."""
+    """(M,) spread of each marker of the subject about its place."""
     return np.array([np.hypot(np.hypot(m.noise_m, m.session_sd_m), MOVED_SD_M) for m in body.markers])
 
 
@@ -127,7 +127,7 @@ def _found(
 
 
 def _rivals(body: LabelBody, shown: _Found) -> tuple[list[Doubt], dict[str, float]]:
-    """Names of one segment that fit nearly as well, and the least odds of every label."""
+    """Names of one segment that fit nearly as well, and the odds of every label against the most likely of them."""
     place, spread, names = body.sensor.local_m, _spread(body), body.names
     segments = body.sensor.segments
     away = np.linalg.norm(shown.local_m[:, None] - place, axis=2)  # (N, M)
@@ -159,7 +159,7 @@ def _rivals(body: LabelBody, shown: _Found) -> tuple[list[Doubt], dict[str, floa
 
 
 def _nameless(points: MarkerTrajectories, labels: Indices) -> int:
-    """How many tracklets of half of the capture's length or more carry no label."""
+    """Number of tracklets without a label that span half of the capture or more."""
     pieces = link_points(points.positions_m).pieces
     return sum(len(f) >= 0.5 * points.frames and bool((labels[f, c] == HIDDEN).all()) for f, c in pieces)
 
@@ -167,16 +167,16 @@ def _nameless(points: MarkerTrajectories, labels: Indices) -> int:
 def _contradictions(
     body: LabelBody, points: MarkerTrajectories, found: Relabelled, names: KnownNames
 ) -> tuple[str, ...]:
-    """Lines about the names that the labels do not keep, with distances where both markers are on the body."""
+    """Sentences about the names that the labels contradict, with distances where both markers are on the body."""
     if names.ignored:
         return (f"the capture's names are ignored: {names.ignored}",)
-    told = []
+    lines = []
     contradicted = np.where(names.claimed == found.label_of_point, names.claimed != names.trusted, False)
     for marker in np.unique(names.claimed[contradicted & (names.claimed != HIDDEN)]):
         frames, _ = np.nonzero(contradicted & (names.claimed == marker))
-        told.append(
+        lines.append(
             f"name {body.names[marker]} at frames {frames.min()}–{frames.max()} ({len(frames)} samples) is kept, "
-            "though its distances to other markers contradict the body"
+            "but its distances to other markers contradict the body"
         )
     for marker in np.unique(names.claimed[names.claimed != HIDDEN]):
         frames, columns = np.nonzero((names.claimed == marker) & (found.label_of_point != marker))
@@ -186,17 +186,17 @@ def _contradictions(
             first, last = int(frames[own].min()), int(frames[own].max())
             where = f"name {body.names[marker]} at frames {first}–{last} ({int(own.sum())} samples)"
             if other == HIDDEN:
-                told.append(f"{where} fits no marker")
+                lines.append(f"{where} was removed: its points fit no marker")
                 continue
             at, shown = frames[own], points.positions_m[frames[own], columns[own]]
             off = [_away_mm(found, body.names[m], at, shown) for m in (marker, other)]
             numbers = "" if None in off else f": {off[1]:.0f} instead of {off[0]:.0f} mm from its place"
-            told.append(f"{where} fits marker {body.names[other]} better{numbers}")
-    return tuple(told)
+            lines.append(f"{where} was changed to {body.names[other]}{numbers}")
+    return tuple(lines)
 
 
 def _away_mm(found: Relabelled, name: str, frames: Indices, points_m: Array) -> float | None:
-    """Median distance of points (k, 3) from a marker's places on the smoothed body, None where it is not on it."""
+    """Median distance of points (k, 3) from a marker's places on the smoothed body, None where it is not placed."""
     if found.places is None or found.body is None or name not in found.body.names:
         return None
     away = np.linalg.norm(points_m - found.places.on_body_m[frames, found.body.names.index(name)], axis=1)

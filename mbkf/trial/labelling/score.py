@@ -1,4 +1,4 @@
-"""Labels against the truth: how many samples carry the right name, the wrong one, or none."""
+"""Labels against the truth: samples with the right name, with a wrong one, and without."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class LabelScore:
     Attributes:
         names: The M markers that the subject and the truth share.
         right: (T, M) the marker is where the truth has it.
-        wrong: (T, M) the marker stands on another marker's point, or on a ghost.
-        missed: (T, M) the truth has the marker, the labels have not.
+        wrong: (T, M) the label is on another marker's point, or on a ghost.
+        missed: (T, M) the truth has the marker, the labels do not.
         present: Marker-samples in the truth.
     """
 
@@ -65,7 +65,7 @@ def score(found: MarkerTrajectories, truth: MarkerTrajectories, subject: Subject
     if found.frames != truth.frames:
         raise InvalidInput(
             f"the truth has {truth.frames} frames, the labelled capture {found.frames}; "
-            "--truth is the same trial with its labels"
+            "give the labelled file of the same trial to --truth"
         )
     matched = {marker.name: name for name, marker in match_names(truth.names, subject.markers).items()}
     names = tuple(dict.fromkeys((*matched, *found.names)))
@@ -74,7 +74,7 @@ def score(found: MarkerTrajectories, truth: MarkerTrajectories, subject: Subject
     should = np.asarray(~np.isnan(theirs).any(axis=2))
     if not should.any():
         raise InvalidInput(
-            "the truth shows none of the subject's markers; --truth is the same trial with its labels"
+            "the truth has no marker of the subject; give the labelled file of the same trial to --truth"
         )
     same = np.linalg.norm(ours - theirs, axis=2) <= SAME_POINT_M
     return LabelScore(names, same, has & ~same, should & ~has, int(should.sum()))

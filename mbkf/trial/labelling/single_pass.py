@@ -19,19 +19,19 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.labelling.any_attitude import AnyAttitude
 
 START_FRAMES = 6
-"""A filter is started on so many frames labelled pose by pose, from which it learns its velocity."""
+"""Frames labelled pose by pose on which a filter is started: they give its velocity."""
 
 LOST_S = 0.2
-"""After this long with hardly a point labelled, the labels are searched anew."""
+"""Time with hardly a point labelled after which the labels are searched anew."""
 
 LOST_SHARE = 0.4
-"""Hardly a point: fewer than this share of those that could be labelled."""
+"""Hardly a point: less than this share of those that could be labelled."""
 
 RETRY_S = 0.05
-"""A search that failed is tried again after this time: it costs as much as many frames."""
+"""Time after which a failed search is repeated: it costs as much as many frames."""
 
 SEARCH_EVERY = 20
-"""While a body is searched that does not stand, the slow search takes part in every so many tries."""
+"""The slow search in any attitude is part of every so many tries."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Points:
 
     Attributes:
         positions_m: (N, 3) those present.
-        columns: (N,) the columns they stand in.
+        columns: (N,) their columns.
     """
 
     positions_m: Array
@@ -76,15 +76,10 @@ class LabellingPass:
             any_attitude: Finds labels in frames without a prediction.
             labeller: Assigns points from frame to frame.
             positions_m: (T, C, 3) points of the capture, NaN where empty.
-            known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
+            known: (T, C) marker of the points that carry a reliable name; None where none does.
         """
-        self._known = known
-        self._filter, self._sensor, self._search, self._any_attitude = (
-            filter,
-            sensor,
-            any_attitude.search,
-            any_attitude,
-        )
+        self._filter, self._sensor, self._known = filter, sensor, known
+        self._search, self._any_attitude = any_attitude.search, any_attitude
         self.labeller, self._positions_m = labeller, positions_m
         frames, markers = len(positions_m), len(sensor.segments)
         self.markers_m = np.full((frames, markers, 3), np.nan)
@@ -122,7 +117,7 @@ class LabellingPass:
                 t, tries = self._follow(t + 1, estimate, progress), 0
 
     def find(self, t: int, thorough: bool) -> FirstFrame | None:
-        """Labels of a frame by search, the slow one for bodies that do not stand included where ``thorough``."""
+        """Labels of a frame by search; where ``thorough``, also in any attitude."""
         points = self._points(t).positions_m
         if len(points) < self._search.fewest_points:
             return None
@@ -130,7 +125,7 @@ class LabellingPass:
         return self._any_attitude.at(t) if found is None and thorough else found
 
     def _as_named(self, t: int, points: Points, labels: Indices) -> Indices:
-        """(M,) labels with those of the points whose names are known."""
+        """(M,) labels, in which reliable names take precedence."""
         if self._known is None:
             return labels
         marker = self._known[t, points.columns]
@@ -140,7 +135,7 @@ class LabellingPass:
         return labels
 
     def _begin(self, t: int, found: FirstFrame) -> Posterior | None:
-        """The filter's first estimate: labels are carried through the next frames pose by pose to learn velocities."""
+        """The filter's first estimate; the next frames are labelled pose by pose for its velocities."""
         points = self._points(t)
         first = self._as_named(t, points, found.points)
         self._note(t, points, first)
@@ -191,19 +186,19 @@ class LabellingPass:
     def _corrected(
         self, t: int, points: Points, labels: Indices, before: Posterior, prediction: Prediction
     ) -> tuple[Posterior, Indices]:
-        """The filter's step with these labels, or with those of them that go with where it came to."""
+        """The filter's step with these labels, or with those of them that fit the corrected pose."""
         self._note(t, points, labels)
         estimate = self._filter.step(before, self._recording, t, prediction)
         on_body = self._sensor.positions(estimate.q)
-        strange = self.labeller.contradicted(labels, points.positions_m, on_body)
-        if not strange.any():
+        contradicted = self.labeller.contradicted(labels, points.positions_m, on_body)
+        if not contradicted.any():
             return estimate, labels
-        labels = np.where(strange, HIDDEN, labels)
+        labels = np.where(contradicted, HIDDEN, labels)
         self._note(t, points, labels)
         return self._filter.step(before, self._recording, t), labels
 
     def _labels(self, t: int, points: Points, prediction: Prediction, lost: int) -> Indices:
-        """By prediction; after a blackout by the pose first, since the prediction has grown vague."""
+        """Labels by prediction; after a loss first by the pose, since the prediction is uncertain."""
         begin = time.perf_counter()
         if lost and len(points.positions_m) >= self._search.fewest_points:
             found = self._search.near_pose(points.positions_m, prediction.q)
@@ -221,7 +216,7 @@ class LabellingPass:
         return Points(now[columns], columns)
 
     def _follows(self, t: int, columns: Indices) -> Indices:
-        """(N,) which point of the frame before each of a frame continues, ``HIDDEN`` where that is not known."""
+        """(N,) point of the frame before that each of a frame continues, ``HIDDEN`` where unknown."""
         now, follows = self._positions_m[t], np.full(len(columns), HIDDEN, dtype=np.intp)
         if t:
             before = self._positions_m[t - 1]

@@ -17,6 +17,9 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 STANDING_SD_M = 0.008
 """Spread of a marker about its place in the standing trial."""
 
+EXCHANGED_KEY = "names_exchanged"
+"""Key of a subject's report for names that trials exchange: ``[a, b, frames]`` by pair."""
+
 
 def names_put_right(
     markers: MarkerTrajectories, subject: Subject

@@ -40,7 +40,7 @@ def test_nothing_is_told_where_nothing_is_in_doubt():
     [
         (replace(NONE, cases=(CASE,)), "RTH2 may be RTH3"),
         (replace(NONE, far_m={"RTH1": 0.3}), "RTH1 (300 mm)"),
-        (replace(NONE, misfit=1.6), "no person"),
+        (replace(NONE, misfit=1.6), "the points fit the body poorly"),
         (replace(NONE, nameless=1, unused=("RASI", "LASI")), "1 tracks"),
     ],
 )
@@ -55,7 +55,7 @@ def test_names_that_hang_together_are_told_at_once():
     other = Doubt(("B", "C"), ("C", "B"), 2.0, (0.01, 0.01), (0.02, 0.02))
     free = Doubt(("C",), ("D",), 9.0, (0.01,), (0.02,))
     told = replace(NONE, cases=(swap, CASE, free, other)).warnings()
-    assert told[0] == "A, B, C may have each other's names, or D; 2.0 times likelier as they stand"
+    assert told[0] == "A, B, C may be exchanged or be D; the labels given are 2.0 times more likely"
     assert told[1] == CASE.text()
     assert told[2].startswith("4 labels")
 

@@ -89,7 +89,7 @@ def test_a_wrong_name_is_told_with_the_marker_that_it_fits():
     found = label(raw, made.subject)
     result = score(found.markers, made.trial.markers, made.subject)
     assert result.correct_fraction >= 0.998
-    assert any("name RHEE" in line and "fits marker C7 better" in line for line in found.doubts.warnings())
+    assert any("name RHEE" in line and "was changed to C7" in line for line in found.doubts.warnings())
 
 
 def test_names_are_claimed_where_nothing_else_has_them():

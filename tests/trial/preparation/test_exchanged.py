@@ -93,7 +93,7 @@ def test_names_that_are_exchanged_in_standing_and_moving_trials_alike_are_doubte
     static, trial = (read_capture(folder / f"subject01_{name}.trc") for name in ("static", "walk1"))
     wrist = ("R.Wrist.Lat", "R.Wrist.Med")
     (doubt,) = scale(static, [trial], mass_kg=72.6).report[DOUBTS_KEY]
-    assert doubt == f"{wrist[0]} and {wrist[1]} sit where the other should: are their names exchanged?"
+    assert doubt == f"{wrist[0]} and {wrist[1]} are at each other's places; check for exchanged names"
     right = [static, trial]
     for side in "RL":
         pair = (f"{side}.Wrist.Lat", f"{side}.Wrist.Med")
