@@ -103,8 +103,10 @@ class FrameWeights:
             markers: Observations of the markers in all of them, at most one in each.
             posture: The same for the posture.
         """
-        shares = [np.full(frames, min(1.0, count / max(1, frames))) for count in (markers, posture)]
-        return cls(*shares, np.zeros(frames, dtype=bool), np.zeros(frames))
+        of_markers, of_posture = (
+            np.full(frames, min(1.0, count / max(1, frames))) for count in (markers, posture)
+        )
+        return cls(of_markers, of_posture, np.zeros(frames, dtype=bool), np.zeros(frames))
 
 
 @dataclass(frozen=True)
