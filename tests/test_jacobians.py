@@ -56,7 +56,6 @@ ELSEWHERE = {
     "numerics.discretisation.Discrete.phi": "numerics/test_discretisation.py",
     "numerics.kalman.Correction.gain_effect": "numerics/test_kalman.py",
     "numerics.kalman.information": "numerics/test_kalman.py",
-    "numerics.information_update.informed_after_rows": "numerics/test_kalman.py",
     "numerics.kalman.informed_whole": "numerics/test_kalman.py",
     "numerics.information_update.informed_with_rows": "numerics/test_kalman.py",
     "numerics.levenberg_marquardt.ArrowEquations.corner_gradient": "numerics/test_levenberg_marquardt.py",

@@ -35,19 +35,6 @@ def informed_with_rows(covariance: Array, matrix: Array, rows: Array, memory: Ar
     return information_update.informed_with_rows(covariance, matrix, rows)
 
 
-def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
-    """(N, N) as :func:`mbkf.numerics.information_update.informed_after_rows`, by the kernel where there is one.
-
-    Args:
-        covariance: (N, N) prior covariance P.
-        matrix: (n, n) information Λ on the first n components.
-        rows: (m, N) whitened Jacobian of the other readings; the values do not enter.
-    """
-    if library() is None:
-        return information_update.informed_after_rows(covariance, matrix, rows)
-    return informed_with_rows(covariance, matrix, rows)
-
-
 def correction(covariance: Array, vector: Array, rows: Array, values: Array) -> Array:
     """(N,) P (λ + Hᵀ y): the step of a mean by its readings.
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.information_update import informed, informed_after_rows, informed_with_rows
+from mbkf.numerics.information_update import informed, informed_with_rows
 from mbkf.numerics.kalman import correct, information, informed_whole
 from tests.motions import worst
 
@@ -156,7 +156,7 @@ def test_reading_components_directly_is_the_textbook_update(seed, readings):
     P = 0.5 * (P + P.T)
     sd, read = rng.uniform(0.1, 3.0, readings), rng.permutation(8)[:readings]
     H = np.eye(8)[read]
-    found = informed_after_rows(P, SILENT, H / sd[:, None])
+    found = informed_with_rows(P, SILENT, H / sd[:, None])
     S = H @ P @ H.T + np.diag(sd**2)
     np.testing.assert_allclose(found, P - P @ H.T @ np.linalg.inv(S) @ H @ P, rtol=0, atol=1e-13)
     np.testing.assert_array_equal(found, found.T)
@@ -168,7 +168,7 @@ def test_covariances_of_either_order_are_left_alone(order):
     P = np.array(0.5 * (P + P.T), order=order)
     kept, matrix = P.copy(), information(y, H, sd).matrix
     found = informed(P, matrix)
-    informed_after_rows(P, matrix, np.eye(len(P))[[1, 6, 7]])
+    informed_with_rows(P, matrix, np.eye(len(P))[[1, 6, 7]])
     np.testing.assert_array_equal(P, kept)
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_allclose(found, correct(P, information(y, H, sd)).covariance, rtol=0, atol=1e-15)
@@ -210,7 +210,6 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     found = informed_with_rows(P, matrix, rows)
     one = informed_with_rows(informed(P, matrix), SILENT, rows)
     np.testing.assert_allclose(found, one, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(informed_after_rows(P, matrix, rows), one, rtol=0, atol=1e-13)
     whole = informed_whole(P, matrix, rows)
     np.testing.assert_allclose(whole, one, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(whole, whole.T)
@@ -218,7 +217,7 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     np.testing.assert_array_equal(P, kept)
 
 
-@pytest.mark.parametrize("update", [informed_with_rows, informed_after_rows, informed_whole])
+@pytest.mark.parametrize("update", [informed_with_rows, informed_whole])
 def test_without_rows_there_is_only_the_information(update):
     P, H, sd, y = random_problem(7)
     P = 0.5 * (P + P.T)

@@ -10,7 +10,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.kernel.covariance import informed_after_rows
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
@@ -87,7 +86,6 @@ class KinematicFilter(Filter[KinematicState]):
         super().__init__(
             WhiteAccelerationPlant(model, dt_s, acceleration),
             kinematic_blocks(sensor, noise_m, dt_s, unobservable, settings),
-            informed_after_rows,
         )
         self.sensor, self.settings, self.unobservable = sensor, settings, unobservable
         self.noise_m, self.model = noise_m * settings.marker_noise_scale, model
