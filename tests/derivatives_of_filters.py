@@ -31,19 +31,16 @@ DT = 0.01
 
 @checks(
     "sensors.marker_sensor.MarkerReading.jacobian",
-    "sensors.marker_sensor.MarkerReading.pull",
     "sensors.marker_sensor.MarkerSensor.reading",
 )
 def markers(rng):
     model = random_model(rng)
     sensor, q = protocol_sensor(model)[0], moderate_pose(model, rng, spread=1.0)
-    forces, reading = rng.normal(size=(len(sensor.segments), 3)), sensor.reading(q)
+    reading = sensor.reading(q)
     by_q = central_difference(model, sensor.positions, q)
-    work = central_difference(model, lambda at: np.vdot(forces, sensor.positions(at)), q)
     return named(
         "sensors.marker_sensor",
         ("MarkerReading.jacobian", reading.jacobian, by_q),
-        ("MarkerReading.pull", reading.pull(forces), work),
         ("MarkerSensor.reading", reading.jacobian, by_q),
     )
 

@@ -1,5 +1,6 @@
-/* Markers on a tree. Their information is the mass matrix of point masses 1/sd^2: mbkf/model/point_masses.py says why,
- * and mbkf/sensors/marker_sensor.py is the reference. */
+/* Markers on a tree, as mbkf/sensors/marker_sensor.py reads them with their Jacobian H. Their information, the sum of
+ * H'H / sd^2, is the mass matrix of the tree with point masses 1/sd^2 at the markers, which the composite rigid body
+ * algorithm finds without any H (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6). */
 #include <math.h>
 #include <string.h>
 

@@ -12,11 +12,7 @@ from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
 from mbkf.kernel.markers import CompiledMarkers
 from mbkf.model.body import Body
-from mbkf.model.point_masses import PointMasses
 from mbkf.numerics.kalman import Information, information
-
-_NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
-"""Components y, z, x and z, x, y of a vector."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +50,6 @@ class MarkerReading:
         moved = (velocity.reshape(-1, 6) @ self.spatial).reshape(len(x), 3, self.spatial.shape[1])
         moved *= self._moves[:, None, :]
         return moved
-
-    def pull(self, forces: Array) -> Array:
-        """(nv,) Σ Hᵀ f of forces (M, 3) at the markers, without the Jacobian H."""
-        p, f, wrench = self.positions_m.T, forces.T, np.empty((6, len(forces)))
-        wrench[:3], moment = f, wrench[3:]
-        # p × f, all components at once.
-        np.multiply(p.take(_NEXT, 0), f.take(_AFTER, 0), out=moment)
-        moment -= p.take(_AFTER, 0) * f.take(_NEXT, 0)
-        return np.einsum("ik,ik->k", self.spatial, wrench @ self._moves)
 
 
 class MarkerSensor:
@@ -104,22 +91,19 @@ class MarkerSensor:
         return MarkerReading(self._places @ frames, jacobian, self._moves)
 
 
-class MarkerInformation:
-    """Information of markers on the configuration, without their Jacobian.
+class JacobianInformation:
+    """Information of a frame's markers on the configuration, by the markers' Jacobian.
 
     Attributes:
         sensor: The markers on the body.
-        noise_m: (M,) standard deviation of each.
+        noise_m: (M,) standard deviation of each marker.
     """
 
     def __init__(self, sensor: MarkerSensor, noise_m: Array) -> None:
         self.sensor, self.noise_m = sensor, noise_m
-        self._weight = noise_m**-2.0
-        self._masses = PointMasses(sensor.model, sensor.joint_ids, sensor.local_m, self._weight)
 
     def at(
         self,
-        q: Array,
         reading: MarkerReading,
         innovation_m: Array,
         trusted: BoolArray,
@@ -128,41 +112,33 @@ class MarkerInformation:
         """Information on the configuration (nv).
 
         Args:
-            q: (nq,) configuration.
-            reading: The sensor's at q.
+            reading: The sensor's at the configuration.
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
             trusted: (M,) markers that count, all of them seen.
             noise_scale: Square of a factor on their noise.
         """
-        count = trusted.tobytes().count(1)
-        if (compiled := self.sensor.compiled) is not None:
-            weight = self._weight * (1.0 / noise_scale)
-            said = compiled.information(weight, trusted, reading.spatial, reading.positions_m, innovation_m)
-            return Information(*said, 3 * count)
-        y = innovation_m if count == len(trusted) else np.where(trusted[:, None], innovation_m, 0.0)
-        forces = y * self._weight[:, None]
-        matrix = self._masses.mass_matrix(q, trusted)
-        found = Information(matrix, reading.pull(forces), float(np.vdot(forces, y)), 3 * count)
-        return found if noise_scale == 1.0 else found.scaled(1.0 / noise_scale)
+        H = reading.jacobian[trusted].reshape(-1, self.sensor.model.nv)
+        sd = np.repeat(self.noise_m[trusted] * noise_scale**0.5, 3)
+        return information(innovation_m[trusted].ravel(), H, sd)
 
 
-class JacobianInformation:
-    """The same by the markers' Jacobian: slower, and equal to :class:`MarkerInformation` up to rounding."""
+class MarkerInformation(JacobianInformation):
+    """The same by the compiled kernel where there is one, which needs no Jacobian; equal up to rounding."""
 
     def __init__(self, sensor: MarkerSensor, noise_m: Array) -> None:
-        self.noise_m, self._nv = noise_m, sensor.model.nv
+        super().__init__(sensor, noise_m)
+        self._weight = noise_m**-2.0
 
     def at(
         self,
-        q: Array,
         reading: MarkerReading,
         innovation_m: Array,
         trusted: BoolArray,
         noise_scale: float = 1.0,
     ) -> Information:
-        """Args: as :meth:`MarkerInformation.at`; q is not used."""
-        del q
-        H = reading.jacobian[trusted].reshape(-1, self._nv)
-        return information(
-            innovation_m[trusted].ravel(), H, np.repeat(self.noise_m[trusted] * noise_scale**0.5, 3)
-        )
+        """Information on the configuration (nv), as the base class's."""
+        if (compiled := self.sensor.compiled) is None:
+            return super().at(reading, innovation_m, trusted, noise_scale)
+        weight = self._weight * (1.0 / noise_scale)
+        found = compiled.information(weight, trusted, reading.spatial, reading.positions_m, innovation_m)
+        return Information(*found, 3 * trusted.tobytes().count(1))

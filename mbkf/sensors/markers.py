@@ -222,7 +222,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         state, reading, trusted = at.state, at.prepared, decision.trusted
         innovation = decision.measured_m - reading.positions_m
         if self._skin is None or decision.before_m is None:
-            return self._information.at(state.q, reading, innovation, trusted, decision.noise_scale)
+            return self._information.at(reading, innovation, trusted, decision.noise_scale)
         q, v, a = state.q, state.v, cast(AcceleratedState, state).a
         found = self._skin.at(q, v, a, reading, innovation, trusted, decision.before_m)
         return found if decision.noise_scale == 1.0 else found.scaled(1.0 / decision.noise_scale)

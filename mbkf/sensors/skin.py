@@ -72,7 +72,7 @@ class SkinMarkers:
         moved = turned @ B
         J = np.hstack([H - turned @ A, dt * moved, (-0.5 * dt * dt) * moved])
         seen_before = information(y, J, np.repeat(self._known_sd[known], 3))
-        first_seen = self._new.at(q, reading, innovation_m, trusted & ~known)
+        first_seen = self._new.at(reading, innovation_m, trusted & ~known)
         matrix, vector = seen_before.matrix, seen_before.vector
         matrix[:nv, :nv] += first_seen.matrix
         vector[:nv] += first_seen.vector

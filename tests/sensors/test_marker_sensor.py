@@ -64,13 +64,6 @@ def test_a_marker_moves_only_with_the_dofs_below_it(rng):
         assert set(np.flatnonzero(np.abs(jacobian[row]).sum(axis=0))) == set(moving)
 
 
-def test_pull_is_the_transposed_jacobian_times_forces(rng):
-    model = random_model(rng)
-    sensor, _ = protocol_sensor(model)
-    reading, forces = sensor.reading(moderate_pose(model, rng)), rng.normal(size=(36, 3))
-    assert_near(reading.pull(forces), np.einsum("mij,mi->j", reading.jacobian, forces), 1e-13)
-
-
 @pytest.mark.parametrize("lost", [0, 5, 36])
 def test_information_without_jacobian_is_that_of_the_stacked_readings(rng, lost):
     model = random_model(rng)
@@ -78,7 +71,7 @@ def test_information_without_jacobian_is_that_of_the_stacked_readings(rng, lost)
     noise, q = rng.uniform(0.002, 0.01, 36), moderate_pose(model, rng)
     reading, y, trusted = sensor.reading(q), 0.01 * rng.normal(size=(36, 3)), np.arange(36) >= lost
     y[~trusted] = np.nan
-    found = MarkerInformation(sensor, noise).at(q, reading, y, trusted)
+    found = MarkerInformation(sensor, noise).at(reading, y, trusted)
     sd = np.repeat(noise[trusted], 3)
     stacked = information(y[trusted].ravel(), reading.jacobian[trusted].reshape(-1, model.nv), sd)
     assert_near(found.matrix, stacked.matrix, 1e-8)  # entries up to 1e7

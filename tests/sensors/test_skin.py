@@ -112,9 +112,7 @@ def test_markers_first_seen_tell_as_much_as_ever():
     """The plain information with skin and camera noise together, and nothing on velocities."""
     moment = Moment()
     found = moment.information(before=np.full((MARKERS, 3), np.nan))
-    plain = MarkerInformation(SENSOR, np.hypot(SD_M, CAMERA_M)).at(
-        moment.q, moment.reading, moment.innovation, EVERY
-    )
+    plain = MarkerInformation(SENSOR, np.hypot(SD_M, CAMERA_M)).at(moment.reading, moment.innovation, EVERY)
     np.testing.assert_allclose(found.matrix[:NV, :NV], plain.matrix, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(found.vector[:NV], plain.vector, rtol=1e-9, atol=1e-9)
     np.testing.assert_array_equal(found.matrix[NV:], 0.0)
@@ -151,7 +149,7 @@ def test_skin_that_stays_where_it_slid_hardly_moves_a_pose_known_before():
     slid = np.tile([0.005, 0.0, 0.0], (MARKERS, 1))
     moment.innovation, moment.before = slid, predicted_before(moment.q, moment.v, moment.a) + slid
     P = np.diag(np.repeat([0.003, 0.1, 1.0], NV) ** 2)
-    plain = MarkerInformation(SENSOR, SD_M).at(moment.q, moment.reading, slid, EVERY)
+    plain = MarkerInformation(SENSOR, SD_M).at(moment.reading, slid, EVERY)
     by_skin = correct(P, moment.information()).step[:NV]
     by_plain = correct(P[:NV, :NV], plain).step
     assert np.linalg.norm(by_skin[:3]) < 0.2 * np.linalg.norm(by_plain[:3])
