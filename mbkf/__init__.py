@@ -13,6 +13,8 @@ from mbkf.errors import MbkfError
 from mbkf.version import __version__
 
 if TYPE_CHECKING:
+    from mbkf.filters.filter import Filter
+    from mbkf.filters.plant import Plant
     from mbkf.io.capture import read_capture, register_force_reader, register_reader
     from mbkf.io.capture_options import CaptureOptions
     from mbkf.io.imu.files import read_imu, register_imu_reader
@@ -47,6 +49,7 @@ _HOMES = {
     "ClinicalAngles": "mbkf.model.clinical",
     "Estimate": "mbkf.trial.tracker",
     "ExtraState": "mbkf.sensors.layout",
+    "Filter": "mbkf.filters.filter",
     "Frame": "mbkf.sensors.block",
     "Hidden": "mbkf.trial.preparation.settings",
     "HumanModel": "mbkf.model.human",
@@ -57,6 +60,7 @@ _HOMES = {
     "MarkerTrajectories": "mbkf.io.records",
     "Notes": "mbkf.sensors.block",
     "OperatingPoint": "mbkf.sensors.block",
+    "Plant": "mbkf.filters.plant",
     "PlateReadings": "mbkf.io.records",
     "ReconstructSettings": "mbkf.trial.preparation.settings",
     "Rows": "mbkf.sensors.block",
@@ -92,6 +96,7 @@ __all__ = [
     "ClinicalAngles",
     "Estimate",
     "ExtraState",
+    "Filter",
     "Frame",
     "Hidden",
     "HumanModel",
@@ -103,6 +108,7 @@ __all__ = [
     "MbkfError",
     "Notes",
     "OperatingPoint",
+    "Plant",
     "PlateReadings",
     "ReconstructSettings",
     "Rows",

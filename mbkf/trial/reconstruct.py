@@ -11,6 +11,7 @@ import numpy as np
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.estimate import Recording
+from mbkf.filters.plant import PlantMaker
 from mbkf.filters.tracking import track
 from mbkf.io.findings import Finding
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -44,6 +45,7 @@ def reconstruct(
     settings: ReconstructSettings | None = None,
     imus: ImuOnBody | None = None,
     blocks: Sequence[AnyBlock] = (),
+    plant: PlantMaker | None = None,
     readings: Mapping[str, Array] | None = None,
     progress: StageCallback | None = None,
 ) -> Reconstruction:
@@ -55,6 +57,7 @@ def reconstruct(
         settings: The filter and its settings; the defaults are the same for every capture, and smooth.
         imus: Inertial sensors on the body, for the dynamic filter.
         blocks: Blocks of one's own, for the dynamic filter, besides the standard ones.
+        plant: Makes the plant of the dynamic filter, a class of :class:`mbkf.Plant`; None for the standard one.
         readings: (T, …) readings of instruments of one's own, by the name that their block knows.
         progress: Called with the stage, items done and items in all.
 
@@ -87,16 +90,16 @@ def reconstruct(
         if imus is not None:
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
             capture = replace(capture, notes=(*capture.notes, *remarks))
-        if readings:
-            recording = replace(recording, readings=readings)
+        recording = replace(recording, readings=readings) if readings else recording
         alone = None
         if _asks_markers_alone(settings, inputs):
             followed = None if progress is None else partial(progress, "Following markers alone")
             alone = markers_alone(inputs, recording, followed)
             if settings.other_contacts and settings.filter == "dynamic":
                 inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone)
+        all_blocks = [*standard(inputs), *blocks] if blocks else None
         result = track(
-            tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
+            tracking_filter(settings.filter, inputs, all_blocks, plant),
             recording,
             smoothing=settings.smoothing if settings.smooths else None,
             lag_s=settings.lag_s,

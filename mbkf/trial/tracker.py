@@ -16,6 +16,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import ShapeError
 from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import Posterior
+from mbkf.filters.plant import PlantMaker
 from mbkf.filters.record import HeldErrors
 from mbkf.filters.spread import Spread
 from mbkf.filters.tracking_filter import TrackingFilter
@@ -190,6 +191,7 @@ class Tracker:
         *,
         settings: ReconstructSettings | None = None,
         blocks: Sequence[AnyBlock] | None = None,
+        plant: PlantMaker | None = None,
     ) -> None:
         """Makes a tracker that has seen nothing yet.
 
@@ -201,10 +203,11 @@ class Tracker:
             rate_hz: Frame rate.
             settings: Filter and its settings. It answers causally, or with their lag, since later frames are not known.
             blocks: Blocks of the dynamic filter, :func:`standard_blocks` and one's own; None for the standard ones.
+            plant: Makes the plant of the dynamic filter (:class:`mbkf.Plant`); None for the standard one.
 
         Raises:
             NotObservable: Too few of the subject's markers are among the markers.
-            InvalidInput: Blocks are given for another filter than the dynamic one, or smoothing is asked for.
+            InvalidInput: Blocks or a plant are given for another filter than the dynamic one, or smoothing is set.
         """
         settings = live_settings(settings or ReconstructSettings())
         live = _inputs(subject, markers, plates, rate_hz, settings)
@@ -212,7 +215,7 @@ class Tracker:
         self.names, self._columns, self._plates = live.names, live.columns, tuple(plates)
         self._weight_n = GRAVITY_M_S2 * subject.mass_kg
         with single_threaded():
-            self._filter = tracking_filter(settings.filter, live.inputs, blocks)
+            self._filter = tracking_filter(settings.filter, live.inputs, blocks, plant)
         self._live = LiveFilter(self._filter, settings.lag_s)
         self._balance = NewtonEuler(self._filter.model)
         self._body = HeldErrors(live.inputs.body, self._filter.dt_s)

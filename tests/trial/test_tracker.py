@@ -1,7 +1,7 @@
 """A tracker for a loop of one's own gives what `reconstruct` gives causally, and takes blocks of one's own."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ import mbkf
 from mbkf.errors import InvalidInput, NotObservable, ShapeError
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.trial.preparation.settings import ReconstructSettings
+from tests.plants.damped import Damped
 
 FRAMES = 45
 
@@ -25,11 +26,17 @@ def squat():
     return person, trial, mbkf.plate_wrenches(trial.plates, trial.markers.times_s, trial.markers.rate_hz)
 
 
-def followed(blocks=None, settings=None, plates=None, readings=None):
+def followed(blocks=None, settings=None, plates=None, readings=None, plant=None):
     person, trial, wrenches = squat()
     plates = trial.plates if plates is None else plates
     tracker = mbkf.Tracker(
-        person, trial.markers.names, plates, trial.markers.rate_hz, settings=settings, blocks=blocks
+        person,
+        trial.markers.names,
+        plates,
+        trial.markers.rate_hz,
+        settings=settings,
+        blocks=blocks,
+        plant=plant,
     )
     found = []
     for t in range(FRAMES):
@@ -156,6 +163,18 @@ def test_offline_takes_blocks_and_readings_too():
     counted = result.nis_readings - plain.nis_readings
     assert counted[0] == 0 and (counted[1:] == 1).all()  # a start counts no reading
     assert np.abs(result.q[:, 2] - plain.q[:, 2]).max() < 0.005
+
+
+def test_a_plant_of_ones_own_takes_the_same_steps_live_and_offline():
+    person, trial, _ = squat()
+    settings = ReconstructSettings(smooth=False, correct_markers=False, checks=False, other_contacts=False)
+    result = mbkf.reconstruct(trial, person, settings=settings, plant=Damped)
+    _, found = followed(plant=partial(Damped, fades_s=0.3))
+    standard = followed()[1][30]
+    for one in found[::10]:
+        np.testing.assert_array_equal(one.q, result.q[one.number])
+        np.testing.assert_array_equal(one.q_sd, result.sd_q[one.number])
+    assert found[30].tracked and np.abs(found[30].q - standard.q).max() > 1e-6
 
 
 def test_wrong_arrays_and_filters_are_refused():

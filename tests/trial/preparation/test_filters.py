@@ -5,19 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import UnknownName
+from mbkf.errors import InvalidInput, UnknownName
+from mbkf.filters.dynamic.plant import SingerPlant
 from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.report import TorqueReport
 from mbkf.filters.torque.settings import preset
+from mbkf.filters.tracking import track
 from mbkf.sensors.foot_contact import FootContact
 from mbkf.sensors.foot_plates import FootPlates
 from mbkf.sensors.markers import MarkerSettings
 from mbkf.trial.preparation.filters import FILTERS, tracking_filter
 from tests.dynamics import DT
-from tests.followed import inputs, made
+from tests.followed import WHOLE, inputs, made, recording
+from tests.plants.damped import Damped
 
 REPORTS = {"kinematic": KinematicReport, "torque": TorqueReport, "dynamic": DynamicReport}
 every_filter = pytest.mark.parametrize("name", FILTERS)
@@ -75,6 +78,27 @@ def test_plates_reach_the_filters_that_read_them(name):
     kinds = (FootPlates, FootContact)
     (block,) = (one for one in found.kalman.blocks if isinstance(one, kinds))
     assert len(block.detector.surfaces_m) == 1
+
+
+def test_a_plant_reaches_the_dynamic_filter_and_the_standard_one_given_changes_nothing():
+    """Smoothed, too: the same arrays by the Singer plant, whoever gives it."""
+    known = inputs()
+    own = tracking_filter("dynamic", known, plant=Damped).kalman.plant
+    assert type(own) is Damped
+    assert (own.model, own.dt_s, own.layout.nv) == (made().model, DT, made().model.nv)
+    found, expected = (
+        track(tracking_filter("dynamic", known, plant=plant), recording(), smoothing=WHOLE)
+        for plant in (SingerPlant, None)
+    )
+    np.testing.assert_array_equal(found.q, expected.q)
+    np.testing.assert_array_equal(found.torque_sd, expected.torque_sd)
+
+
+@pytest.mark.parametrize("name", ["kinematic", "torque"])
+@pytest.mark.parametrize("own", [{"blocks": []}, {"plant": Damped}])
+def test_blocks_and_plants_are_for_the_dynamic_filter(name, own):
+    with pytest.raises(InvalidInput, match=f"are for the dynamic filter; the {name} filter"):
+        tracking_filter(name, inputs(), **own)
 
 
 def test_wrong_names_are_refused():
