@@ -16,9 +16,6 @@ FORCE_SD_N, MOMENT_SD_NM = 20.0, 4.0
 class Insole(mbkf.Block):
     """Readings (2, 4) of right and left foot: vertical force N, centre of pressure m."""
 
-    def bind(self, layout, body):
-        self.first = layout.wrench.start
-
     def decide(self, at, frame, memory, notes):
         return frame.readings["insole"]
 
@@ -32,7 +29,7 @@ class Insole(mbkf.Block):
             if np.isfinite(force):
                 rows[3 * foot : 3 * foot + 3, 6 * foot : 6 * foot + 6] = H
                 values[3 * foot : 3 * foot + 3] = [force / FORCE_SD_N, 0.0, 0.0] - H @ w
-        return mbkf.Rows(rows, values, self.first, readings=6)
+        return mbkf.Rows(rows, values, self.layout.wrench.start, readings=6)
 
 
 person, recorded = mbkf.synthesise("squat", seconds=2.5, seed=3)

@@ -17,9 +17,6 @@ class Altimeter(mbkf.Block):
     def states(self):
         return [mbkf.ExtraState(DRIFT, start=np.zeros(1), start_sd=np.ones(1), walk_sd=np.array([0.02]))]
 
-    def bind(self, layout, body):
-        self.layout = layout
-
     def decide(self, at, frame, memory, notes):
         return frame.readings["altimeter"]
 

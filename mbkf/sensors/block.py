@@ -7,7 +7,7 @@ about x, in one of two forms:
     Rows          R^(-1/2) H and R^(-1/2) y of such readings, on any contiguous components
 
 with innovation y = z − h(x⁻) and H = ∂h/∂x along the tangent space. The filter adds them up and updates once.
-A block of one's own derives from :class:`Block` and needs two methods, ``decide`` and ``linearise``.
+A user's block derives from :class:`Block` and needs ``linearise``; an instrument decides on its readings, too.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,12 +169,13 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
         return ()
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Called once by the filter; a block keeps what it needs.
+        """Called once by the filter; the block keeps both, as ``self.layout`` and ``self.body``.
 
         Args:
             layout: Slices of the filter's tangent state, added states among them.
             body: The body that moves.
         """
+        self.layout, self.body = layout, body
 
     def begin(self) -> MemoryT:
         """Memory before the first frame."""
@@ -189,11 +190,10 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
         """
         return None  # type: ignore[return-value]
 
-    @abstractmethod
     def decide(
         self, at: OperatingPoint[StateT, PreparedT], frame: Frame, memory: MemoryT, notes: Notes
     ) -> DecisionT:
-        """Decision on the frame's readings; with it they can be linearised at another state.
+        """Decision on the frame's readings; with it they can be linearised at another state. The notes by default.
 
         Args:
             at: The predicted state.
@@ -201,6 +201,7 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             memory: Of the frame before.
             notes: Findings of the blocks before this one in the filter's list; its own are added.
         """
+        return cast(DecisionT, notes)
 
     def inflate(self, P: Array, decision: DecisionT) -> None:
         """Process noise that depends on the decision, added in place to the predicted covariance P (N, N)."""

@@ -17,13 +17,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
-from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.inertial import observed_dofs
 from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.layout import ExtraState, Layout
+from mbkf.sensors.layout import ExtraState
 from mbkf.sensors.states import LoadedState
 
 BIASES, TURNS = "gyroscope biases", "turns of the mounts"
@@ -90,10 +89,6 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         """Biases and turns."""
         return self._states
 
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the layout."""
-        self._layout = layout
-
     def decide(
         self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: None, notes: Notes
     ) -> Array | None:
@@ -108,7 +103,7 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         """Rows on the whole state; missing readings are left out, component by component."""
         if decision is None:
             return None
-        state, layout, count = at.state, self._layout, len(self.sensor.mounts)
+        state, layout, count = at.state, self.layout, len(self.sensor.mounts)
         nv = len(state.v)
         bias, turn = (state.extra[layout.extra_index(name)].reshape(-1, 3) for name in (BIASES, TURNS))
         reading = self.sensor.reading(state.q, state.v, state.a)

@@ -21,7 +21,6 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import library
-from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, FreeStance, KeptContact
@@ -33,7 +32,6 @@ from mbkf.sensors.contact.sharing import (
     SharedLoad,
     shear_to_pelvis,
 )
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import LoadedState
 
 
@@ -122,12 +120,6 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         self._walk_sd = np.array([s.wrench_force, s.wrench_moment]) * dt_s**0.5
         self._walk = np.repeat(self._walk_sd, 3)
         self._kernel = library()
-        self._first, self._feet = 0, (slice(0, 6), slice(6, 12))
-
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the slices of the wrenches."""
-        first = self._first = layout.wrench.start
-        self._feet = slice(first, first + 6), slice(first + 6, first + 12)
 
     def begin(self) -> KeptContact:
         """Memory without a loaded plate."""
@@ -144,18 +136,18 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
 
     def inflate(self, P: Array, decision: FootDecision) -> None:
         """Adds the wrenches' random walk about the middles of the soles, which a belt carries along."""
-        contact = decision.contact
+        contact, first = decision.contact, self.layout.wrench.start
         x, y = contact.floor_m_s
         carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x]) if x or y else _NO_BELT
         if self._kernel is not None:
-            self._kernel.add_wrench_walk(P, self._first, contact.centres_m, self._walk_sd, carried)
+            self._kernel.add_wrench_walk(P, first, contact.centres_m, self._walk_sd, carried)
             return
         shift = _about(-contact.centres_m) * self._walk
         walk = shift @ shift.transpose(0, 2, 1)
         walk[:, 3:5, 3:5] += np.outer(carried, carried)
-        for mine, added in zip(self._feet, walk, strict=True):
-            own = P[mine, mine]
-            own += added
+        for foot, added in enumerate(walk):
+            own = slice(first + 6 * foot, first + 6 * foot + 6)
+            P[own, own] += added
 
     def linearise(self, at: OperatingPoint[LoadedState, None], decision: FootDecision) -> Rows:
         """Twelve rows; readings of plates come first."""
@@ -170,7 +162,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         expected = self._expected(contact, pulls)
         left_first = kinds[1] == Contact.MEASURED != kinds[0]
         rows, values = self._separate(w, contact.centres_m, weights, expected, left_first)
-        return Rows(rows, values, self._first, 6 * kinds.count(Contact.MEASURED))
+        return Rows(rows, values, self.layout.wrench.start, 6 * kinds.count(Contact.MEASURED))
 
     def _separate(
         self,
@@ -286,7 +278,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         for kept in (rows, values):
             of_right, of_left = kept[:2].copy(), kept[6:8].copy()
             kept[:2], kept[6:8] = of_right - of_left, TOGETHER * (of_right + of_left)
-        return Rows(rows, values, self._first, 0)
+        return Rows(rows, values, self.layout.wrench.start, 0)
 
     def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:
         """One plate reads the sum of both wrenches; geometry gives their shares, with a spread."""
@@ -297,7 +289,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         right = _about(shared.centres_m[:1])[0] / shared.sd[:, None]
         rows[6:, :6] = right
         values[6:] = right @ (shared.wrench[0] - w[0])
-        return Rows(rows, values, self._first, 6)
+        return Rows(rows, values, self.layout.wrench.start, 6)
 
 
 def _stacked(X: Array, values: Array, left_first: bool = False) -> tuple[Array, Array]:

@@ -101,7 +101,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
     """Force plates that read wrench states.
 
     Attributes:
-        body: The forced body.
+        dynamics: The forced body.
         detector: Decides the contact of the feet.
         sensor: Wrench states carried to points on the plates.
         settings: Noise.
@@ -114,21 +114,21 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
 
     def __init__(
         self,
-        body: HumanDynamics,
+        dynamics: HumanDynamics,
         detector: ContactDetector,
         dt_s: float,
         settings: FootPlateSettings = FootPlateSettings(),
     ) -> None:
         """Args: the attributes; dt_s: time between frames."""
-        self.body, self.detector, self.settings = body, detector, settings
-        self.sensor = FootWrenchSensor(body)
+        self.dynamics, self.detector, self.settings = dynamics, detector, settings
+        self.sensor = FootWrenchSensor(dynamics)
         self._dt_s = dt_s
         self._plate = np.repeat([settings.plate_force_n, settings.plate_moment_nm], 3)
         self._air = np.repeat([settings.air_force_n, settings.air_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:
         """Keeps the indices of positions and wrenches."""
-        self._size = layout.size
+        super().bind(layout, body)
         every = np.arange(layout.size)
         self.columns = np.concatenate([every[layout.q], every[layout.wrench]])
 
@@ -143,14 +143,14 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         state = at.state
         where = memory.ahead
         if where is None:
-            where = Ahead(state.q, state.v, self.body.acceleration(state.q, state.v, state.u))
+            where = Ahead(state.q, state.v, self.dynamics.acceleration(state.q, state.v, state.u))
         notes.contact = self.detector.decide(memory.contact, *where, frame.plates)
         return PlateDecision(notes.contact, FootReading.of(notes.contact))
 
     def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> Information:
         """Information on the whole state, of which positions and wrenches are read."""
         state, feet = at.state, decision.reading
-        _, ankles = self.body.model.placements(state.q)
+        _, ankles = self.body.placements(state.q)
         points = ankles[self.sensor.ids]
         predicted = self.sensor.reading(state.q, state.u[-12:], points)
         target = feet.wrench.copy()
@@ -162,7 +162,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         else:
             read = np.repeat(feet.known, 6)
             own = information(y[read], H[read], self.sd(feet)[read])
-        matrix, vector = np.zeros((self._size, self._size)), np.zeros(self._size)
+        matrix, vector = np.zeros((self.layout.size, self.layout.size)), np.zeros(self.layout.size)
         matrix[np.ix_(self.columns, self.columns)], vector[self.columns] = own.matrix, own.vector
         return Information(matrix, vector, own.innovation, own.readings)
 
@@ -180,8 +180,8 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
     def next_memory(self, posterior: ForceState, decision: PlateDecision) -> PlateMemory:
         """Memory after a frame with this posterior."""
         q, v, dt = posterior.q, posterior.v, self._dt_s
-        a = self.body.acceleration(q, v, posterior.u)
-        return PlateMemory(decision.contact.memory, Ahead(self.body.integrate(q, dt * v), v + dt * a, a))
+        a = self.dynamics.acceleration(q, v, posterior.u)
+        return PlateMemory(decision.contact.memory, Ahead(self.dynamics.integrate(q, dt * v), v + dt * a, a))
 
     def _whitening(self, shared: SharedLoad, points_m: Array) -> Array:
         """(12, 12) whitened map of the feet's wrenches about points (2, 3) to the plate's sum and the right share."""

@@ -12,7 +12,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.kernel.tree import CompiledTree
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
+from mbkf.sensors.block import Block, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
 
 
@@ -27,7 +27,7 @@ class JointLimitSettings:
     limit_sd_rad: float = 0.03
 
 
-class JointLimits(Block[State, Information | None, None, None]):
+class JointLimits(Block[State, Information | None, Notes, None]):
     """Least and greatest rotation of every joint about its axes, from the neutral posture.
 
     Attributes:
@@ -54,12 +54,7 @@ class JointLimits(Block[State, Information | None, None, None]):
         """Information of the passed limits, which does not depend on the frame."""
         return self.information(*self._sensor.deviation(state.q))
 
-    def decide(
-        self, at: OperatingPoint[State, Information | None], frame: Frame, memory: None, notes: Notes
-    ) -> None:
-        """No decision is needed."""
-
-    def linearise(self, at: OperatingPoint[State, Information | None], decision: None) -> Information | None:
+    def linearise(self, at: OperatingPoint[State, Information | None], decision: Notes) -> Information | None:
         """Information on the configuration, None without a passed limit."""
         return at.prepared
 

@@ -22,7 +22,6 @@ from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.feet import FeetMotion, FeetOnBody
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import LoadedState
 
 
@@ -109,10 +108,6 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
         weight_n = -float(model.pin_model.gravity.linear[2]) * model.mass_kg
         self._sd_n = settings.transfer_sd * weight_n * max(settings.transfer_memory_s / dt_s, 1.0) ** 0.5
 
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the first component of the wrenches."""
-        self._first = layout.wrench.start
-
     def begin(self) -> Walk:
         """Memory before any foot has stood."""
         return Walk()
@@ -145,7 +140,7 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
         row = np.zeros((1, 12))
         row[0, self._vertical[behind]], row[0, self._vertical[1 - behind]] = 1.0 - share, -share
         row /= self._sd_n
-        return Rows(row, -row @ at.state.w, self._first)
+        return Rows(row, -row @ at.state.w, self.layout.wrench.start)
 
     def remember(
         self,

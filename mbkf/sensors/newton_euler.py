@@ -12,7 +12,7 @@ import numpy as np
 
 from mbkf.model.body import Body
 from mbkf.model.newton_euler import NewtonEuler
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.layout import SUPPORT, UNSEEN_MOMENT, Layout
 from mbkf.sensors.states import LoadedState
 
@@ -78,12 +78,6 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
             residual[3:] += state.extra[self._unseen_extra]
             rows[3:, unseen] = np.diag(self._sharp[3:])
         return Rows(rows, -residual * self._sharp, readings=6)
-
-    def decide(
-        self, at: OperatingPoint[LoadedState, Rows], frame: Frame, memory: None, notes: Notes
-    ) -> Notes:
-        """The notes, to which the blocks after this one add."""
-        return notes
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
         """The prepared rows, loosened for a limb without marker and sensor while inertial sensors read."""

@@ -13,31 +13,28 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import Block, Notes, OperatingPoint
 from mbkf.sensors.states import ForceState
 
 
-class PelvisResidual(Block[ForceState, None, None, None]):
+class PelvisResidual(Block[ForceState, None, Notes, None]):
     """The pelvis residual near zero.
 
     Attributes:
-        body: The forced body.
+        dynamics: The forced body.
         sd: (6,) standard deviations of force, N, and moment, N m.
     """
 
     prior = True
 
-    def __init__(self, body: HumanDynamics, residual_sd: Array) -> None:
+    def __init__(self, dynamics: HumanDynamics, residual_sd: Array) -> None:
         """Args: the forced body, and standard deviations (6,) of force, N, and moment, N m."""
-        self.body, self.sd = body, residual_sd
+        self.dynamics, self.sd = dynamics, residual_sd
 
-    def decide(self, at: OperatingPoint[ForceState, None], frame: Frame, memory: None, notes: Notes) -> None:
-        """The same in every frame."""
-
-    def linearise(self, at: OperatingPoint[ForceState, None], decision: None) -> Information:
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: Notes) -> Information:
         """Information on the whole state."""
         state = at.state
-        torque = self.body.joint_forces(state.q, state.v, state.u)
+        torque = self.dynamics.joint_forces(state.q, state.v, state.u)
         H = np.hstack([torque.by_q, torque.by_v, torque.by_u])[:6]
         found = information(-torque.torque[:6], H, self.sd)
         return Information(found.matrix, found.vector, 0.0, 0)

@@ -21,7 +21,6 @@ from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Planted
-from mbkf.sensors.layout import Layout
 
 
 @dataclass(frozen=True)
@@ -71,11 +70,6 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         self.keypoints = keypoints
         self._model, self.detector, self.settings = model, detector, settings
         self._dof = [model.joint(segment).v.start for segment in model.roles.feet]
-        self._v = 0
-
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the first component of the velocities."""
-        self._v = layout.v.start
 
     def decide(
         self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes
@@ -102,7 +96,7 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         s, state, floor = self.settings, at.state, decision.floor_m_s
         sds = math.hypot(s.planted_speed_sd, s.belt_speed_share * math.hypot(*floor)), s.planted_turn_sd
         found = [
-            Rows(*standing_still(self._model, state.q, state.v, foot, *sds, floor), self._v)
+            Rows(*standing_still(self._model, state.q, state.v, foot, *sds, floor), self.layout.v.start)
             for foot in decision.still
         ]
         level = decision.level

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
+from mbkf.sensors.block import Block, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
 
 
@@ -76,12 +76,6 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
         """The prior's information while every segment is observed."""
         deviation, jacobian = self.sensor.deviation(state.q)
         return PreparedPosture(deviation, jacobian, self._information(deviation, jacobian, self._weights))
-
-    def decide(
-        self, at: OperatingPoint[State, PreparedPosture], frame: Frame, memory: None, notes: Notes
-    ) -> Notes:
-        """The notes, which list unobserved joints."""
-        return notes
 
     def linearise(self, at: OperatingPoint[State, PreparedPosture], decision: Notes) -> Information:
         """Information on the configuration, of less weight for unobserved joints."""

@@ -11,14 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import BoolArray
-from mbkf.model.body import Body
 from mbkf.numerics.kalman import Information, information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
-from mbkf.sensors.layout import Layout
+from mbkf.sensors.block import Block, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
 
 
-class PostureAndRest(Block[State, None, None, None]):
+class PostureAndRest(Block[State, None, Notes, None]):
     """Weak priors on posture and velocity.
 
     Attributes:
@@ -36,19 +34,13 @@ class PostureAndRest(Block[State, None, None, None]):
         self._posture_sd = posture_scale * sensor.sd[self._free]
         self._moving, self._certainty = np.flatnonzero(~unobservable), rest_sd**-2
 
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the indices of the velocities."""
-        self._nv, self._v, self._stop = layout.nv, layout.v.start + self._moving, layout.v.stop
-
-    def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> None:
-        """The same in every frame."""
-
-    def linearise(self, at: OperatingPoint[State, None], decision: None) -> Information:
+    def linearise(self, at: OperatingPoint[State, None], decision: Notes) -> Information:
         """Information on positions and velocities."""
-        state, nv, rest = at.state, self._nv, self._v
+        state, nv, stop = at.state, self.layout.nv, self.layout.v.stop
+        rest = self.layout.v.start + self._moving
         away = self.sensor.reading(state.q)
         posture = information(-away.deviation[self._free], away.jacobian[self._free], self._posture_sd)
-        matrix, vector = np.zeros((self._stop, self._stop)), np.zeros(self._stop)
+        matrix, vector = np.zeros((stop, stop)), np.zeros(stop)
         matrix[:nv, :nv], vector[:nv] = posture.matrix, posture.vector
         matrix[rest, rest] = self._certainty
         vector[rest] = -state.v[self._moving] * self._certainty

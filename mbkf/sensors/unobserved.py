@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, read_only
-from mbkf.model.body import Body
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
-from mbkf.sensors.layout import Layout
+from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.states import AcceleratedState
 
 
@@ -52,14 +50,6 @@ class UnobservedJoints(Block[State, None, Notes, None]):
         velocity = np.clip(s.unseen_velocity_s * movement_sd, *s.unseen_velocity_range)
         return cls(velocity, s.unseen_acceleration_share * movement_sd)
 
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the first component of velocities, which accelerations follow."""
-        self._v = layout.v.start
-
-    def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> Notes:
-        """The notes, which list unobserved joints."""
-        return notes
-
     def linearise(self, at: OperatingPoint[State, None], decision: Notes) -> Rows | None:
         """A row on the velocity, and one on the acceleration, of each unobserved dof."""
         dofs, state = decision.unobserved, at.state
@@ -69,10 +59,10 @@ class UnobservedJoints(Block[State, None, Notes, None]):
         speed = -rest * state.v[dofs]
         if self._calm is not None:
             slowing = -self._calm[dofs] * cast(AcceleratedState, state).a[dofs]
-            return Rows(rows, np.concatenate([speed, slowing]), self._v)
+            return Rows(rows, np.concatenate([speed, slowing]), self.layout.v.start)
         vector = np.zeros(len(state.v))
         vector[dofs] = rest * speed
-        return Rows(rows, speed, self._v, vector=vector)
+        return Rows(rows, speed, self.layout.v.start, vector=vector)
 
     def _weights(self, dofs: NDArray[np.intp], nv: int) -> tuple[Array, Array]:
         """Rows on velocities and accelerations of dofs (n,) of nv, and weights of the first; kept for the next call."""

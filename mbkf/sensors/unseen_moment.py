@@ -14,9 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.model.body import Body
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.sensors.layout import UNSEEN_MOMENT, ExtraState, Layout
+from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
+from mbkf.sensors.layout import UNSEEN_MOMENT, ExtraState
 from mbkf.sensors.states import LoadedState
 
 
@@ -33,7 +32,7 @@ class UnseenMomentSettings:
     unseen_memory_s: float = 2.0
 
 
-class UnseenMoment(Block[LoadedState, None, bool, None]):
+class UnseenMoment(Block[LoadedState, None, Notes, None]):
     """A state of three, and its decay."""
 
     prior = True
@@ -50,14 +49,7 @@ class UnseenMoment(Block[LoadedState, None, bool, None]):
         start_sd = np.full(3, self.settings.unseen_moment_nm)
         return [ExtraState(UNSEEN_MOMENT, np.zeros(3), start_sd, np.full(3, self._walk))]
 
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the slices of the moment."""
-        self._slice, self._extra = layout[UNSEEN_MOMENT], layout.extra_index(UNSEEN_MOMENT)
-
-    def decide(self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: None, notes: Notes) -> bool:
-        """It decays in every frame."""
-        return True
-
-    def linearise(self, at: OperatingPoint[LoadedState, None], decision: bool) -> Rows:
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
         """Three rows on the moment."""
-        return Rows(np.eye(3) / self._sd, -at.state.extra[self._extra] / self._sd, self._slice.start)
+        moment = at.state.extra[self.layout.extra_index(UNSEEN_MOMENT)]
+        return Rows(np.eye(3) / self._sd, -moment / self._sd, self.layout[UNSEEN_MOMENT].start)

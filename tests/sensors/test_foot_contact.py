@@ -205,7 +205,7 @@ def test_wrenches_wander_about_the_soles():
 def test_the_kernel_reads_and_inflates_as_is_stated(contacts, near, floor_m_s, lifted, reference_kernel):
     """To rounding, for feet that bear and pull in every way."""
     stated, rng = FootContact(BLOCK.detector, WEIGHT_N, DT, SETTINGS), np.random.default_rng(2)
-    stated._first, stated._feet = BLOCK._first, BLOCK._feet
+    stated.bind(BLOCK.layout, None)
     decision = FootDecision(replace(load(contacts), near=near, floor_m_s=floor_m_s), lifted)
     at = OperatingPoint(SimpleNamespace(w=rng.normal(0.0, 200.0, 12)), None)
     found, expected = BLOCK.linearise(at, decision), stated.linearise(at, decision)

@@ -116,7 +116,7 @@ def test_shares_leave_the_sum_as_exact_as_the_plate(scene):
 def test_the_noise_of_shares_is_that_of_their_whitening(scene):
     """Log det R is minus twice the log of the whitening's determinant."""
     block, state, wrench = scene
-    points = block.body.model.placements(state.q)[1][block.sensor.ids]
+    points = block.dynamics.model.placements(state.q)[1][block.sensor.ids]
     decision = shared(wrench)
     rows = block._whitening(decision.shared, points)
     found = block.log_noise(PlateDecision(decision, FootReading.of(decision)))
@@ -129,7 +129,7 @@ def test_contact_is_decided_where_the_posterior_leads(scene):
     decision = block.decide(at, frame, block.begin(), notes)
     memory = block.remember(state, at, decision, block.begin())
     assert notes.contact is decision.contact and memory.contact is decision.contact.memory
-    a = block.body.acceleration(state.q, state.v, state.u)
-    assert_near(memory.ahead.q, block.body.integrate(state.q, DT * state.v), 0.0)
+    a = block.dynamics.acceleration(state.q, state.v, state.u)
+    assert_near(memory.ahead.q, block.dynamics.integrate(state.q, DT * state.v), 0.0)
     assert_near(memory.ahead.v, state.v + DT * a, 0.0)
     assert_near(memory.ahead.a, a, 0.0)

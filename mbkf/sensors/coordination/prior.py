@@ -19,7 +19,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.posture_sensor import PostureSensor
 
 NOTED_HZ, BLOCK_S = 25.0, 0.5
@@ -149,11 +148,6 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         self._first = np.array([own[0] for own in self.dependents], dtype=np.intp)
         # A reading with a lasting error counts once in its correlation time, not in every frame.
         self._repeat = max(1.0, settings.coordination_errs_s / dt_s) ** 0.5
-        self._v = 0
-
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the first component of the velocities."""
-        self._v = layout.v.start
 
     def begin(self) -> CoordinationMemory:
         """Memory without noted frames."""
@@ -217,7 +211,7 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         by_v[np.arange(len(dofs)), dofs] = 1.0 / decision.v_sd
         return [
             Rows(by_q, -away[dofs] / decision.q_sd),
-            Rows(by_v, (decision.v - state.v[dofs]) / decision.v_sd, self._v),
+            Rows(by_v, (decision.v - state.v[dofs]) / decision.v_sd, self.layout.v.start),
         ]
 
     def remember(
