@@ -8,7 +8,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mbkf.filters.record import Track
-from mbkf.io.quantities import AXES, quantities
+from mbkf.io.dimensions import shape_of
+from mbkf.io.quantities import quantities
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
@@ -159,7 +160,7 @@ def track_of(q, v, a, **known):
     frames = len(a)
     sizes = {"time": frames, "dof": a.shape[1], "coordinate": a.shape[1], "marker": 0, "part": 0, "ball": 15}
     fields = {
-        name: np.zeros([len(AXES[axis].labels) or sizes[axis] for axis in one.axes], one.dtype)
+        name: np.zeros(shape_of(one.axes, sizes), one.dtype)
         for name, one in quantities(Track).items()
         if name not in ("q", "v", "a", "foot_contact", "covariance")
     }

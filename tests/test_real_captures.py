@@ -15,7 +15,7 @@ from benchmarks.references import (
 )
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_opensim import angles_table, torques_table
+from mbkf.io.results_opensim import opensim_table
 from mbkf.io.storage import read_storage
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
@@ -50,7 +50,10 @@ def test_rajagopal_walk(real_data):
     static, forces = folder / "static_walk_1.trc", folder / "grf_walk.mot"
     found = followed(folder / "motion_capture_walk.trc", 85.07, static, forces, filter="kinematic")
     assert marker_rms_mm(found) <= 6.0
-    ours, theirs = low_passed(torques_table(found)), read_storage(folder / "reference_walk" / "id_walk.sto")
+    ours, theirs = (
+        low_passed(opensim_table(found, "torques.sto")),
+        read_storage(folder / "reference_walk" / "id_walk.sto"),
+    )
     for coordinate, r, rms in (
         ("ankle_angle", 0.98, 0.1),
         ("knee_angle", 0.88, 0.21),
@@ -101,7 +104,7 @@ def test_biomechzoo_walk_against_plug_in_gait(real_data):
     assert marker_rms_mm(found) <= 6.0
     theirs = plug_in_gait_angles(read_capture(trial))
     for coordinate in ("hip_flexion", "knee_angle", "ankle_angle"):
-        agree = worst_side(angles_table(found), theirs, coordinate)
+        agree = worst_side(opensim_table(found, "angles.mot"), theirs, coordinate)
         assert agree.r >= 0.97, coordinate
         assert agree.rms_without_mean <= 5.0, coordinate
 

@@ -10,7 +10,8 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from mbkf.io.quantities import AXES, Quantity, attributes, quantities
+from mbkf.io.dimensions import AXES
+from mbkf.io.quantities import Quantity, attributes, quantities
 from mbkf.io.quantities_h5 import PLAIN
 from mbkf.io.result_groups import GROUPS
 from mbkf.io.results import QUANTITIES

@@ -19,8 +19,9 @@ from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
 from mbkf.filters.estimate import Posterior
 from mbkf.filters.spread import ASKED, Spread
 from mbkf.filters.tracking_filter import TrackingFilter
+from mbkf.io.dimensions import shape_of
 from mbkf.io.estimates import TrackEstimates
-from mbkf.io.quantities import AXES, quantities
+from mbkf.io.quantities import quantities
 
 UNASKED = -9
 """Contact of the feet as it stands in a record of a filter that does not decide it."""
@@ -74,13 +75,9 @@ TORQUE_SPREAD = {"torque_sd": "torque", "torque_offset": "torque_offset"}
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
-    """Type of a record, by the sizes of axes (:data:`mbkf.io.quantities.AXES`) that differ from trial to trial."""
-
-    def length(axis: str) -> int:
-        return len(AXES[axis].labels) or sizes[axis]
-
+    """Type of a record, by the sizes of axes (:data:`mbkf.io.dimensions.AXES`) that differ from trial to trial."""
     flags_last = sorted(FIELDS, key=lambda one: one.kind == "?")  # so that the numbers of a row are aligned
-    return np.dtype([(f.name, f.kind, tuple(map(length, f.axes))) for f in flags_last])
+    return np.dtype([(f.name, f.kind, shape_of(f.axes, sizes)) for f in flags_last])
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.io.quantities import (
+from mbkf.io.dimensions import (
     ACCELERATION,
     ANGLE,
     CONFIGURATION,
@@ -23,11 +23,8 @@ from mbkf.io.quantities import (
     SECOND,
     WRENCH,
     Unit,
-    flag,
-    offset,
-    quantity,
-    spread,
 )
+from mbkf.io.quantities import Plot, flag, offset, quantity, spread
 
 CONTACT_CODES = {-1: "unmeasured", 0: "air", 1: "own_plate", 2: "shared_plate"}
 """What a foot stands on: nothing that is measured, air, a plate of its own, one plate under both feet."""
@@ -76,7 +73,12 @@ class Estimates:
     marker_spread_m: Array | None = quantity(
         "time marker", METRE, "spread that marker_nis is in units of", None
     )
-    step_seconds: Array = quantity("time", SECOND, "computing time of the filter's step")
+    step_seconds: Array = quantity(
+        "time",
+        SECOND,
+        "computing time of the filter's step",
+        plot=Plot("Stream", "Computing time", "ms", factor=1e3, resolution=1e-5),
+    )
     covariance: Array | None = quantity(
         "time state state",
         ONE,

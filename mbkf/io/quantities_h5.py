@@ -18,8 +18,9 @@ import numpy as np
 from h5py import h5a, h5s, h5t
 
 from mbkf.conventions import Array
+from mbkf.io.dimensions import AXES
 from mbkf.io.hdf5 import array
-from mbkf.io.quantities import AXES, Quantity, attributes, quantities
+from mbkf.io.quantities import Quantity, attributes, quantities
 
 Fields: TypeAlias = dict[str, Any]
 """Values by the name of a record's field."""

@@ -11,9 +11,7 @@ from dataclasses import dataclass
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.contacts import Source
-from mbkf.io.estimates import Estimates
-from mbkf.io.findings import Finding
-from mbkf.io.quantities import (
+from mbkf.io.dimensions import (
     ANGLE,
     FORCE,
     METRE,
@@ -25,14 +23,10 @@ from mbkf.io.quantities import (
     RATE,
     SECOND,
     WRENCH,
-    Column,
-    attribute,
-    flag,
-    offset,
-    quantity,
-    spread,
-    texts,
 )
+from mbkf.io.estimates import Estimates
+from mbkf.io.findings import Finding
+from mbkf.io.quantities import Column, attribute, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
 
 SOURCE_CODES = {one.value: one.name.lower() for one in Source}
@@ -88,7 +82,7 @@ class Motion:
         ANGLE,
         "angles with the root's in the laboratory's axes",
         None,
-        column=Column("angles_lab.mot", "{coordinate}"),
+        column=Column("angles_lab.mot", "{coordinate}", instead="angles"),
     )
     singular: BoolArray = flag("time coordinate", "within 10° of the angles' singularity")
     heading_rad: Array | None = quantity(

@@ -205,3 +205,6 @@ QUANTITIES = quantities(Reconstruction)
 
 ARRAYS = tuple(name for name, one in QUANTITIES.items() if not one.is_text)
 """Names of the arrays."""
+
+PLOTTED = {name: one for name, one in QUANTITIES.items() if one.plot is not None}
+"""Arrays with a curve of their own in viewers."""

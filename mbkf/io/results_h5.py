@@ -16,8 +16,9 @@ from mbkf.errors import FileFormatError, MbkfError
 from mbkf.io.atomic import replacing
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
+from mbkf.io.dimensions import AXES, Unit, numbered
 from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
-from mbkf.io.quantities import AXES, Quantity, Unit, numbered
+from mbkf.io.quantities import Quantity
 from mbkf.io.quantities_h5 import plain_json, read_record, write_array, write_labels, write_record
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker

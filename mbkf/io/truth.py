@@ -14,20 +14,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, ShapeError
 from mbkf.io.atomic import replacing
+from mbkf.io.dimensions import ACCELERATION, CONFIGURATION, FORCE, METRE, RATE, SECOND, WRENCH
 from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, check_seal, sealed
-from mbkf.io.quantities import (
-    ACCELERATION,
-    CONFIGURATION,
-    FORCE,
-    METRE,
-    RATE,
-    SECOND,
-    WRENCH,
-    attribute,
-    check,
-    quantity,
-    texts,
-)
+from mbkf.io.quantities import attribute, check, quantity, texts
 from mbkf.io.quantities_h5 import read_record, write_record
 
 FORMAT = "mbkf truth"

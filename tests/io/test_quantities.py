@@ -7,23 +7,8 @@ import pytest
 
 from mbkf.conventions import Array
 from mbkf.errors import ShapeError
-from mbkf.io.quantities import (
-    ANGLE,
-    AXES,
-    CONFIGURATION,
-    METRE,
-    ONE,
-    WRENCH,
-    attribute,
-    attributes,
-    check,
-    flag,
-    offset,
-    quantities,
-    quantity,
-    spread,
-    texts,
-)
+from mbkf.io.dimensions import ANGLE, METRE, ONE
+from mbkf.io.quantities import attribute, attributes, check, flag, offset, quantities, quantity, spread, texts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,10 +85,3 @@ def test_missing_names_of_an_axis_are_numbers():
 def test_sizes_that_differ_are_refused_by_name(changes, words):
     with pytest.raises(ShapeError, match=words):
         made(**changes)
-
-
-def test_a_unit_may_differ_by_label():
-    assert [ANGLE.of(label) for label in ("pelvis_tx", "pelvis_tilt", "knee_angle_r")] == ["m", "rad", "rad"]
-    assert [CONFIGURATION.of(label) for label in ("root_tz", "root_qw", "right_toes_y")] == ["m", "1", "rad"]
-    assert [WRENCH.of(label) for label in AXES["wrench"].labels] == ["N"] * 3 + ["N m"] * 3
-    assert METRE.of("x") == "m"

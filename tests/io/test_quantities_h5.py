@@ -9,7 +9,7 @@ import pytest
 import xarray
 
 from mbkf.io.body_covariance import BodyCovariance
-from mbkf.io.quantities import AXES
+from mbkf.io.dimensions import AXES
 from mbkf.io.results import QUANTITIES
 from mbkf.io.results_h5 import write_h5
 from tests.io.reconstructions import COORDINATES, made_up, made_up_whole

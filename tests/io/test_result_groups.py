@@ -4,7 +4,8 @@ from dataclasses import fields
 
 import pytest
 
-from mbkf.io.quantities import AXES, attributes, quantities
+from mbkf.io.dimensions import AXES
+from mbkf.io.quantities import attributes, quantities
 from mbkf.io.result_groups import GROUPS, SOURCE_CODES
 from mbkf.io.results import QUANTITIES, Reconstruction
 

@@ -4,11 +4,9 @@ import numpy as np
 
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.results_opensim import (
-    angles_lab_table,
-    angles_table,
-    reactions_table,
+    TITLES,
+    opensim_table,
     reconstructed_markers,
-    torques_table,
     write_opensim,
 )
 from mbkf.io.storage import read_storage
@@ -33,7 +31,7 @@ def wrench_of(table, side):
 
 def test_angles_are_in_degrees_and_translations_in_metres():
     r = made_up()
-    table = angles_table(r)
+    table = opensim_table(r, "angles.mot")
     assert table.in_degrees
     np.testing.assert_allclose(table.column("hip_flexion_r"), np.rad2deg(r.angle("hip_flexion_r")))
     np.testing.assert_array_equal(table.column("pelvis_tx"), r.angle("pelvis_tx"))
@@ -51,11 +49,11 @@ def test_angles_are_told_in_both_frames_and_say_which(tmp_path):
     assert own.header["direction"] == "progression, 28.6479 degrees from the x axis"
     assert theirs.header["direction"] == "laboratory"
     turning = made_up(direction="heading", heading_rad=np.linspace(0.0, 1.0, 12), angles_lab=lab)
-    assert angles_table(turning).header["Direction"] == "heading, turning with it"
+    assert opensim_table(turning, "angles.mot").header["Direction"] == "heading, turning with it"
 
 
 def test_torques_are_named_as_inverse_dynamics_names_them():
-    table = torques_table(made_up())
+    table = opensim_table(made_up(), "torques.sto")
     assert table.names == ("pelvis_tilt_moment", "pelvis_tx_force", "hip_flexion_r_moment")
     assert not table.in_degrees
 
@@ -64,7 +62,7 @@ def test_reactions_are_the_same_wrench_whether_loaded_or_not():
     cop = np.array(made_up().foot_cop_m)
     cop[4:7, 0], cop[:2, 1] = np.nan, np.nan
     r = made_up(foot_cop_m=cop)
-    table = reactions_table(r)
+    table = opensim_table(r, "reactions.mot")
     for foot, side in enumerate("rl"):
         np.testing.assert_allclose(wrench_of(table, side), r.foot_wrench[:, foot], atol=1e-9)
     points = vector(table, "ground_force_r_p")
@@ -75,7 +73,7 @@ def test_reactions_are_the_same_wrench_whether_loaded_or_not():
 
 def test_a_loaded_foot_has_only_its_free_moment_about_the_vertical():
     r = made_up()
-    torque = vector(reactions_table(r), "ground_torque_r_")
+    torque = vector(opensim_table(r, "reactions.mot"), "ground_torque_r_")
     np.testing.assert_allclose(torque[:, 1], r.foot_free_moment_nm[:, 0], atol=1e-9)
     np.testing.assert_allclose(torque[:, [0, 2]], 0.0, atol=1e-9)
 
@@ -96,16 +94,16 @@ def test_other_parts_that_ever_bear_have_columns_of_the_same_kind(tmp_path):
 
 
 def test_feet_alone_have_the_columns_of_before():
-    names = reactions_table(made_up()).names
+    names = opensim_table(made_up(), "reactions.mot").names
     assert names[:3] == ("ground_force_r_vx", "ground_force_r_vy", "ground_force_r_vz") and len(names) == 18
-    assert reactions_table(made_up()).header["Estimated"] == "none"
+    assert opensim_table(made_up(), "reactions.mot").header["Estimated"] == "none"
     shared = made_up(foot_source=np.tile([1, 2], (12, 1)))
-    assert reactions_table(shared).header["Estimated"] == "left_foot"
+    assert opensim_table(shared, "reactions.mot").header["Estimated"] == "left_foot"
 
 
 def test_a_foot_never_loaded_has_its_point_at_the_origin():
     r = made_up(foot_cop_m=np.full((12, 2, 3), np.nan))
-    np.testing.assert_array_equal(vector(reactions_table(r), "ground_force_l_p"), 0.0)
+    np.testing.assert_array_equal(vector(opensim_table(r, "reactions.mot"), "ground_force_l_p"), 0.0)
 
 
 def test_frames_not_tracked_and_values_not_known_are_left_out_and_nothing_is_nan(tmp_path):
@@ -138,17 +136,18 @@ def test_nothing_tracked_writes_empty_files(tmp_path):
     r = made_up(tracked=np.zeros(12, bool))
     write_opensim(r, tmp_path)
     assert reconstructed_markers(r).frames == 0
-    assert len(angles_table(r).times_s) == 0
+    assert len(opensim_table(r, "angles.mot").times_s) == 0
 
 
 def test_every_header_tells_which_later_frames_are_known():
     r = made_up(settings={"lag_ms": 20.0})
-    for table in (angles_table(r), angles_lab_table(r), torques_table(r), reactions_table(r)):
-        assert table.header["LaterFrames"] == "fixed lag 20 ms"
+    for name in TITLES:
+        assert opensim_table(r, name).header["LaterFrames"] == "fixed lag 20 ms"
 
 
 def test_the_header_tells_the_axes_that_angles_are_read_in():
     """Torques are about the body's own, whichever these are."""
     r = made_up(angles_read="pig")
-    assert angles_table(r).header["AnglesRead"] == angles_lab_table(r).header["AnglesRead"] == "pig"
-    assert torques_table(r).header["AnglesRead"] == "model"
+    for name in ("angles.mot", "angles_lab.mot"):
+        assert opensim_table(r, name).header["AnglesRead"] == "pig"
+    assert opensim_table(r, "torques.sto").header["AnglesRead"] == "model"

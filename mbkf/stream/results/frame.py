@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -40,6 +41,8 @@ class LiveFrame:
         support: (B, 6) estimated wrench on each other part that may bear load (``description.bearings``), NaN or no
             rows where the filter does not ask.
         support_sd: (B, 6) their standard deviations.
+        plotted: Estimates of the filter with a curve of their own in viewers (:data:`mbkf.io.results.PLOTTED`), by
+            name.
     """
 
     number: int
@@ -66,6 +69,7 @@ class LiveFrame:
     foot_source: Array = field(default_factory=lambda: np.full(2, Source.MEASURED))
     support: Array = field(default_factory=lambda: np.zeros((0, 6)))
     support_sd: Array = field(default_factory=lambda: np.zeros((0, 6)))
+    plotted: Mapping[str, Array] = field(default_factory=dict)
 
 
 class FrameSink(Protocol):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
+from mbkf.io.dimensions import labels_of
+from mbkf.io.results import PLOTTED
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.stream.results.frame import LiveFrame
@@ -16,7 +18,8 @@ class ResultValues:
     """Turns frames into rows of named numbers, one after another.
 
     Angles in rad (the pelvis's translations in m), moments in N m (N), reactions in N and N m about the world's origin,
-    z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same.
+    z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same. Last stand
+    declared estimates (:data:`mbkf.io.results.PLOTTED`) in their own units.
 
     Attributes:
         names: Of the numbers.
@@ -42,6 +45,13 @@ class ResultValues:
             ([f"{name}_moment_sd_offset" for name in angles], nm),
             ([f"{name}_sd_offset" for name in loads], newton),
         ]
+        self._widths = {}
+        for name, one in PLOTTED.items():
+            columns = [
+                "_".join([name, *of.values()]) for of in labels_of(one.axes[1:], {"coordinate": angles})
+            ]
+            groups.append((columns, [one.unit.text] * len(columns)))
+            self._widths[name] = len(columns)
         self.names: tuple[str, ...] = tuple(name for names, _ in groups for name in names)
         self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
 
@@ -60,4 +70,8 @@ class ResultValues:
             moments_offset = clinical.moments_sd(q, frame.torques_offset[None], angles)[0]
             numbers[:] = angles[0], frame.angle_sd, moments, moments_sd, frame.angle_offset, moments_offset
         loads = frame.wrench.ravel(), frame.wrench_sd.ravel()
-        return np.concatenate([numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel()])
+        unknown = {name: np.full(width, np.nan) for name, width in self._widths.items()}
+        plotted = [np.ravel(values) for values in (unknown | dict(frame.plotted)).values()]
+        return np.concatenate(
+            [numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel(), *plotted]
+        )

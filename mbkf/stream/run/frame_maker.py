@@ -11,12 +11,17 @@ from mbkf.conventions import Array
 from mbkf.filters.inverse_dynamics import support_torques
 from mbkf.filters.record import UNASKED
 from mbkf.io.contacts import foot_sources
+from mbkf.io.estimates import Estimates
+from mbkf.io.quantities import quantities
+from mbkf.io.results import PLOTTED
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import KeptContact
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.trial.live.filter import LiveInputs
+
+_PLOTTED = {name: one.key for name, one in PLOTTED.items() if name in quantities(Estimates)}
 
 RATE_OVER_S = 1.0
 """The rate is counted over this time."""
@@ -89,6 +94,7 @@ class FrameMaker:
             foot_source=foot_sources(contact, wrench[None])[0],
             support=found["support"],
             support_sd=found["support_sd"],
+            plotted={name: np.asarray(found[key]) for name, key in _PLOTTED.items()},
         )
 
     def _rate(self) -> float:

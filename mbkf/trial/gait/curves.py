@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.io.dimensions import ANGLE, FORCE
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_opensim import TRANSLATIONS
 
 ENDINGS, ROOT = ("_r", "_l"), "pelvis_"
 
@@ -46,12 +46,12 @@ def side_curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
             continue
         coordinate = name.removesuffix(own)
         angle = (r.angle(name), r.angle_sd(name), r.angle_sd(name, "offset"))
-        if name in TRANSLATIONS:
-            yield SideCurve("angle", coordinate, "m", *angle)
+        if ANGLE.of(name) != "rad":
+            yield SideCurve("angle", coordinate, ANGLE.of(name), *angle)
             continue
         yield SideCurve("angle", coordinate, "deg", *(np.rad2deg(one) for one in angle))
         if name.startswith(ROOT):  # the root's moment is a residual
             continue
         moment = (r.moment(name), r.moment_sd(name), r.moment_sd(name, "offset"))
-        yield SideCurve("torque", coordinate, "N m", *moment)
+        yield SideCurve("torque", coordinate, FORCE.of(name), *moment)
         yield SideCurve("power", coordinate, "W", r.power(name), r.power_sd(name), r.power_sd(name, "offset"))

@@ -64,6 +64,8 @@ class DisplayRows:
             put(rows, "segments", segment_poses(self._model, frame.q[None]))
             self._put_curves(rows, frame)
         self._put_reactions(rows, frame)
+        for name, values in frame.plotted.items():
+            put(rows, name, values[None])
         first, _ = self.layout.parts["unlabelled"]
         points = frame.unlabelled_m[:MOST_UNLABELLED].ravel()
         rows[0, first : first + len(points)] = points

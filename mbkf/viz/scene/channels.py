@@ -6,13 +6,16 @@ A row is one frame: the poses of the segments, the markers, the reactions and ev
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from mbkf.conventions import SIDES, Array, BoolArray
 from mbkf.io.contacts import FEET
+from mbkf.io.dimensions import labels_of, shape_of
+from mbkf.io.results import PLOTTED
 from mbkf.model.clinical_table import ClinicalJoint
 from mbkf.viz.wording import SIDE_NAMES, part_wording, wordings
 
@@ -23,9 +26,10 @@ RESOLUTION = {
     "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,
     "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02, "source": 1.0,
 }  # fmt: skip
+RESOLUTION |= {name: one.plot.resolution for name, one in PLOTTED.items() if one.plot}
 """Resolution of a part's numbers on a screen; recordings are rounded to it."""
 
-AXES = (("vertical", "Vertical", "", 2), ("x", "", " along x", 0), ("y", "", " along y", 1))
+FORCE_AXES = (("vertical", "Vertical", "", 2), ("x", "", " along x", 0), ("y", "", " along y", 1))
 """Components of a force: name, words before and after what it is, world axis."""
 
 STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
@@ -66,7 +70,7 @@ class Layout:
         parts: First column and width of each part, by name: status, segments (position, quaternion x y z w each),
             measured and predicted markers, state of each marker, force, force_sd, pressure point and source
             (:class:`mbkf.io.contacts.Source`) of the loads on feet and other parts, angles, angles_sd, moments,
-            moments_sd, unlabelled points.
+            moments_sd, declared curves (:data:`mbkf.io.results.PLOTTED`), unlabelled points.
         loads: Names of the parts of the body with loads, the feet first.
         width: Numbers in a row.
     """
@@ -103,8 +107,11 @@ class Layout:
             "angles_sd": coordinates,
             "moments": coordinates,
             "moments_sd": coordinates,
-            "unlabelled": 3 * unlabelled,
         }
+        sizes = {"coordinate": coordinates, "marker": markers}
+        for name, one in PLOTTED.items():
+            widths[name] = math.prod(shape_of(one.axes[1:], sizes))
+        widths["unlabelled"] = 3 * unlabelled
         self.parts: dict[str, tuple[int, int]] = {}
         self.width = 0
         for name, width in widths.items():
@@ -182,6 +189,7 @@ def quantities(
                 )
             )
     found += [one for k in range(len(layout.loads)) for one in _of_load(layout, k)]
+    found += [one for name in PLOTTED for one in _declared(layout, name, coordinate_names)]
     if streamed:
         for name, title, unit in (
             ("latency_ms", "Latency", "ms"), ("rate_hz", "Frame rate", "Hz"), ("lost", "Frames lost", ""),
@@ -208,8 +216,26 @@ def _of_load(layout: Layout, k: int) -> list[Quantity]:
             column=layout.column("force", 3 * k + axis),
             sd_column=layout.column("force_sd", 3 * k + axis),
         )
-        for name, before, after, axis in AXES
+        for name, before, after, axis in FORCE_AXES
     ]
+
+
+def _declared(layout: Layout, name: str, coordinate_names: tuple[str, ...]) -> Iterator[Quantity]:
+    """Curves of a declared quantity: one, or one for each label of its axis."""
+    declared, plot = PLOTTED[name], PLOTTED[name].plot
+    assert plot is not None
+    for k, labels in enumerate(labels_of(declared.axes[1:], {"coordinate": coordinate_names})):
+        words = list(labels.values())
+        yield Quantity(
+            id=":".join([name, *words]),
+            group=plot.group,
+            title=", ".join([plot.title, *words]),
+            side=labels.get("foot", "")[:1],
+            unit=plot.unit,
+            positive="",
+            factor=plot.factor,
+            column=layout.column(name, k),
+        )
 
 
 GROUPS = ("Angles", "Torques", "Ground reactions", "Other loads", "Residuals at the pelvis", "Stream")

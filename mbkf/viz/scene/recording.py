@@ -10,7 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.contacts import bearing
-from mbkf.io.results import Reconstruction
+from mbkf.io.results import PLOTTED, Reconstruction
 from mbkf.model.human import HumanModel
 from mbkf.model.segment_poses import segment_poses
 from mbkf.viz.scene.channels import Layout, marker_states
@@ -84,8 +84,10 @@ def _rows(r: Reconstruction, model: HumanModel, layout: Layout, shown: slice) ->
     layout.put(rows, "force_sd", loads.wrench_sd[shown][:, drawn, :3])
     layout.put(rows, "pressure", loads.point_m[shown][:, drawn])
     layout.put(rows, "source", loads.source[shown][:, drawn])
-    for part in ("angles", "angles_sd", "moments", "moments_sd"):
-        layout.put(rows, part, getattr(r, part)[shown])
+    for part in ("angles", "angles_sd", "moments", "moments_sd", *PLOTTED):
+        values = getattr(r, part)
+        if values is not None:
+            layout.put(rows, part, values[shown])
     return rows
 
 

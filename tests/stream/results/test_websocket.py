@@ -3,6 +3,7 @@
 import json
 import socket
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -96,7 +97,23 @@ def test_where_nobody_is_followed_there_are_no_angles():
     row = ResultValues(MODEL).row(shown_frame(MODEL, followed=False))
     assert np.isnan(row[: 4 * MODEL.nv]).all()
     assert np.isfinite(row[4 * MODEL.nv : 4 * MODEL.nv + 12]).all()
-    assert np.isnan(row[-2 * MODEL.nv - 12 : -12]).all() and np.isfinite(row[-12:]).all()
+    values = ResultValues(MODEL)
+    named = dict(zip(values.names, row, strict=True))
+    offsets = {name for name in values.names if name.endswith("_sd_offset")}
+    for name in offsets:
+        assert np.isfinite(named[name]) == name.startswith("reaction_")
+
+
+def test_declared_estimates_stand_last_and_are_unknown_where_a_frame_lacks_them():
+    values = ResultValues(MODEL)
+    plain = values.row(shown_frame(MODEL))
+    frame = replace(shown_frame(MODEL), plotted={"step_seconds": np.array(0.002)})
+    row = dict(zip(values.names, values.row(frame), strict=True))
+    assert row["step_seconds"] == 0.002
+    assert values.units[values.names.index("step_seconds")] == "s"
+    last = values.names.index("step_seconds")
+    assert not any(name.startswith("reaction_") for name in values.names[last:])
+    assert np.isnan(plain[last])
 
 
 def test_a_client_gets_names_and_then_frames(served):

@@ -95,6 +95,12 @@ def test_a_filter_that_asks_for_no_other_parts_shows_none(rows, changes):
     assert part(rows, row, "source").tolist() == [1, 1] + [0] * len(UNASKED)
 
 
+def test_declared_estimates_of_the_frame_stand_in_the_row(rows):
+    row = rows.row(frame(5, plotted={"step_seconds": np.array(0.002)}))
+    assert part(rows, row, "step_seconds") == [0.002]
+    assert np.isnan(part(rows, rows.row(frame(5)), "step_seconds")).all()
+
+
 def test_hidden_markers_and_points_without_a_name(rows):
     measured = walk().measured_m[5].copy()
     measured[3] = np.nan

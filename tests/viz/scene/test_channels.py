@@ -1,7 +1,10 @@
 """The row: parts lie side by side, and every quantity points at its own numbers."""
 
 import numpy as np
+import pytest
 
+from mbkf.io.dimensions import labels_of
+from mbkf.io.results import PLOTTED
 from mbkf.model.body_file import load_body
 from mbkf.viz.scene.channels import (
     GROUPS,
@@ -78,6 +81,19 @@ def test_every_quantity_is_listed_once_under_a_known_heading():
     groups = [GROUPS.index(q.group) for q in live]
     assert groups == sorted(groups)
     assert {q["id"] for q in as_plain(live)} == {q.id for q in live}
+
+
+@pytest.mark.parametrize("name", PLOTTED)
+def test_a_declared_quantity_has_a_curve_for_each_of_its_labels(name):
+    layout, declared = Layout(18, 36, len(NAMES)), PLOTTED[name]
+    joints = load_body().clinical_joints
+    found = [q for q in quantities(layout, NAMES, joints, streamed=False) if q.id.partition(":")[0] == name]
+    labels = list(labels_of(declared.axes[1:], {"coordinate": NAMES}))
+    assert [q.id for q in found] == [":".join([name, *of.values()]) for of in labels]
+    first, width = layout.parts[name]
+    assert sorted(q.column for q in found) == list(range(first, first + width))
+    assert {(q.unit, q.factor) for q in found} == {(declared.plot.unit, declared.plot.factor)}
+    assert layout.resolution()[first] == declared.plot.resolution
 
 
 def test_marker_states():

@@ -85,6 +85,7 @@ def test_rows_show_the_result():
     np.testing.assert_array_equal(part(scene, rows, "angles"), r.angles)
     np.testing.assert_array_equal(part(scene, rows, "force").reshape(-1, 2, 3), r.foot_wrench[..., :3])
     np.testing.assert_array_equal(part(scene, rows, "pressure").reshape(-1, 2, 3), r.foot_cop_m)
+    np.testing.assert_array_equal(part(scene, rows, "step_seconds")[:, 0], r.step_seconds)
     assert (part(scene, rows, "state") == SEEN).all()
 
 
