@@ -43,7 +43,7 @@ READING_KINDS = ("markers", "plates", "law", "other")
 """Kinds of readings by which innovations are told: markers, force plates, Newton's law, all else."""
 
 StageCallback = Callable[[str, int, int], None]
-"""What a pipeline calls as it goes: name of the stage, items done, items in all."""
+"""Progress callback: name of the stage, items done, items in all."""
 
 
 def data_folder(kind: str) -> Path:

@@ -30,7 +30,7 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
         name: Which session.
 
     Raises:
-        InvalidInput: There is no such session.
+        InvalidInput: The session does not exist.
         FileFormatError: Its session file is damaged.
     """
     looked = workspace.look(name)
@@ -55,7 +55,7 @@ def stated(workspace: Workspace, name: str, said: object) -> SessionNotes:
         said: Entries of a session file.
 
     Raises:
-        InvalidInput: There is no such session.
+        InvalidInput: The session does not exist.
         FileFormatError: An entry is not possible.
         OSError: The session file cannot be written.
     """

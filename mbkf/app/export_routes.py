@@ -57,7 +57,7 @@ def exported(result: Path, to: str, folder: Path) -> Path:
         folder: Where to write.
 
     Raises:
-        UnknownName: There is no such format.
+        UnknownName: The format does not exist.
         FileFormatError: The result is damaged.
         MissingDependency: A library that films need is not installed.
         InvalidInput: There is no motion in the result, or no browser draws it.

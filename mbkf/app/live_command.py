@@ -27,7 +27,7 @@ def live_offer(workspace: Workspace, session: str) -> dict[str, object]:
         session: Which one.
 
     Raises:
-        InvalidInput: There is no such session.
+        InvalidInput: The session does not exist.
         FileFormatError: Its session file is damaged.
     """
     return {
@@ -49,7 +49,7 @@ def live_options(workspace: Workspace, session: str, said: object) -> list[str]:
             ("subject" or "standing").
 
     Raises:
-        InvalidInput: There is no such session, or what is said is not possible.
+        InvalidInput: The session does not exist, or what is said is not possible.
         FileFormatError: The session file is damaged.
     """
     if not isinstance(said, Mapping):
@@ -119,7 +119,7 @@ def recording_folder(workspace: Workspace, session: str, stamp: str) -> Path:
         stamp: The time, as a file's name may hold it.
 
     Raises:
-        InvalidInput: There is no such session.
+        InvalidInput: The session does not exist.
     """
     place, captures = workspace.place(session), {one.name for one in workspace.look(session).trials}
     name, number = f"live-{stamp}", 1

@@ -95,7 +95,7 @@ def state_events(
         and for a live recording.
 
     Raises:
-        InvalidInput: There is no such session, or no result of the trial.
+        InvalidInput: The session does not exist, or no result of the trial.
         FileFormatError: The session file is damaged.
         OSError: A file cannot be written.
     """

@@ -36,7 +36,7 @@ class MarkerSets:
             session: Which one.
 
         Raises:
-            InvalidInput: There is no such session, or no capture with named markers.
+            InvalidInput: The session does not exist, or no capture with named markers.
             FileFormatError: The capture or the stated set is damaged.
         """
         looked, folder = self._workspace.look(session), self._workspace.folder(session)

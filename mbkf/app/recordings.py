@@ -24,7 +24,7 @@ def recording_rows(workspace: Workspace, session: str) -> list[Plain]:
         session: Which one.
 
     Raises:
-        InvalidInput: There is no such session.
+        InvalidInput: The session does not exist.
     """
     place = workspace.place(session)
     return [_row(place / name) for name in workspace.recordings(session)]

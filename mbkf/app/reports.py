@@ -61,7 +61,7 @@ def read_whole(workspace: Workspace, session: str) -> Session:
         session: Which one.
 
     Raises:
-        InvalidInput: There is no such session, or no result.
+        InvalidInput: The session does not exist, or no result.
         FileFormatError: A file is damaged.
     """
     notes = workspace.stated(session)

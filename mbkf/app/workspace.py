@@ -68,7 +68,7 @@ class Workspace:
         """The folder of a session.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
         """
         if session not in self.sessions():
             raise InvalidInput(f"there is no session '{session}'")
@@ -78,7 +78,7 @@ class Workspace:
         """A session, looked at.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
             FileFormatError: Its session file is damaged.
         """
         folder = self.folder(session)
@@ -89,7 +89,7 @@ class Workspace:
         """What is to be done for a session, as ``mbkf batch`` would do it.
 
         Raises:
-            InvalidInput: There is no such session, or no trial to be done.
+            InvalidInput: The session does not exist, or no trial to be done.
         """
         trials = self._trials(self.folder(session))
         if not trials:
@@ -100,7 +100,7 @@ class Workspace:
         """The folder of a session's results, as ``mbkf batch`` has it.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
         """
         return self.out / Person(*person_and_session(self.root, self.folder(session))).place
 
@@ -108,7 +108,7 @@ class Workspace:
         """What session files state of a session, those above it included.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
             FileFormatError: One is damaged.
         """
         return stated_of(self.root, self.folder(session))
@@ -119,7 +119,7 @@ class Workspace:
         None before there is one.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
         """
         place = self.place(session)
         folders = (
@@ -133,7 +133,7 @@ class Workspace:
         """The names of a session's recorded live runs, in their order.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
         """
         reports = self.place(session).glob(f"*/{LIVE_FILE}")
         return tuple(sorted(one.parent.name for one in reports if (one.parent / SUMMARY_FILE).is_file()))
@@ -142,7 +142,7 @@ class Workspace:
         """Writes what is stated of a session; events of trials stay as they are (:meth:`note_events`).
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
             FileFormatError: Its session file is damaged.
             OSError: It cannot be written.
         """
@@ -164,7 +164,7 @@ class Workspace:
             events: They; None for those that are found.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
             FileFormatError: Its session file is damaged.
             OSError: It cannot be written.
         """
@@ -221,7 +221,7 @@ class Workspace:
         """Names of the trials of a session that have results.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
         """
         return tuple(one.path.stem for one in self._with_results(session))
 
@@ -233,7 +233,7 @@ class Workspace:
         """The events by hand of a trial or recording; None for those that are found.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
             FileFormatError: Its session file is damaged.
         """
         return self._notes(session).trial(trial).events
@@ -247,7 +247,7 @@ class Workspace:
         """The folders of a session's results: of each trial that is done and not left out, and of live runs.
 
         Raises:
-            InvalidInput: There is no such session, or no result.
+            InvalidInput: The session does not exist, or no result.
         """
         place = self.place(session)
         done = [self.out / one.place for one in self._with_results(session)]

@@ -1,4 +1,4 @@
-"""What an estimate errs by because the person's body is not known exactly: the part that repeats.
+"""Error of an estimate caused by errors of the person's scaled body: the part that repeats.
 
 Scaling leaves scale factors and marker places p with a covariance Σ = L Lᵀ. A filter takes them for known. In a posture
 q, markers that are weighed with R, beside a prior of information Π, then put the pose wrong by

@@ -41,7 +41,7 @@ from mbkf.sensors.layout import FEET, Layout
 
 @dataclass(frozen=True)
 class ErrorSettings:
-    """How errors repeat. Set on synthetic walks, squats and jumps of two persons with 0 to 5 mm of skin.
+    """Repetition of errors. Set on synthetic walks, squats and jumps of two persons with 0 to 5 mm of skin.
 
     Attributes:
         new_share: Share κ of the marker noise that is new in every frame, for positions and wrenches without plates.

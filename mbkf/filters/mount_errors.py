@@ -1,4 +1,4 @@
-"""What an estimate errs by because sensors' mounts are not known exactly: the part that repeats.
+"""Error of an estimate caused by errors of the sensors' mounts: the part that repeats.
 
 A sensor's mount is wrong by a small turn θ_k about its segment's axes. Its own orientation is what it measures, so that
 the segment is put wrong by −R_k θ_k in the world. With J_k the derivative of a segment's turn by the configuration,

@@ -99,7 +99,7 @@ class HeldErrors:
         self._first, self._due, self._roots = 0, -1, _untold
 
     def of(self, number: int, posterior: Posterior) -> Callable[[], BodyErrorRoots | None]:
-        """What works out the roots for a frame: those of the first frame of its stretch of time since the start.
+        """Function that computes the roots for a frame: those of the first frame of its stretch since the start.
 
         Args:
             number: The frame; frames come in order.
@@ -172,11 +172,11 @@ class FrameRecorder:
         return row, self.motion(row, posterior)
 
     def step(self, row: NDArray, posterior: Posterior, step_seconds: float) -> None:
-        """What the filter did in the frame.
+        """The filter's step in the frame.
 
         Args:
             row: The record to fill.
-            posterior: What the filter made of the frame.
+            posterior: The filter's estimate of the frame.
             step_seconds: Computing time.
         """
         row["known"], row["step_seconds"] = True, step_seconds
@@ -201,7 +201,7 @@ class FrameRecorder:
         return spread
 
     def innovation(self, row: NDArray, posterior: Posterior) -> None:
-        """How well the frame was predicted."""
+        """Innovations of the frame."""
         found = self.filter.innovations(posterior)
         if found is None:
             return

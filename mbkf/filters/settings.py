@@ -26,7 +26,7 @@ def changed(settings: SettingsT, **values: object) -> SettingsT:
     """The settings with some leaves changed, wherever they stand.
 
     Raises:
-        UnknownName: There is no such setting.
+        UnknownName: The setting does not exist.
     """
     known = flat(settings)
     for name in values:

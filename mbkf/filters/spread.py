@@ -2,7 +2,7 @@
 
 Taken frame by frame, so that long trials need not keep a covariance matrix per frame. Each number has two parts,
 independent of each other: what varies within a trial (noise, skin), by the filter's covariance, and the offset that
-repeats in the same posture, since the person's body is not known exactly (:mod:`mbkf.filters.body_errors`).
+repeats in the same posture, caused by errors of the scaled body (:mod:`mbkf.filters.body_errors`).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class SpreadReader:
         return rise
 
     def parts(self, q: Array, P: Array) -> ConfigurationParts:
-        """What is read off a covariance P (nv, nv) of the configuration q (nq,)."""
+        """Standard deviations of a covariance P (nv, nv) of the configuration q (nq,)."""
         rise, dofs = self.rise_jacobian(q), self.coordinates.dofs
         return ConfigurationParts(((rise @ P) * rise).sum(axis=1), P[dofs[:, :, None], dofs[:, None, :]])
 

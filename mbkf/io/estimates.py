@@ -27,7 +27,7 @@ from mbkf.io.dimensions import (
 from mbkf.io.quantities import Plot, flag, offset, quantity, spread
 
 CONTACT_CODES = {-1: "unmeasured", 0: "air", 1: "own_plate", 2: "shared_plate"}
-"""What a foot stands on: nothing that is measured, air, a plate of its own, one plate under both feet."""
+"""Support of a foot: something without a plate, air, a plate of its own, one plate under both feet."""
 
 
 @dataclass(frozen=True, kw_only=True)

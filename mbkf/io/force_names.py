@@ -69,7 +69,7 @@ class ForceColumn:
 
 @dataclass(frozen=True)
 class ForceSet:
-    """Columns of one plate or foot; each entry is the index of a column, None where there is no such column.
+    """Columns of one plate or foot; each entry is the index of a column, None without a such column.
 
     Attributes:
         name: The set's name.

@@ -81,7 +81,7 @@ def read_loose_xml(path: str | Path, never_nested: frozenset[str] = frozenset())
     A second element of a ``never_nested`` name within one of that name ends the first.
 
     Raises:
-        FileFormatError: There is no such file, or no element in it.
+        FileFormatError: The file does not exist, or no element in it.
     """
     path = Path(path)
     if not path.is_file():

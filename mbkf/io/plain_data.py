@@ -32,7 +32,7 @@ def read_toml(path: Path) -> TomlTable:
     """The table of a TOML file in UTF-8, with or without a byte order mark.
 
     Raises:
-        OSError: There is no such file, or it cannot be read.
+        OSError: The file does not exist, or it cannot be read.
         ValueError: It is too large, not in UTF-8, or as for :func:`parse_toml`.
     """
     if path.stat().st_size > MOST_BYTES:

@@ -105,7 +105,7 @@ class Quantity:
 
 
 class Attribute(NamedTuple):
-    """A declared value that is no array.
+    """A declared value other than an array.
 
     Attributes:
         name: Name of the field.
@@ -223,7 +223,7 @@ def attribute(
     read: Callable[[str], object] = str,
     factory: Callable[[], T] | None = None,
 ) -> T:
-    """The field of a value that is no array.
+    """The field of a value other than an array.
 
     Args:
         meaning: In words.

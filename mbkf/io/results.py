@@ -31,13 +31,13 @@ from mbkf.io.result_groups import (
 Part = Provenance | Measurements | Estimates | Motion | Torques | Moments | Reactions | SupportLoads | Quality
 
 SdPart = Literal["total", "offset", "varying"]
-"""What of a standard deviation is asked for: all of it, the offset that repeats, or what varies within the trial."""
+"""Part of a standard deviation: the total, the offset that repeats, or the part that varies within the trial."""
 
 LAG_KEY = "lag_ms"
 """The fixed lag among the settings of a result."""
 
 SMOOTHED, CAUSAL = "smoothed (all later frames known)", "causal (as live)"
-"""How results without a lag are told."""
+"""Descriptions of results without a lag."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +73,7 @@ class Reconstruction(
 
     @property
     def lag_ms(self) -> float:
-        """How far later readings could correct a frame, ms; 0 without a fixed lag."""
+        """Time over which later readings could correct a frame, ms; 0 without a fixed lag."""
         lag = self.settings.get(LAG_KEY, 0.0)
         return float(lag) if isinstance(lag, int | float) else 0.0
 
@@ -115,7 +115,7 @@ class Reconstruction(
         """(T,) a clinical coordinate by its name: rad, m for the pelvis's translations.
 
         Raises:
-            UnknownName: There is no such coordinate.
+            UnknownName: The coordinate does not exist.
         """
         return self.angles[:, self._coordinate(name)]
 
@@ -123,7 +123,7 @@ class Reconstruction(
         """(T,) its standard deviation or a part of it, NaN where not known.
 
         Raises:
-            UnknownName: There is no such coordinate or part.
+            UnknownName: The coordinate or part does not exist.
         """
         return self._sd("angles_sd", name, part)
 
@@ -175,7 +175,7 @@ class Reconstruction(
         """(T, 3) a marker's reconstructed world position, m.
 
         Raises:
-            UnknownName: There is no such marker.
+            UnknownName: The marker does not exist.
         """
         if name not in self.marker_names:
             raise UnknownName("marker", name, self.marker_names)
@@ -196,7 +196,7 @@ class Reconstruction(
 
 
 def varying_sd(total: Array, offset: Array) -> Array:
-    """What of standard deviations varies within the trial, the offset being independent of it: √(total² − offset²)."""
+    """Part of standard deviations that varies within the trial, independent of the offset: √(total² − offset²)."""
     return np.asarray(np.sqrt(np.maximum(total**2 - offset**2, 0.0)))
 
 

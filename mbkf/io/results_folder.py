@@ -20,14 +20,14 @@ from mbkf.io.results_opensim import OPENSIM_FILES, write_opensim
 SUMMARY_FILE = "summary.json"
 MOTION_FILE = "motion.h5"
 LABELS_FILE = "labels.json"
-"""How the points of a trial were labelled, where its own names were not enough."""
+"""Labelling of the points of a trial, where its own names were not enough."""
 RESULT_FILES = (SUMMARY_FILE, MOTION_FILE, *OPENSIM_FILES)
 RUN_ID = "run_id"
 """Key of summary.json, entry of the tables' headers and second line of motion.h5: the same in files of one run."""
 
 
 class AxesTold(TypedDict):
-    """How a capture's axes were taken.
+    """Axes of a capture as taken.
 
     Attributes:
         up, forward: Axes of the file that point up and forward.

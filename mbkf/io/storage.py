@@ -51,7 +51,7 @@ class Table:
         """(T,) values of one column.
 
         Raises:
-            UnknownName: There is no such column.
+            UnknownName: The column does not exist.
         """
         if name not in self.names:
             raise UnknownName("column", name, self.names)

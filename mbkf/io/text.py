@@ -36,7 +36,7 @@ def read_text(path: Path, kind: str) -> TextFile:
     """Lines of a file; ``kind`` is the expected kind with its article, for the message: "a TRC file".
 
     Raises:
-        FileFormatError: There is no such file.
+        FileFormatError: The file does not exist.
     """
     if not path.is_file():
         raise FileFormatError(path, f"no such file; name {kind}")

@@ -167,7 +167,7 @@ class Entries:
         return self._checked(key, read, f"{count} numbers")
 
     def tables(self, key: str) -> dict[str, Entries]:
-        """Tables of a table, by name; empty where there is no such entry."""
+        """Tables of a table, by name; empty without a such entry."""
         found = self.table.get(key, {})
         if not isinstance(found, dict) or not all(isinstance(one, dict) for one in found.values()):
             raise FileFormatError(self.file, f"{self.where}{key} must hold tables, [{key}.NAME]")

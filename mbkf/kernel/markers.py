@@ -85,7 +85,7 @@ class CompiledMarkers:
 
 
 def innovations(measured_m: Array, predicted_m: Array, radius_m: float) -> Innovations | None:
-    """Innovations of markers, None where there is no compiled kernel.
+    """Innovations of markers, None without a compiled kernel.
 
     Args:
         measured_m: (M, 3) measured places, NaN where missing.

@@ -75,7 +75,7 @@ class SparseBackwardPass(BackwardPass):
     def through_motion(self, transition: Transition) -> None:
         """From before a frame's readings to after those of the frame before it.
 
-        A transition that is no :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
+        A transition other than a :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
         """
         if self.curvature is None:
             self.gradient = transition.backward(self.gradient)

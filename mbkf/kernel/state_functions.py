@@ -313,7 +313,7 @@ class StateFunctions(Protocol):
         """Number of third differences that are numbers, and of those below a level.
 
         Args:
-            first, second, third, latest: Samples; NaN where there is no reading.
+            first, second, third, latest: Samples; NaN without a reading.
             level: The level.
         """
 

@@ -153,7 +153,7 @@ class SmoothedCapture:
     def doubtful(self, label_of_point: Indices) -> BoolArray:
         """(n,) tracklets, labelled (T, C) so far, that may be ghosts: brief, or far from their marker's place.
 
-        A ghost takes a segment of few markers with it, so that being near is no proof.
+        A ghost takes a segment of few markers with it, so that nearness proves nothing.
         """
         votes = _votes(label_of_point, len(self.noise_m), self.tracklets)
         label = np.where(votes.any(axis=1), votes.argmax(axis=1), HIDDEN)

@@ -65,7 +65,7 @@ class SideGuess:
         side: "right", "left" or "" for a name that tells none.
         rest: The name without its side, in small letters and digits.
         style: How the side is told, a key of :data:`WEIGHTS`.
-        partner: The name of the other side's marker in the same letters, "" where there is no side.
+        partner: The name of the other side's marker in the same letters, "" without a side.
     """
 
     side: str

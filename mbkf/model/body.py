@@ -49,10 +49,10 @@ class Body(Protocol):
         mass_kg: Mass of the whole body.
         nq, nv: Dimensions of configuration and tangent space.
         joints: The joint of every segment, by segment name, depth-first.
-        posture_sd: (nv,) spread of each dof about the neutral posture, rad; 0 where there is no prior.
+        posture_sd: (nv,) spread of each dof about the neutral posture, rad; 0 without a prior.
         acceleration_sd: (nv,) typical acceleration of each dof, m/s² or rad/s².
         movement_sd: (nv,) standard deviation of each dof's acceleration over a movement, m/s² or rad/s².
-        limits: (nv, 2) least and greatest rotation from neutral, rad; ±inf where there is no limit.
+        limits: (nv, 2) least and greatest rotation from neutral, rad; ±inf without a limit.
         supports: (joints, nv) True where a dof moves a joint's segment.
         pin_model: The Pinocchio model (gravity along −z), for the equations that take it directly.
     """
@@ -83,7 +83,7 @@ class Body(Protocol):
         """The joint that carries a segment.
 
         Raises:
-            UnknownName: There is no such segment.
+            UnknownName: The segment does not exist.
         """
 
     def axis_scale(self, segment: Segment) -> Array:
@@ -143,5 +143,5 @@ class Body(Protocol):
             (6, nv) rows linear, then angular, in world axes.
 
         Raises:
-            UnknownName: There is no such segment.
+            UnknownName: The segment does not exist.
         """

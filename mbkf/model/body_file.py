@@ -53,7 +53,7 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
         body: Name of a body that comes with mbkf, or path of a file (ending in ``.toml``).
 
     Raises:
-        UnknownName: There is no such body, or the file names a segment, a landmark, a scale factor or a kind of joint
+        UnknownName: The body does not exist, or the file names a segment, a landmark, a scale factor or a kind of joint
             that does not exist.
         FileFormatError: The file is missing or not a valid body description.
     """

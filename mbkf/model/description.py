@@ -34,7 +34,7 @@ class Segment:
         posture_sd_rad: (dof,) spread of the joint about the neutral standing posture, rad (0: no prior).
         acceleration_sd: (dof,) typical acceleration of each dof, m/s² or rad/s².
         movement_sd: (dof,) standard deviation of the acceleration of each dof over a movement, m/s² or rad/s².
-        limits_rad: (dof, 2) least and greatest rotation about each axis; ±inf where there is no limit.
+        limits_rad: (dof, 2) least and greatest rotation about each axis; ±inf without a limit.
     """
 
     name: str

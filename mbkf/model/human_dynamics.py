@@ -80,7 +80,7 @@ class HumanDynamics(ForcedBody):
             force_state: Coordinates of u's first entries, one of :data:`FORCE_STATES`.
 
         Raises:
-            UnknownName: There is no such wrench frame or force state.
+            UnknownName: The wrench frame or force state does not exist.
         """
         if wrench_frame not in WRENCH_FRAMES:
             raise UnknownName("wrench frame", wrench_frame, WRENCH_FRAMES)

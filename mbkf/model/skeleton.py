@@ -12,7 +12,7 @@ def joint_origin(model: Body, segment: str) -> Array:
     """(3,) a segment's proximal joint in its parent's frame, m; zero for the root.
 
     Raises:
-        UnknownName: There is no such segment.
+        UnknownName: The segment does not exist.
     """
     own = model.description.segment(segment)
     if own.parent == "world":

@@ -63,7 +63,7 @@ class Noise:
 
 @dataclass(frozen=True)
 class Regression:
-    """What series say of the parameters.
+    """Posterior of the parameters by series.
 
     Attributes:
         posterior: The parameters.

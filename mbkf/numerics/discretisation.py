@@ -110,10 +110,10 @@ PROPAGATIONS: dict[str, Callable[[Array, float], Array]] = {
     "second": second_order,
     "exponential": exponential,
 }
-"""How Φ follows from F, by name."""
+"""Transition Φ as a function of F, by name."""
 
 COVARIANCES = ("series", "van_loan")
-"""How the plant-noise covariance follows from F and Σ, by name."""
+"""Covariance of plant noise as a function of F and Σ, by name."""
 
 
 def discretise(F: Array, density: Array, dt_s: float, propagation: str, covariance: str) -> Discrete:
@@ -127,7 +127,7 @@ def discretise(F: Array, density: Array, dt_s: float, propagation: str, covarian
         covariance: How Q follows from F and Σ, one of :data:`COVARIANCES`.
 
     Raises:
-        UnknownName: There is no such propagation or covariance.
+        UnknownName: The propagation or covariance does not exist.
     """
     if propagation not in PROPAGATIONS:
         raise UnknownName("propagation", propagation, PROPAGATIONS)

@@ -53,7 +53,7 @@ def maximise(
         low: (n,) least coordinates.
         high: (n,) greatest coordinates.
         step: First step of every coordinate.
-        tolerance: A coordinate whose step is no larger is left alone.
+        tolerance: A coordinate with a smaller step is left alone.
         calls: Most calls of the function.
     """
     search = _Search(function, low, high, calls)
@@ -87,7 +87,7 @@ class _Search:
         return value if value == value else -math.inf  # noqa: PLR0124, NaN
 
     def along(self, x: Array, here: float, i: int, h: float) -> tuple[float, float]:
-        """How far to move along a coordinate, and the value there."""
+        """Step along a coordinate, and the value there."""
         known = {0.0: here}
         for d in (h, -h):
             self._try(known, x, i, d)

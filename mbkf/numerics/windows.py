@@ -55,7 +55,7 @@ def slopes(samples: Array, window: int, dt: float) -> Array:
 
 
 def majority(votes: BoolArray, window: int) -> BoolArray:
-    """Whether most samples around each one are true: the running median of a yes-or-no sequence.
+    """True where most samples around are true: the running median of a yes-or-no sequence.
 
     Args:
         votes: (T,) sequence, not empty; its ends are continued by their outermost samples.

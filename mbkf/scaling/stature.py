@@ -22,7 +22,7 @@ def person_of_stature(mass_kg: float, height_m: float, body: str = "human18") ->
 
     Raises:
         InvalidInput: Mass or height is outside a person's range.
-        UnknownName: There is no such body.
+        UnknownName: The body does not exist.
     """
     for name, value, (low, high) in (("mass", mass_kg, MASS_KG), ("height", height_m, HEIGHT_M)):
         if not (np.isfinite(value) and low <= value <= high):

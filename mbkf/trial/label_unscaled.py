@@ -39,7 +39,7 @@ def label_unscaled(
 
     Raises:
         InvalidInput: No mass, or an impossible mass or height.
-        UnknownName: There is no such protocol.
+        UnknownName: The protocol does not exist.
         NotObservable: The points are not those of a moving person with the protocol's markers.
     """
     worn = load_protocol(protocol) if isinstance(protocol, str) else protocol

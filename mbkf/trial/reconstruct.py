@@ -131,7 +131,7 @@ def _check_names(settings: ReconstructSettings) -> None:
 
 
 def _asks_markers_alone(settings: ReconstructSettings, inputs: FilterInputs) -> bool:
-    """Whether the motion of markers alone is needed besides the filter's."""
+    """True where the motion of markers alone is needed besides the filter's."""
     search = settings.other_contacts and settings.filter == "dynamic"
     return (settings.checks and len(inputs.plates) > 0) or (
         search and bool(inputs.sensor.model.description.bearings)

@@ -58,7 +58,7 @@ def scale(
     Raises:
         InvalidInput: No trial, no mass, an impossible mass or height, a protocol placed on another body, or axes or a
             unit that contradict the body.
-        UnknownName: There is no such protocol or body, or it names unknown segments.
+        UnknownName: The protocol or body does not exist, or it names unknown segments.
         FileFormatError: The body's or the protocol's file is missing or damaged.
         NotObservable: Too few markers of the protocol, or markers without a protocol among which no body is found.
         NotConverged: The markers do not fit a body.

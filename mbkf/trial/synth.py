@@ -39,7 +39,7 @@ def synthesise(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        UnknownName: There is no such motion.
+        UnknownName: The motion does not exist.
         InvalidInput: Duration or rate is impossible.
         NotConverged: This person cannot perform the motion; use another seed.
     """

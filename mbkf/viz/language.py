@@ -33,7 +33,7 @@ def words(language: str, section: str) -> Mapping[str, str]:
         section: E.g. "app".
 
     Raises:
-        InvalidInput: There is no such language.
+        InvalidInput: The language does not exist.
     """
     if language not in languages():
         raise InvalidInput(f"there is no language '{language}'; choose {', '.join(languages())}")

@@ -21,7 +21,7 @@ from mbkf.sensors.unobserved import UnobservedSettings
 
 @dataclass(frozen=True)
 class DynamicSettings:
-    """What the dynamic filter takes motion, instruments and contacts to be like.
+    """Settings of the dynamic filter's motion, instruments and contacts.
 
     Attributes:
         motion: Process noise.

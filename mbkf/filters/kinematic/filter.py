@@ -20,7 +20,7 @@ from mbkf.sensors.unobserved import UnobservedJoints
 
 START_SPEED_SD_M_S = 2.0
 START_SPEED_SD_RAD_S = 5.0
-"""How fast a body may move when the filter starts knowing only its pose."""
+"""Spread of the velocity at a start that knows only the pose."""
 
 
 def kinematic_blocks(

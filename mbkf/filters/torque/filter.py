@@ -137,7 +137,7 @@ class TorqueFilter(Filter[ForcedState]):
             blocks: Instruments, laws and priors, force plates among them; :func:`torque_blocks` for the standard ones.
 
         Raises:
-            InvalidInput: There is no block of force plates, or one adds states of its own.
+            InvalidInput: The block of force plates is missing, or one adds states of its own.
         """
         plates = [block for block in blocks if isinstance(block, FootPlates)]
         if len(plates) != 1 or any(block.states() for block in blocks):

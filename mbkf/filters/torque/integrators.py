@@ -170,7 +170,7 @@ def integrator(name: str) -> Integrator:
     """The integrator of a name.
 
     Raises:
-        UnknownName: There is no such integrator.
+        UnknownName: The integrator does not exist.
     """
     if name not in INTEGRATORS:
         raise UnknownName("integrator", name, INTEGRATORS)

@@ -61,7 +61,7 @@ class ForcedPrediction(ForcedState):
 
 @dataclass(frozen=True)
 class Scheme:
-    """How the plant is discretised.
+    """Discretisation of the plant.
 
     Attributes:
         integrator: "FE", "HE", "TF", "TN" or "RK4" (thesis eqs. 3.32–3.35).
@@ -113,7 +113,7 @@ class TorquePlant(Plant[ForcedState, None, None]):
             body: The body.
             dt_s: Time between frames.
             density: Noise density at a state.
-            scheme: How the plant is discretised.
+            scheme: Discretisation of the plant.
             drift: (nu, nu) A of u̇ = A u + w̃; None for 0.
             wrenches: The last forces are the feet's wrenches.
         """

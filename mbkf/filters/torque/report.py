@@ -34,7 +34,7 @@ class TorqueState:
         a: (nv,) acceleration by Newton's law.
         tau: (nv,) generalised forces; the first six are the pelvis residual in pelvis axes.
         foot_wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
-        tau_sd: (nv,) standard deviations of ``tau``; NaN for dofs whose torque is no state.
+        tau_sd: (nv,) standard deviations of ``tau``; NaN for dofs whose torque does not belong to the state.
         foot_wrench_sd: (2, 6) standard deviations of ``foot_wrench``.
     """
 

@@ -104,7 +104,7 @@ def preset(name: str, *, literal: bool = False) -> TorqueSettings:
         literal: Whether state and noise are the thesis's, too (3.2.3, 4.1.4.1, Table 4.3).
 
     Raises:
-        UnknownName: There is no such preset.
+        UnknownName: The preset does not exist.
     """
     if name not in SCHEMES:
         raise UnknownName("torque filter", name, SCHEMES)

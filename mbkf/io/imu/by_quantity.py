@@ -57,7 +57,7 @@ def read_by_quantity(
         rate_hz: Sample rate of tables without times.
 
     Raises:
-        FileFormatError: There is no accelerometer, or a table is damaged.
+        FileFormatError: The accelerometer is missing, or a table is damaged.
         InvalidInput: A unit or the rate is not stated.
     """
     inner = _sensor_folders(path) if path.is_dir() else []

@@ -68,7 +68,7 @@ def read_folder(
         read: Reads a file.
 
     Raises:
-        FileFormatError: There is no sensor's file in the folder, or one is broken.
+        FileFormatError: The folder holds no sensor's file, or one is broken.
         InvalidInput: The sensors have no time in common.
     """
     files = sensor_files(folder, suffixes)

@@ -40,7 +40,7 @@ def unit_name(kind: str, text: str, where: str) -> str:
         where: Where it stands, for the message.
 
     Raises:
-        UnknownName: There is no such quantity or unit.
+        UnknownName: The quantity or unit does not exist.
     """
     if kind not in UNITS:
         raise UnknownName("quantity", kind, UNITS, where)

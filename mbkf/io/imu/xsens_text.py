@@ -124,7 +124,7 @@ def read_xsens_folder(folder: str | Path, rate_hz: float | None = None) -> tuple
     Sensors take the names of an OpenSense mapping (``*.xml``) where one lies beside them.
 
     Raises:
-        FileFormatError: There is no export in the folder, or one is broken.
+        FileFormatError: The folder holds no export, or one is broken.
         InvalidInput: The sensors have no packet in common.
     """
     folder = Path(folder)

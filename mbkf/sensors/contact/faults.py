@@ -163,7 +163,7 @@ def _dropouts(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) ->
 
 
 def _spikes(wrench: Array, rate_hz: float, weight_n: float) -> BoolArray:
-    """(S,) samples between a jump of finite readings (S, 6) and its return; a jump without return is no spike."""
+    """(S,) samples between a jump of finite readings (S, 6) and its return; a jump without return does not count."""
     spikes = np.zeros(len(wrench), dtype=bool)
     jump_n = (JUMP_WEIGHTS + JUMP_RATE / rate_hz) * weight_n
     scaled = wrench / (jump_n * np.repeat([1.0, JUMP_LEVER_M], 3))

@@ -40,7 +40,7 @@ class ReportFile:
         """Writes the report over the one before; the last one gives the rest of the room back.
 
         Raises:
-            OSError: It is larger than its room, and there is no other.
+            OSError: It is larger than its room, and no other is left.
         """
         text = json.dumps(_finite(report), indent=2, allow_nan=False, ensure_ascii=False).encode() + b"\n"
         with self._lock, self._path.open("r+b") as file:

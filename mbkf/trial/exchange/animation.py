@@ -85,6 +85,6 @@ def held_rows(rows: NDArray[np.intp], tracked: BoolArray) -> NDArray[np.intp]:
     """
     known = (rows >= 0) & tracked[rows] if len(rows) else np.zeros(0, dtype=bool)
     if not known.any():
-        raise InvalidInput("the body is followed in no frame of this result, so there is no motion to export")
+        raise InvalidInput("the body is followed in no frame of this result, so no motion can be exported")
     latest = np.maximum.accumulate(np.where(known, np.arange(len(rows)), -1))
     return np.asarray(rows[np.where(latest < 0, int(np.argmax(known)), latest)])

@@ -88,7 +88,7 @@ class LiveFilter:
 
     @property
     def lag_frames(self) -> int:
-        """How many frames later an answer is given."""
+        """Delay of an answer in frames."""
         return self._lag.frames
 
     @property
@@ -99,7 +99,7 @@ class LiveFilter:
         return self.loop.estimate
 
     def predict(self) -> Prediction | None:
-        """What the filter predicts of the frame pushed next; None while that cannot be answered at once.
+        """Prediction of the frame pushed next; None while that cannot be answered at once.
 
         Asked before that frame is there, it takes prediction and linearisation off the time the frame waits.
         """

@@ -127,7 +127,7 @@ def read_live_log(folder: Path) -> Logged:
     """Reads what :class:`LiveLog` wrote, as far as it came and is undamaged.
 
     Raises:
-        FileFormatError: There is no log, or not one row in it.
+        FileFormatError: The log is missing or holds no row.
     """
     log = read_frame_log(folder / FRAMES_FILE)
     header: dict[str, Any] = log.header
@@ -165,7 +165,7 @@ def _told(count: int, what: str, file: str) -> str:
 
 
 def _believable(numbers: NDArray[np.int64]) -> int:
-    """How many rows from the first one on have numbers that rise and are not too far apart."""
+    """Number of rows from the first one on whose numbers rise and are not too far apart."""
     if len(numbers) < 2:
         return len(numbers)
     later = np.arange(1, len(numbers))

@@ -117,7 +117,7 @@ class StillWatch:
         return Stance(self._frames, seen, moved_m, mover, enough)
 
     def _moved(self, points_m: Array) -> tuple[float, int | None]:
-        """How far the frame's points are from the first ones, and which marker is furthest."""
+        """Distance of the frame's points from the first ones, and the furthest marker."""
         if self._named:
             away = np.nan_to_num(np.linalg.norm(points_m - self._first, axis=1))
             return float(away.max()), int(away.argmax())

@@ -30,7 +30,7 @@ STAND_S = 2.0
 
 @dataclass(frozen=True)
 class LiveBodySensorSettings:
-    """How a stream of inertial sensors is followed.
+    """Settings of tracking from a stream of inertial sensors.
 
     Attributes:
         filter: Noise of the sensors, how still feet stand, how exactly Newton's law holds.
@@ -97,7 +97,7 @@ class StandingSensors:
 
     @property
     def enough(self) -> bool:
-        """Whether the person has stood still for long enough."""
+        """True once the person has stood still for long enough."""
         return len(self._frames) == self.wanted and bool((self._turning() < STILL_RAD_S).all())
 
     @property

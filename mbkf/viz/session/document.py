@@ -44,7 +44,7 @@ def session_page(
         language: Code of the report's language.
 
     Raises:
-        InvalidInput: There is no such language.
+        InvalidInput: The language does not exist.
     """
     terms = Terms(language)
     names = joint_names(reference_body(session.subject))
