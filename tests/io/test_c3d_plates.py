@@ -116,8 +116,50 @@ def test_units_of_moments(unit, moment_unit, factor):
 
 
 def test_kilonewtons_are_newtons_times_a_thousand():
-    plate = plate_of(2, np.array([[0.0, 0.0, -0.7, 0.0, 0.0, 0.0]]), units=("kN",) * 3 + ("kNm",) * 3)
-    np.testing.assert_allclose(wrench_at_surface(plate, "mm", [])[0, :3], [0.0, 0.0, 700.0])
+    plate = plate_of(2, np.array([[0.0, 0.0, -0.7, 0.002, 0.0, 0.0]]), units=("kN",) * 3 + ("kNm",) * 3)
+    expected = np.concatenate([[0.0, 0.0, 700.0], 2.0 * PLATE_AXES[:, 0]])
+    np.testing.assert_allclose(wrench_at_surface(plate, "mm", [])[0], expected)
+
+
+@pytest.mark.parametrize("kind", [3, 7])
+def test_each_channel_of_four_sensors_pulls_where_they_stand(kind):
+    """Fx12 Fx34 Fy14 Fy23 Fz1 … Fz4 of sensors at (+a +b), (−a +b), (−a −b), (+a −b), by hand; m, N m, plate axes."""
+    a, b, depth = A_MM / 1e3, B_MM / 1e3, DEPTH_MM / 1e3
+    expected = np.array(
+        [
+            [1, 0, 0, 0, depth, -b],
+            [1, 0, 0, 0, depth, b],
+            [0, 1, 0, -depth, 0, a],
+            [0, 1, 0, -depth, 0, -a],
+            [0, 0, 1, b, -a, 0],
+            [0, 0, 1, b, a, 0],
+            [0, 0, 1, -b, a, 0],
+            [0, 0, 1, -b, -a, 0],
+        ]
+    )
+    plate = plate_of(kind, np.eye(8), (A_MM, B_MM, -DEPTH_MM), ("N",) * 8, calibration=np.eye(8))
+    found = wrench_at_surface(plate, "mm", [])
+    np.testing.assert_allclose(found[:, :3] @ PLATE_AXES, expected[:, :3], atol=1e-12)
+    np.testing.assert_allclose(found[:, 3:] @ PLATE_AXES, expected[:, 3:], atol=1e-12)
+
+
+def standing_readings(spread_mm: float) -> tuple[np.ndarray, np.ndarray]:
+    """(S, 6) channels in N and N mm of a person who sways, and (S, 2) points of pressure, plate axes."""
+    rng = np.random.default_rng(2)
+    force = np.column_stack([rng.normal(0.0, 5.0, (60, 2)), rng.normal(700.0, 20.0, 60)])
+    places = rng.uniform(-spread_mm, spread_mm, (60, 2))
+    return np.hstack([force, np.cross(np.column_stack([places, np.zeros(60)]), force)]), places / 1e3
+
+
+@pytest.mark.parametrize(("stored", "factor"), [(1.0, 1.0), (1e-3, 1e3), (1e3, 1e-3)])
+def test_moments_in_another_unit_than_stated_are_recognised_by_the_pressure(stored, factor):
+    readings, places_m = standing_readings(80.0)
+    notes = []
+    wrench = wrench_at_surface(plate_of(2, readings * [1, 1, 1, stored, stored, stored]), "mm", notes)
+    moment = wrench[:, 3:] @ PLATE_AXES
+    pressed = np.column_stack([-moment[:, 1], moment[:, 0]]) / readings[:, 2:3]
+    np.testing.assert_allclose(pressed, places_m, atol=1e-9)
+    assert [f"taken {factor:g} times as large" in note for note in notes] == [True] * (factor != 1.0)
 
 
 def test_axes_are_orthonormal_and_point_down_even_for_surveyed_corners():

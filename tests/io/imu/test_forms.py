@@ -1,5 +1,7 @@
 """Every maker's file form: written from one truth it is read as equal arrays; damaged it is refused in a sentence."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -151,6 +153,12 @@ def test_a_suit_without_sensors_data_says_what_to_export(tmp_path):
     path.write_text(text.replace('type="normal"', 'type="tpose"'))
     with pytest.raises(FileFormatError, match="no frames"):
         read_mvnx(path)
+
+
+def test_times_of_a_suit_begin_at_the_first_frames_stamp_in_milliseconds(tmp_path):
+    path = makers_binary.mvnx([replace(one, time_s=one.time_s + 2.5) for one in TWO], tmp_path)
+    found = read_mvnx(path)[0]
+    np.testing.assert_allclose(found.time_s, TWO[0].time_s + 2.5, atol=1e-3)
 
 
 def test_recordings_without_sensors_are_refused(tmp_path):
