@@ -20,7 +20,7 @@ from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.stream.natnet import packets
 from mbkf.stream.natnet.cursor import opened
 from mbkf.stream.natnet.descriptions import Descriptions, read_descriptions
-from mbkf.stream.natnet.server import Version, read_server_info
+from mbkf.stream.natnet.server import Version, read_version
 
 ROOM_BYTES = 4 * 1024 * 1024
 """Size of each socket's receive buffer, as far as the system allows: its usual 200 kB hold a tenth of a second with
@@ -191,7 +191,7 @@ class NatNetClient:
         try:
             number = opened(packet)[0]
             if number == packets.SERVER_INFO and self.version is None:
-                self.version = read_server_info(packet).version
+                self.version = read_version(packet)
                 self.answered.set()
                 self._ask()
             elif number == packets.DESCRIPTIONS and self.version is not None:

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
 from mbkf.errors import InvalidPacket
 from mbkf.stream.natnet import packets
 from mbkf.stream.natnet.cursor import Cursor, opened
 from mbkf.stream.natnet.frames import SIZED
+from mbkf.stream.natnet.packets import ForcePlate
 from mbkf.stream.natnet.server import Version
 
 NAMED_BODIES: Version = (4, 0)
 """From this protocol on the markers of a rigid body have names."""
 
-_SIDES, _KIND = struct.Struct("<2f"), struct.Struct("<2I")
+_KIND = struct.Struct("<2I")
 _FLOAT = np.dtype("<f4")
 
 
@@ -36,33 +36,6 @@ class MarkerSet:
 
     name: str
     markers: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class ForcePlate:
-    """A force plate; the stream's axes, m.
-
-    Attributes:
-        number: Under which frames bring its samples.
-        serial: Its serial number.
-        sides_m: Width and length.
-        offset_m: (3,) from the middle of the corners to the point the moments refer to, plate axes.
-        calibration: (12, 12) calibration matrix.
-        corners_m: (4, 3) its corners.
-        kind: Type of the plate, as in C3D files.
-        raw: Whether it sends something else than calibrated forces.
-        channels: Names of its channels.
-    """
-
-    number: int
-    serial: str
-    sides_m: tuple[float, float]
-    offset_m: Array
-    calibration: Array
-    corners_m: Array
-    kind: int
-    raw: bool
-    channels: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -112,14 +85,14 @@ def _marker_set(cursor: Cursor) -> MarkerSet:
 
 def _force_plate(cursor: Cursor) -> ForcePlate:
     number, serial = cursor.integer(), cursor.text()
-    width, length = cursor.fields(_SIDES)
+    cursor.take(2 * _FLOAT.itemsize)  # width and length
     offset = cursor.rows(_FLOAT, 3)
-    calibration = cursor.rows(_FLOAT, 144).reshape(12, 12)
+    cursor.take(144 * _FLOAT.itemsize)  # calibration matrix
     corners = cursor.points(4)
-    kind, data = cursor.fields(_KIND)
+    _, data = cursor.fields(_KIND)
     with np.errstate(invalid="ignore"):  # numbers of a server may be NaN
-        geometry = offset.astype(float), calibration.astype(float), corners.astype(float)
-    return ForcePlate(number, serial, (width, length), *geometry, kind, data != 0, _texts(cursor))
+        geometry = offset.astype(float), corners.astype(float)
+    return ForcePlate(number, serial, *geometry, data != 0, _texts(cursor))
 
 
 def _texts(cursor: Cursor) -> tuple[str, ...]:

@@ -14,8 +14,9 @@ from mbkf.io.plate_corners import has_area
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 from mbkf.stream.natnet import packets
-from mbkf.stream.natnet.descriptions import Descriptions, ForcePlate, MarkerSet
+from mbkf.stream.natnet.descriptions import Descriptions, MarkerSet
 from mbkf.stream.natnet.frames import Frame
+from mbkf.stream.natnet.packets import ForcePlate
 from mbkf.stream.natnet.player import axes_of
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, empty_plate
 

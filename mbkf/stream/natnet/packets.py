@@ -28,13 +28,7 @@ OCCLUDED, SOLVED, UNLABELLED = 0x01, 0x02, 0x10
 """Flags of a labelled marker."""
 
 LABELLED = np.dtype(
-    [
-        ("id", "<u4"),
-        ("position", "<f4", (3,)),
-        ("size", "<f4"),
-        ("flags", "<u2"),
-        ("residual", "<f4"),
-    ]
+    [("id", "<u4"), ("position", "<f4", (3,)), ("size", "<f4"), ("flags", "<u2"), ("residual", "<f4")]
 )
 """A labelled marker: its number in the lower half of ``id``, that of its model in the upper; m."""
 
@@ -49,20 +43,24 @@ MOST_BYTES = 65_000
 
 
 @dataclass(frozen=True)
-class PlateDescription:
+class ForcePlate:
     """Description of a force plate in NatNet.
 
     Attributes:
-        number: From 1.
-        serial: Its serial number; we put its name here.
+        number: Number of its samples in frames, from 1.
+        serial: Its serial number; for our own plates their name.
         offset_m: (3,) from the middle of the corners to the point the moments refer to, plate axes.
-        corners_m: (4, 3) in the stream's axes.
+        corners_m: (4, 3) its corners, the stream's axes.
+        raw: It sends other data than calibrated forces.
+        channels: Names of its channels.
     """
 
     number: int
     serial: str
     offset_m: Array
     corners_m: Array
+    raw: bool = False
+    channels: tuple[str, ...] = CHANNELS
 
 
 def message(number: int, payload: bytes = b"") -> bytes:
@@ -83,7 +81,7 @@ def server_info(application: str, port: int) -> bytes:
     return message(SERVER_INFO, name + bytes(VERSION) + bytes(VERSION) + clock)
 
 
-def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[PlateDescription]) -> bytes:
+def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[ForcePlate]) -> bytes:
     """The message that describes the stream: one set of named markers, if there are any, and the plates.
 
     Args:
@@ -95,27 +93,18 @@ def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[PlateDe
     if markers:
         named = _text(set_name) + struct.pack("<I", len(markers)) + b"".join(map(_text, markers))
         parts.append(struct.pack("<I", SET_DESCRIPTION) + named)
-    parts += [struct.pack("<I", PLATE_DESCRIPTION) + plate_description(plate) for plate in plates]
+    parts += [struct.pack("<I", PLATE_DESCRIPTION) + _plate_description(plate) for plate in plates]
     return message(DESCRIPTIONS, struct.pack("<I", len(parts)) + b"".join(parts))
 
 
-def plate_description(plate: PlateDescription) -> bytes:
-    """A force plate with calibrated channels (Fx … Mz); the protocol has all four corners."""
+def _plate_description(plate: ForcePlate) -> bytes:
+    """A force plate with calibrated channels (Fx … Mz) and all four corners."""
     corners = np.asarray(plate.corners_m)
-    width, length = (float(np.linalg.norm(corners[0] - corners[k])) for k in (1, 3))
-    calibration = np.eye(12)
-    return b"".join(
-        [
-            struct.pack("<I", plate.number),
-            _text(plate.serial),
-            struct.pack("<2f", width, length),
-            _floats(plate.offset_m),
-            _floats(calibration),
-            _floats(corners),
-            struct.pack("<3I", 2, 0, len(CHANNELS)),
-            *map(_text, CHANNELS),
-        ]
-    )
+    sides = [np.linalg.norm(corners[0] - corners[k]) for k in (1, 3)]
+    kind_and_data = struct.pack("<3I", 2, 0, len(CHANNELS))
+    geometry = [sides, plate.offset_m, np.eye(12), corners]
+    named = struct.pack("<I", plate.number) + _text(plate.serial)
+    return named + b"".join(map(_floats, geometry)) + kind_and_data + b"".join(map(_text, CHANNELS))
 
 
 def frame(
@@ -177,7 +166,7 @@ def _samples(plates: Array) -> bytes:
     return words.tobytes()
 
 
-def _floats(values: Array) -> bytes:
+def _floats(values: Array | Sequence[np.floating]) -> bytes:
     return np.asarray(values, dtype="<f4").tobytes()
 
 

@@ -153,9 +153,9 @@ def axes_of(corners_m: Array | None) -> Array:
     return near if np.abs(axes - near).max() < 1e-6 else axes
 
 
-def _description(k: int, plate: PlateReadings) -> packets.PlateDescription:
+def _description(k: int, plate: PlateReadings) -> packets.ForcePlate:
     """A plate without known corners is a point."""
     rotation = rotation_to_world(UP)
     corners = np.tile(plate.origin_m, (4, 1)) if plate.corners_m is None else plate.corners_m
     offset = (plate.origin_m - corners.mean(axis=0)) @ axes_of(corners)
-    return packets.PlateDescription(k + 1, plate.name, offset, corners @ rotation)
+    return packets.ForcePlate(k + 1, plate.name, offset, corners @ rotation)

@@ -1,9 +1,8 @@
-"""A NatNet server's answer to a client that connects: its name and the protocol it speaks."""
+"""A NatNet server's answer to a client that connects: the protocol it speaks."""
 
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
 
 from mbkf.errors import InvalidPacket
 from mbkf.stream.natnet.cursor import opened
@@ -20,29 +19,16 @@ NEWER: Version = (5, 0)
 _ANSWER = struct.Struct("<256s4B4B")
 
 
-class ServerInfo(NamedTuple):
-    """A server.
-
-    Attributes:
-        application: Its name.
-        version: The protocol of its stream.
-    """
-
-    application: str
-    version: Version
-
-
-def read_server_info(packet: bytes) -> ServerInfo:
-    """Reads a whole packet.
+def read_version(packet: bytes) -> Version:
+    """The protocol of a server's stream, by its answer.
 
     Raises:
         InvalidPacket: It is another message, or the protocol is not one of 3.0 to 4.x.
     """
     fields = opened(packet)[1].fields(_ANSWER)
-    name: bytes = fields[0]
     version = (int(fields[5]), int(fields[6]))
     if not OLDEST <= version < NEWER:
         raise InvalidPacket(
             f"NatNet: a server answers with protocol {version[0]}.{version[1]}; 3.0 to 4.x are read"
         )
-    return ServerInfo(name.partition(b"\0")[0].decode("utf-8", "replace"), version)
+    return version

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
-from typing import NamedTuple
 
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.io.axes import rotation_to_world, up_axis
@@ -27,11 +26,8 @@ HELD_S = 2.0
 """Received frames are held for so long until they are read."""
 
 
-class Arrived(NamedTuple):
-    """A frame, and when it arrived on the clock of ``time.perf_counter``."""
-
-    arrival_s: float
-    frame: Frame
+Arrived = tuple[float, Frame]
+"""Time of arrival on the clock of ``time.perf_counter``, and the frame."""
 
 
 class NatNetSource:
@@ -92,8 +88,9 @@ class NatNetSource:
             if time.perf_counter() - self._heard_s > RECONNECT_AFTER_S:
                 self._again()
             return None
-        self._heard_s, self._silent = arrived.arrival_s, False
-        return self._layout.frame(arrived.frame, arrived.arrival_s)
+        arrival_s, frame = arrived
+        self._heard_s, self._silent = arrival_s, False
+        return self._layout.frame(frame, arrival_s)
 
     def news(self) -> list[tuple[str, str]]:
         """Events of the connection since the last call."""
@@ -122,7 +119,7 @@ class NatNetSource:
             if held is None:
                 return None
             try:
-                return Arrived(held[0], read_frame(held[1], client.version))
+                return held[0], read_frame(held[1], client.version)
             except (InvalidPacket, ArithmeticError, ValueError, MemoryError) as error:
                 client.refuse(InvalidPacket(str(error)))
                 if time.perf_counter() > until:

@@ -30,29 +30,24 @@ def test_sets_and_plates_are_read_past_all_else(version):
     found = read_descriptions(whole(version), version)
     assert found.sets == tuple(MarkerSet(*one) for one in SETS)
     first, second = found.plates
-    assert (first.number, first.serial, first.kind, first.raw) == (1, "left", 2, False)
+    assert (first.number, first.serial, first.raw) == (1, "left", False)
     assert (second.number, second.serial, second.raw, second.channels) == (2, "", True, ("a", "b"))
     assert first.channels == packets.CHANNELS
     np.testing.assert_array_equal(first.corners_m, CORNERS)
     np.testing.assert_array_equal(second.corners_m, -CORNERS)
-    np.testing.assert_array_equal(first.calibration, np.arange(144.0).reshape(12, 12))
     np.testing.assert_allclose(first.offset_m, [0.01, 0.02, 0.03], rtol=1e-6)
-    np.testing.assert_allclose(first.sides_m, [0.4, 0.6], rtol=1e-6)
 
 
 def test_what_the_player_packs_is_read_back():
     rng = np.random.default_rng(0)
-    made = [
-        packets.PlateDescription(k, f"plate {k}", rng.normal(size=3), rng.normal(size=(4, 3))) for k in (1, 2)
-    ]
+    made = [packets.ForcePlate(k, f"plate {k}", rng.normal(size=3), rng.normal(size=(4, 3))) for k in (1, 2)]
     found = read_descriptions(packets.descriptions("walk", ("A", "Ä"), made), (4, 0))
     assert found.sets == (MarkerSet("walk", ("A", "Ä")),)
     for plate, own in zip(found.plates, made, strict=True):
-        assert (plate.number, plate.serial, plate.kind, plate.raw) == (own.number, own.serial, 2, False)
+        assert (plate.number, plate.serial, plate.raw) == (own.number, own.serial, False)
         assert plate.channels == packets.CHANNELS
         np.testing.assert_array_equal(plate.corners_m, own.corners_m.astype(np.float32))
         np.testing.assert_array_equal(plate.offset_m, own.offset_m.astype(np.float32))
-        np.testing.assert_array_equal(plate.calibration, np.eye(12))
 
 
 def test_something_unknown_is_passed_over_where_its_size_is_sent():

@@ -1,6 +1,7 @@
 """What a frame's markers, points and plates become, against a marker by marker reading."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from hypothesis import strategies as st
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import rotation_to_world
 from mbkf.stream.natnet import packets
-from mbkf.stream.natnet.descriptions import Descriptions, ForcePlate, MarkerSet
+from mbkf.stream.natnet.descriptions import Descriptions, MarkerSet
 from mbkf.stream.natnet.frames import Frame, read_frame
 from mbkf.stream.natnet.layout import StreamLayout
+from mbkf.stream.natnet.packets import ForcePlate
 from mbkf.stream.natnet.player import axes_of
 from tests.stream.natnet import layouts
 
@@ -22,18 +24,8 @@ SETS = (MarkerSet("All", ("A", "B", "C", "D")), MarkerSet("one", ("A", "B")), Ma
 
 
 def plate(number, corners=CORNERS, **changes):
-    values = dict(serial=f"s{number}", raw=False, channels=packets.CHANNELS) | changes
-    return ForcePlate(
-        number,
-        values["serial"],
-        (0.6, 0.4),
-        np.array([0.01, 0.02, 0.03]),
-        np.eye(12),
-        corners,
-        2,
-        values["raw"],
-        values["channels"],
-    )
+    known = ForcePlate(number, f"s{number}", np.array([0.01, 0.02, 0.03]), corners)
+    return replace(known, **changes)
 
 
 def frames(rate_hz=100.0, count=3, **content):

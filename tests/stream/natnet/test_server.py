@@ -4,27 +4,27 @@ import pytest
 
 from mbkf.errors import InvalidPacket
 from mbkf.stream.natnet import packets
-from mbkf.stream.natnet.server import read_server_info
+from mbkf.stream.natnet.server import read_version
 from tests.stream.natnet import layouts
 
 
 def test_our_own_answer_is_read_back():
-    assert read_server_info(packets.server_info("us", 1510)) == ("us", packets.VERSION[:2])
+    assert read_version(packets.server_info("us", 1510)) == packets.VERSION[:2]
 
 
 @pytest.mark.parametrize("version", layouts.VERSIONS)
 def test_the_version_of_the_protocol_is_told_from_that_of_the_server(version):
-    assert read_server_info(layouts.answer(version)) == ("Motive", version)
+    assert read_version(layouts.answer(version)) == version
 
 
 @pytest.mark.parametrize("version", [(0, 0), (2, 9), (5, 0), (77, 3)])
 def test_a_protocol_that_is_not_known_is_refused(version):
     with pytest.raises(InvalidPacket, match=r"3\.0 to 4\.x"):
-        read_server_info(layouts.answer(version))
+        read_version(layouts.answer(version))
 
 
 def test_a_short_answer_is_refused():
     whole = layouts.answer((4, 0))
     for length in range(4, len(whole)):
         with pytest.raises(InvalidPacket):
-            read_server_info(layouts.cut(whole, length))
+            read_version(layouts.cut(whole, length))
