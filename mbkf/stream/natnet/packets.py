@@ -100,11 +100,13 @@ def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[ForcePl
 def _plate_description(plate: ForcePlate) -> bytes:
     """A force plate with calibrated channels (Fx … Mz) and all four corners."""
     corners = np.asarray(plate.corners_m)
-    sides = [np.linalg.norm(corners[0] - corners[k]) for k in (1, 3)]
+    sides = np.array([np.linalg.norm(corners[0] - corners[k]) for k in (1, 3)])
     kind_and_data = struct.pack("<3I", 2, 0, len(CHANNELS))
     geometry = [sides, plate.offset_m, np.eye(12), corners]
     named = struct.pack("<I", plate.number) + _text(plate.serial)
-    return named + b"".join(map(_floats, geometry)) + kind_and_data + b"".join(map(_text, CHANNELS))
+    return (
+        named + b"".join([_floats(one) for one in geometry]) + kind_and_data + b"".join(map(_text, CHANNELS))
+    )
 
 
 def frame(
@@ -166,7 +168,7 @@ def _samples(plates: Array) -> bytes:
     return words.tobytes()
 
 
-def _floats(values: Array | Sequence[np.floating]) -> bytes:
+def _floats(values: Array) -> bytes:
     return np.asarray(values, dtype="<f4").tobytes()
 
 
