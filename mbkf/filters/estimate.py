@@ -13,7 +13,7 @@ from mbkf.filters.filter import Memory, Prior, Step
 from mbkf.filters.plant import StateT
 from mbkf.sensors.block import NO_READINGS, Frame
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerPrediction
 
 
 @dataclass(frozen=True)

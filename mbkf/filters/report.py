@@ -16,8 +16,7 @@ from mbkf.filters.plant import StateT
 from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import Frame
-from mbkf.sensors.marker_prediction import MarkerPrediction
-from mbkf.sensors.marker_sensor import MarkerReading
+from mbkf.sensors.marker_sensor import MarkerPrediction, MarkerReading
 from mbkf.sensors.markers import Markers
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign, marker_of_point, pair_costs
-from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerPrediction
 
 MOST_CONTRADICTED = 0.2
 """Share of the labelled markers far from the corrected body above which the pose is wrong, and not the labels."""

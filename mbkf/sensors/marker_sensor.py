@@ -52,6 +52,29 @@ class MarkerReading:
         return moved
 
 
+@dataclass(frozen=True)
+class MarkerPrediction:
+    """Markers predicted from a state.
+
+    Attributes:
+        reading: The markers at the predicted configuration; its Jacobian H is computed on demand.
+        covariance: (nv, nv) covariance P⁻ of the predicted configuration in its tangent space.
+    """
+
+    reading: MarkerReading
+    covariance: Array
+
+    @property
+    def positions_m(self) -> Array:
+        """(M, 3) predicted positions ĥ(x⁻) in the world, m."""
+        return self.reading.positions_m
+
+    def spread(self, markers: BoolArray) -> Array:
+        """(m, 3, 3) covariance H P⁻ Hᵀ of the chosen markers' (M,) predicted positions, m²."""
+        H = self.reading.only(markers).jacobian
+        return (H @ self.covariance) @ H.transpose(0, 2, 1)
+
+
 class MarkerSensor:
     """Markers fixed to segments of a body: m = r_b + A_b m̄ (thesis eq. 3.4).
 

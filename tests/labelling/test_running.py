@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningLabeller, RunningSettings
-from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerPrediction
 from tests.labelling.bodies import posture, reference_sensor
 
 SENSOR = reference_sensor()

@@ -5,8 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.errors import ShapeError, UnknownName
+from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import information
-from mbkf.sensors.marker_sensor import MarkerInformation, MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerInformation, MarkerPrediction, MarkerSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model
 
 
@@ -108,3 +109,16 @@ def test_wrong_shapes_and_segments_are_refused():
 def test_places_cannot_be_changed():
     sensor, _ = protocol_sensor(reference_model())
     assert not sensor.local_m.flags.writeable
+
+
+def test_spread_is_the_covariance_carried_to_the_markers():
+    model = HumanModel.scaled()
+    sensor = MarkerSensor(model, ["pelvis", "right_foot"], np.array([[0.1, 0.0, 0.0], [0.0, 0.05, 0.0]]))
+    root = np.random.default_rng(0).normal(size=(model.nv, model.nv))
+    reading = sensor.reading(model.neutral())
+    expected = MarkerPrediction(reading, root @ root.T)
+    assert np.array_equal(expected.positions_m, sensor.positions(model.neutral()))
+    for chosen in ([True, False], [False, True], [True, True]):
+        mask = np.array(chosen)
+        H = reading.jacobian[mask]
+        assert np.allclose(expected.spread(mask), H @ root @ root.T @ H.transpose(0, 2, 1))

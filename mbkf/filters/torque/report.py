@@ -20,8 +20,7 @@ from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import ContactDecision
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.layout import FEET
-from mbkf.sensors.marker_prediction import MarkerPrediction
-from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerPrediction, MarkerSensor
 
 
 @dataclass(frozen=True)

@@ -180,14 +180,7 @@ class ContactDetector:
         return Planted(self._model.roles.feet[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
 
     def _owner(self, k: int, point: tuple[float, float], feet: FeetMotion, before: int) -> int:
-        """Foot or feet on plate k.
-
-        Args:
-            k: The plate.
-            point: Its centre of pressure.
-            feet: The feet.
-            before: Its foot in the frame before.
-        """
+        """Foot or feet on plate k with this centre of pressure; ``before`` is its foot in the frame before."""
         right, left = (min(sole, key=lambda point: point[2]) for sole in feet.soles)
         if all(self._areas.over(k, x, y) for x, y, _ in (right, left)):
             speed = dist(feet.velocity(RIGHT, right), feet.velocity(LEFT, left))
@@ -199,13 +192,7 @@ class ContactDetector:
 def _lowest_balls(
     memory: ContactMemory, feet: FeetMotion, touching_s: tuple[float, float]
 ) -> tuple[float, float]:
-    """Least height of right and left ball while the foot has touched the floor.
-
-    Args:
-        memory: From the frame before.
-        feet: The feet.
-        touching_s: Duration for which they have touched the floor without a reading.
-    """
+    """Least height of right and left ball while the foot has touched the floor."""
     right, left = (
         min(feet.soles[f][1][2], memory.lowest_ball_m[f] if touching_s[f] > 0.0 else inf)
         for f in (RIGHT, LEFT)

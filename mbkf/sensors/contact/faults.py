@@ -114,9 +114,12 @@ def _throws(wrench: Array, rate_hz: float, weight_n: float) -> bool:
     return any((vertical[first:after] - BORNE_WEIGHTS).sum() > least for first, after in contacts)
 
 
-def _equal_runs(same: BoolArray, least: int) -> list[tuple[int, int]]:
-    """First sample and sample after the last of runs of equal samples; same (S − 1,) compares each with the next."""
-    return [(first, last + 1) for first, last in runs(same) if last + 1 - first >= least]
+def _equal(same: BoolArray, least: int) -> BoolArray:
+    """(S,) runs of at least so many equal samples; ``same`` (S − 1,) compares each with the next."""
+    found = np.zeros(len(same) + 1, dtype=bool)
+    for first, last in runs(same):
+        found[first : last + 1] = last + 1 - first >= least
+    return found
 
 
 def _never_changes(known: Array) -> bool:
@@ -125,14 +128,11 @@ def _never_changes(known: Array) -> bool:
 
 
 def _stuck(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
-    stuck = np.zeros(len(wrench), dtype=bool)
     if _never_changes(wrench[faults == NO_FAULT]):
-        return stuck
+        return np.zeros(len(wrench), dtype=bool)
     loaded = np.linalg.norm(wrench[:, :3], axis=1) >= STUCK_WEIGHTS * weight_n
     same = (wrench[1:] == wrench[:-1]).all(axis=1) & loaded[1:]
-    for first, after in _equal_runs(same, max(STUCK_SAMPLES, round(STUCK_S * rate_hz))):
-        stuck[first:after] = True
-    return stuck
+    return _equal(same, max(STUCK_SAMPLES, round(STUCK_S * rate_hz)))
 
 
 def _saturated(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
@@ -143,12 +143,9 @@ def _saturated(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -
         if _never_changes(channel[known]):
             continue
         for limit in (channel[known].max(), channel[known].min()):
-            if abs(limit) < floor:
-                continue
-            at_limit = channel == limit
-            same = at_limit[1:] & at_limit[:-1]
-            for first, after in _equal_runs(same, max(FLAT_SAMPLES, round(FLAT_S * rate_hz))):
-                cut[first:after] = True
+            if abs(limit) >= floor:
+                at_limit = channel == limit
+                cut |= _equal(at_limit[1:] & at_limit[:-1], max(FLAT_SAMPLES, round(FLAT_S * rate_hz)))
     return cut
 
 

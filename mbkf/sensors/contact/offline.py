@@ -136,14 +136,7 @@ def _floor_height(soles: Array, loaded: BoolArray) -> float:
 
 
 def _over_idle_plate(areas: PlateAreas, soles: Array, pressure: Array, recorded: BoolArray) -> BoolArray:
-    """(T, 2) feet that carry nothing: the middle of the sole lies over a plate that is recorded and not loaded.
-
-    Args:
-        areas: Outlines of the plates.
-        soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        pressure: (T, P, 3) centres of pressure, NaN where not loaded.
-        recorded: (T, P) where plates were recorded.
-    """
+    """(T, 2) feet that carry nothing: the middle of the sole lies over a plate that is recorded and not loaded."""
     middles = 0.5 * (soles[:, :, 0, :2] + soles[:, :, 2, :2])
     idle = recorded & np.isnan(pressure[:, :, 0])
     inside = areas.contain(middles.reshape(-1, 2)).reshape(len(soles), 2, -1)
@@ -153,11 +146,7 @@ def _over_idle_plate(areas: PlateAreas, soles: Array, pressure: Array, recorded:
 def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:
     """(T,) foot on one plate: that of the nearer sole, decided once per stretch of loading unless it changes.
 
-    Args:
-        pressure: (T, 3) centre of pressure on the plate, NaN where not loaded.
-        soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        vertical_n: (T,) vertical force, the weight of a frame in its stretch.
-        rate_hz: Frame rate.
+    The vertical force (T,) weighs the frames of a stretch.
     """
     foot = np.full(len(pressure), NEITHER)
     distance = distances_to_soles(pressure, soles)
@@ -177,13 +166,7 @@ def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: fl
 
 
 def _together(soles: Array, areas: PlateAreas, rate_hz: float) -> BoolArray:
-    """(T, P) plates on which both feet stand.
-
-    Args:
-        soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        areas: Outlines of the plates; a plate without an outline is never shared.
-        rate_hz: Frame rate.
-    """
+    """(T, P) plates on which both feet stand; a plate without an outline is never shared."""
     together = np.zeros((len(soles), len(areas.known)), dtype=bool)
     known = np.flatnonzero(~np.isnan(soles[:, 0, 0, 0]))
     if len(known) < 2:
@@ -224,15 +207,7 @@ def _on_plate(foot: Array) -> BoolArray:
 def _on_silent_plate(
     areas: PlateAreas, soles: Array, on_plate: BoolArray, recorded: BoolArray, rate_hz: float
 ) -> BoolArray:
-    """(T,) frames in which a foot may stand on a plate that was not recorded, of known outline or not.
-
-    Args:
-        areas: Outlines of the plates.
-        soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        on_plate: (T, 2) feet on a loaded plate.
-        recorded: (T, P) where plates were recorded.
-        rate_hz: Frame rate.
-    """
+    """(T,) frames in which a foot may stand on a plate that was not recorded, of known outline or not."""
     found = np.zeros(len(soles), dtype=bool)
     silent = np.flatnonzero(~recorded.all(axis=1))
     if not len(silent):
@@ -246,14 +221,7 @@ def _on_silent_plate(
 
 
 def _touching(soles: Array, on_plate: BoolArray, rate_hz: float, limits: Touch) -> BoolArray:
-    """(T, 2) feet that touch the floor.
-
-    Args:
-        soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        on_plate: (T, 2) feet on a loaded plate; their soles show the floor.
-        rate_hz: Frame rate.
-        limits: Of height and speed.
-    """
+    """(T, 2) feet that touch the floor, whose height the soles of feet on plates (T, 2) show."""
     touching = np.zeros((len(soles), 2), dtype=bool)
     known = ~np.isnan(soles[:, 0, 0, 0])
     if len(soles) < 2 or not known.any():  # a single frame has no speed
@@ -289,17 +257,7 @@ def _validity(
     pressure: Array,
     recorded: BoolArray,
 ) -> tuple[BoolArray, tuple[str, ...]]:
-    """(T,) frames in which every loaded foot stands on a recorded plate, and warnings.
-
-    Args:
-        model: The body.
-        touching: (T, 2) feet that touch the floor.
-        flight: (T,) frames in which nothing carries the body.
-        foot: (T, P) foot of each plate.
-        wrench: (T, P, 6) plates about the world's origin.
-        pressure: (T, P, 3) their centres of pressure, NaN where not loaded.
-        recorded: (T, P) frames in which they were recorded.
-    """
+    """(T,) frames in which every loaded foot stands on a recorded plate, and warnings."""
     measured = (~touching | _on_plate(foot)).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg
     carried = np.where(foot >= 0, wrench[:, :, 2], 0.0).sum(axis=1) > STANDING_SHARE * weight

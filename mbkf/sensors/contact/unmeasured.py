@@ -114,13 +114,7 @@ class UnmeasuredFeet:
         return Elsewhere(carrying, height, touching, movement, moves, (right, left))
 
     def _movement(self, before: Movement, feet: FeetMotion, floor_m: float) -> Movement:
-        """Movement up to this frame.
-
-        Args:
-            before: That of the frame before.
-            feet: The feet.
-            floor_m: Height of the floor, NaN where not known.
-        """
+        """Movement up to this frame; the height of the floor is NaN where not known."""
         ends = [(f, point) for f in _FEET for point in feet.soles[f][:SOLE_ENDS]]
         foot, point = min(ends, key=lambda end: end[1][2])
         low = feet.velocity(foot, point)[:2] if point[2] < floor_m + STANDING.height_m else (nan, nan)
@@ -136,14 +130,7 @@ class UnmeasuredFeet:
     def _touching(
         self, before_s: tuple[float, float], may_bear: Sequence[int], feet: FeetMotion, floor: _Floor
     ) -> tuple[float, float]:
-        """Duration for which right and left foot have touched the floor where no plate reads, s.
-
-        Args:
-            before_s: The same in the frame before.
-            may_bear: Feet that no plate reads, and under which no plate is unloaded.
-            feet: The feet.
-            floor: The floor.
-        """
+        """Duration for which right and left foot have touched the floor where no plate reads, s."""
 
         def since(f: int) -> float:
             if f not in may_bear or not feet.facing_down[f]:
@@ -158,12 +145,6 @@ class UnmeasuredFeet:
         """Feet low enough to land or to push off, where nothing else carries the body.
 
         A plate without an outline may lie under any foot, unless the other foot pressed it last.
-
-        Args:
-            may_bear: Feet that no plate reads, and under which no plate is unloaded.
-            feet: The feet.
-            floor: The floor.
-            idle: Plates that read nothing.
         """
         lowest = min((h for h in (floor.height_m, self._floor) if not isnan(h)), default=nan)
         latest = [idle.pressed[k] for k in idle.plates if not self._areas.known[k]]
