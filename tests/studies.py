@@ -1,10 +1,13 @@
 """A study as a laboratory keeps it: walks of synthetic persons with their standing trials, made once."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
 import pyarrow as pa
+import pytest
 
 from mbkf.study.batch.run import follow, plan_of
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -27,6 +30,9 @@ def walk_folder() -> Path:
 class ThisProcess:
     """An executor without workers: tasks are done in order, where they are asked for."""
 
+    def __init__(self, workers: int = 1) -> None:
+        self.workers = workers
+
     def run(self, tasks):
         for number, task in enumerate(tasks):
             yield number, task()
@@ -38,6 +44,14 @@ class ThisProcess:
 def batch_here(source: Path, out: Path, settings: ReconstructSettings = QUICK) -> pa.Table:
     """A batch without workers."""
     return follow(plan_of(source), out, settings, ThisProcess())
+
+
+@contextmanager
+def runs_here() -> Iterator[None]:
+    """Runs of the laboratory's page do their work in a thread of this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mbkf.app.runs.LocalWorkers", ThisProcess)
+        yield
 
 
 def study(folder: Path, persons: int = 1, trials: int = 1) -> Path:

@@ -6,7 +6,7 @@ import pytest
 
 from mbkf.app.server import AppServer
 from tests.app.asking import asked
-from tests.studies import study
+from tests.studies import runs_here, study
 from tests.viz.conftest import browser, opened  # noqa: F401 — for this folder's tests, too
 
 
@@ -14,9 +14,10 @@ from tests.viz.conftest import browser, opened  # noqa: F401 — for this folder
 def server(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lab")
     study(folder / "lab", trials=1)
-    made = AppServer(folder / "lab", workers=1)
-    yield made
-    made.close()
+    with runs_here():
+        made = AppServer(folder / "lab", workers=1)
+        yield made
+        made.close()
 
 
 @pytest.fixture(scope="module")

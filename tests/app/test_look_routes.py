@@ -12,9 +12,10 @@ from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, read_session
 from mbkf.study.batch.curves import curves_of, read_curves
 from mbkf.study.batch.inputs import RECORD
-from mbkf.study.batch.run import batch
 from mbkf.study.batch.trial import CURVES_FILE
+from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.app.asking import asked, plain
+from tests.studies import batch_here
 
 EVENTS = "/trial/events?session=P1&trial=walk1"
 
@@ -63,7 +64,7 @@ def test_events_by_hand_cut_the_curves_and_a_batch_keeps_them(server, cookie, ru
         one["time_s"] for one in moved
     ]
     cut = read_curves(folder / CURVES_FILE)
-    table = batch(server.workspace.root, server.workspace.out, workers=1).to_pylist()
+    table = batch_here(server.workspace.root, server.workspace.out, ReconstructSettings()).to_pylist()
     assert {row["trial"]: row["status"] for row in table}["walk1"] == "unchanged"
     by_hand = read_session(file).trial("walk1").events
     assert read_curves(folder / CURVES_FILE).equals(cut)

@@ -10,12 +10,10 @@ from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.stream.run.report import LIVE_FILE
-from mbkf.study.batch.run import batch
-from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.summary import summarise
 from tests.captures import snapshot
 from tests.recordings import walk
-from tests.studies import study
+from tests.studies import batch_here, study
 
 
 @pytest.fixture
@@ -58,8 +56,7 @@ def test_a_run_that_left_no_result_is_no_recording_and_a_damaged_one_says_so(wor
 def test_a_batch_leaves_them_in_peace(workspace):
     folder = record(workspace, "live-1")
     before = snapshot(folder)
-    settings = ReconstructSettings(filter="kinematic", smooth=False)
-    table = batch(workspace.root, workspace.root / RESULTS, workers=1, settings=settings)
+    table = batch_here(workspace.root, workspace.root / RESULTS)
     assert table["trial"].to_pylist() == ["walk1"]
     assert snapshot(folder) == before
     assert workspace.sessions() == ("P1",)

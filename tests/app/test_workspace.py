@@ -7,9 +7,7 @@ from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.session import SessionNotes, read_session
 from mbkf.study.batch.folder import plan_of_folder
-from mbkf.study.batch.run import batch
-from mbkf.trial.preparation.settings import ReconstructSettings
-from tests.studies import study
+from tests.studies import batch_here, study
 
 
 @pytest.fixture
@@ -50,8 +48,7 @@ def test_its_plan_is_that_of_a_batch_and_results_are_no_captures(workspace):
     assert set(plan.trials) < set(plan_of_folder(workspace.root).trials)
     with pytest.raises(InvalidInput, match="no result of 'walk1' yet"):
         workspace.result("P2", "walk1")
-    settings = ReconstructSettings(filter="kinematic", smooth=False)
-    batch(workspace.root, workspace.root / RESULTS, workers=1, settings=settings)
+    batch_here(workspace.root, workspace.root / RESULTS)
     assert workspace.result("P2", "walk1") == workspace.root / RESULTS / "P2" / "walk1"
     assert workspace.sessions() == ("P1", "P2")
     with pytest.raises(InvalidInput, match="no result of 'other' yet"):

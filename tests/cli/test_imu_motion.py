@@ -10,6 +10,14 @@ from mbkf.io.subject import write_subject
 from tests.worn import worn
 
 
+@pytest.fixture(scope="module", autouse=True)
+def look_briefly():
+    """Less than a second of each way of wearing the sensors tells them apart here."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mbkf.trial.inertial.misfit.LOOKED_AT_S", 0.8)
+        yield
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("worn")

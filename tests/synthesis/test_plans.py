@@ -64,6 +64,16 @@ def test_feet_stay_above_the_floor_but_for_the_round_heel(plan, body):
         assert (sole(body, side, foot, outline.heel_x).value[:, 2] - surfaces).min() > -0.010
 
 
+def test_loaded_feet_touch_what_bears_them(plan, body):
+    """Until the end of their load, with the heel or about the joints of the toes, over which they roll."""
+    times = np.linspace(0.0, 3.0, 601)
+    load, toes = plan.load(times), body.description.segment("right_toes").origin_m[0]
+    for foot, (side, pose) in enumerate(plan.feet(times).items()):
+        ends = [sole(body, side, pose, x).value[:, 2] for x in (sole_outline(body, side).heel_x, toes)]
+        loaded = (load.shares[:, foot] > 0) & load.grounded
+        assert (np.minimum(*ends) - load.surfaces[:, foot])[loaded].max() < 0.03, side
+
+
 def test_loaded_feet_do_not_slide(plan, body):
     times = np.linspace(0.0, 3.0, 601)
     load = plan.load(times)

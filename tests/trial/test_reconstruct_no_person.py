@@ -28,7 +28,7 @@ KINDS = {
 @cache
 def walk():
     settings = CaptureSettings(occlusion=0.0, offset_n=(0.0, 0.0))
-    return synthesise("walk", seconds=2.0, seed=4, settings=settings)
+    return synthesise("walk", seconds=1.2, seed=4, settings=settings)
 
 
 def spoilt(kind):

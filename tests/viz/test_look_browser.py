@@ -13,7 +13,7 @@ from mbkf.study.batch.curves import read_curves
 from mbkf.study.batch.trial import CURVES_FILE
 from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
-from tests.studies import study
+from tests.studies import runs_here, study
 from tests.viz.browsing import PATIENCE_S, until
 
 pytestmark = pytest.mark.slow
@@ -25,12 +25,13 @@ LOADED = "Boolean(window.mbkf && mbkf.view.seenPelvis && look.strip)"
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     folder = study(tmp_path_factory.mktemp("look") / "lab", persons=2, trials=2)
-    made = AppServer(folder, workers=1)
-    made.runs.start("P1")
-    ends = time.monotonic() + 4 * PATIENCE_S
-    while made.runs.state("P1").state != "finished":
-        assert time.monotonic() < ends, made.runs.state("P1")
-        time.sleep(0.05)
+    with runs_here():
+        made = AppServer(folder, workers=1)
+        made.runs.start("P1")
+        ends = time.monotonic() + 4 * PATIENCE_S
+        while made.runs.state("P1").state != "finished":
+            assert time.monotonic() < ends, made.runs.state("P1")
+            time.sleep(0.05)
     yield made
     made.close()
 

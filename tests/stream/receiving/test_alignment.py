@@ -35,6 +35,21 @@ def test_markers_are_the_wanted_ones_and_plates_the_frames_means(capture):
     assert (alignment.frames_in, alignment.lost, notes) == (80, 0, [])
 
 
+@pytest.mark.parametrize("counted_from", [0, 5_000_000])
+def test_plates_that_began_before_the_frames_are_read_at_the_frames_own_times(capture, counted_from):
+    """Also where the plates' count is their device's own, and the first frames' samples tell where it stands."""
+    late = replace(capture, markers=replace(capture.markers, start_time_s=0.05))
+    alignment, frames, _ = intake_of(late)
+    shifted = [
+        replace(one, plates=replace(one.plates, index=one.plates.index + counted_from)) for one in frames
+    ]
+    found = [one.plates for frame in shifted for one in alignment.accept(frame)[0]]
+    times = late.markers.times_s
+    within = times < capture.plates[0].times_s[-1] - 0.01
+    expected = plate_wrenches(capture.plates, times, 100.0)
+    np.testing.assert_allclose(np.array(found)[within], expected[within], rtol=1e-12, atol=1e-9)
+
+
 def test_readings_that_the_person_cannot_make_are_refused_and_told(capture):
     stream, frames = frames_of(capture)
     wrench = np.array(frames[5].plates.wrench)

@@ -222,3 +222,13 @@ def test_without_plates_there_is_nothing_to_read():
     buffer = PlateBuffer(StreamDescription("x", ("A",), RATE_HZ))
     assert buffer.mean(0).shape == (0, 6)
     assert not len(buffer.put(PlateSamples.none(0)).index)
+
+
+def test_a_sample_that_came_already_is_not_taken_again():
+    buffer = buffer_of(plates_of(100.0, 1))
+    wrench = np.arange(36.0).reshape(3, 2, 6)
+    buffer.put(PlateSamples(np.arange(3), wrench))
+    again = buffer.put(PlateSamples(np.arange(2, 5), wrench))
+    np.testing.assert_array_equal(again.index, [3, 4])
+    np.testing.assert_array_equal(again.wrench, wrench[1:])
+    assert (buffer.newest, buffer.missing) == (4, 0)

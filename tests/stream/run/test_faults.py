@@ -108,27 +108,26 @@ def test_a_count_that_leaps_ahead_is_not_believed(tmp_path, capture, subject):
     assert read_reconstruction(tmp_path).frames == 80
 
 
-@pytest.mark.parametrize("nonsense", [np.nan, 1e6, -np.inf])
+@pytest.mark.parametrize("nonsense", [[np.nan], [1e6, -np.inf]])
 def test_points_that_cannot_be_are_left_out(tmp_path, capture, subject, nonsense):
     stream, frames = frames_of(capture)
     hidden = np.array(capture.markers.positions_m)
     for number in range(30, 60):
         markers = np.array(frames[number].markers_m)
-        markers[number % 5 :: 5, number % 3] = nonsense
+        markers[number % 5 :: 5, number % 3] = nonsense[number % len(nonsense)]
         hidden[number, number % 5 :: 5] = np.nan
         frames[number] = replace(frames[number], markers_m=markers)
     outcome = follow(tmp_path, stream, frames, subject)
-    assert kinds(outcome) == (set() if np.isnan(nonsense) else {"nonsense"})
+    assert kinds(outcome) == (set() if np.isnan(nonsense).all() else {"nonsense"})
     shown = replace(capture, markers=replace(capture.markers, positions_m=hidden))
     assert_same(tmp_path, offline(shown, subject))
 
 
-@pytest.mark.parametrize("nonsense", [1e9, -1e9, np.nan])
-def test_plate_readings_that_cannot_be_are_refused(tmp_path, capture, subject, nonsense):
+def test_plate_readings_that_cannot_be_are_refused(tmp_path, capture, subject):
     stream, frames = frames_of(capture)
     for number in range(30, 60, 7):
         wrench = np.array(frames[number].plates.wrench)
-        wrench[number % 5, number % 2, number % 3] = nonsense
+        wrench[number % 5, number % 2, number % 3] = (1e9, -1e9, np.nan)[number % 3]
         frames[number] = replace(frames[number], plates=replace(frames[number].plates, wrench=wrench))
     outcome = follow(tmp_path, stream, frames, subject)
     assert kinds(outcome) == {"plates refused"}
@@ -270,7 +269,7 @@ def test_a_full_disk_ends_in_one_line_and_the_log_is_recovered(tmp_path, capture
     logged, unlogged = report["frames_written"], report["frames_not_written"]
     assert logged + unlogged == report["frames_in"] == 80
     assert f"{unlogged} frames were never logged and cannot be recovered" in done.stderr.splitlines()[-1]
-    assert f"{logged} frames are in its log, of which 'mbkf live --recover" in done.stderr.splitlines()[-1]
+    assert done.stderr.splitlines()[-1].endswith(f"makes results of the {logged} frames in its log")
     assert report["state"] == "results missing"
     assert report["frames_processed"] == 80
     assert "disk" in {event["kind"] for event in report["events"]}

@@ -119,5 +119,10 @@ def test_what_a_trial_does_to_both_cancels():
     apart = np.array([1.0, 1.0, 1.0])
     np.testing.assert_allclose([found.difference[0], found.half_width[0]], [apart.mean(), 0.0], atol=1e-12)
     assert paired_difference(right[:2], trials[:2], left[:2], trials[:2]) is None
+    far = np.array([3.0, 2.0, 8.0, 1.0, 20.0])
+    interval = stats.ttest_1samp([-0.5, 7.5, 2.0], 0.0).confidence_interval(0.95)
+    by_trial = paired_difference(right, trials, far, trials)
+    np.testing.assert_allclose(by_trial.difference - by_trial.half_width, interval.low)
+    np.testing.assert_allclose(by_trial.difference + by_trial.half_width, interval.high)
     with_gap = paired_difference(np.array([np.nan, 3.0, 11.0, 13.0, 22.0]), trials, left, trials)
     np.testing.assert_allclose(with_gap.difference, [(2.0 + 1.0 + 1.0) / 3])

@@ -58,6 +58,15 @@ def test_what_travels_looks_the_same():
     assert scene["start_s"] == r.times_s[0]
 
 
+def test_the_status_tells_times_and_the_durations_of_steps_in_milliseconds():
+    r = walk()
+    scene, rows, _ = recorded_scene(r)
+    status = part(scene, rows, "status")
+    shown = status[:, 1].astype(int)
+    np.testing.assert_allclose(status[:, 0], r.times_s[shown])
+    np.testing.assert_allclose(status[:, 2], 1e3 * r.step_seconds[shown])
+
+
 def test_it_opens_where_the_body_is_first_seen():
     r = walk()
     late = replace(r, tracked=np.arange(r.frames) >= 37)
