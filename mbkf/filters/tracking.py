@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import followed
-from mbkf.io.quantities import quantities
+from mbkf.io.quantities import LATER, quantities, unknown
 
 
 def track(
@@ -87,11 +88,14 @@ def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = N
         smoothed: Whether it was smoothed.
         covariance: (T, 2 nv, 2 nv) full covariances, where they were kept.
     """
-    values: dict[str, Any] = {
-        name: np.array(rows[one.key])
-        for name, one in quantities(Track).items()
-        if one.key in (rows.dtype.names or ())
+    logged = {name: one for name, one in quantities(Track).items() if one.key in (rows.dtype.names or ())}
+    values: dict[str, Any] = {name: np.array(rows[one.key]) for name, one in logged.items()}
+    sizes = {
+        axis: n for name, one in logged.items() for axis, n in zip(one.axes, values[name].shape, strict=True)
     }
+    for field in fields(Track):
+        if field.default is LATER:
+            values.setdefault(field.name, unknown(quantities(Track)[field.name], sizes))
     asked = rows["footing"][:, 0] != UNASKED
     values["foot_contact"] = np.where(asked[:, None], rows["footing"], 0) if asked.any() else None
     values.setdefault("uncorrected", np.zeros(len(rows), dtype=bool))  # older logs lack it

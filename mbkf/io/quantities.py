@@ -16,11 +16,14 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from mbkf.conventions import read_only
+from mbkf.conventions import Array, read_only
 from mbkf.errors import ShapeError
-from mbkf.io.dimensions import AXES, ONE, Unit, numbered
+from mbkf.io.dimensions import AXES, ONE, Unit, numbered, shape_of
 
 T = TypeVar("T")
+
+LATER: Any = object()
+"""Default of a quantity that older files and logs lack; there it is NaN."""
 
 _REQUIRED: Any = MISSING
 _ABSENT: Any = None
@@ -138,7 +141,7 @@ def quantity(
         axes: Names of its axes, e.g. "time foot xyz".
         unit: Unit of its numbers.
         meaning: In words.
-        default: None for what not every record has.
+        default: None for what not every record has, :data:`LATER` for what older files lack.
         dtype: Type of its numbers.
         codes: Meanings of numbers that are codes.
         key: Name of the dataset, where it is not the field's.
@@ -266,7 +269,7 @@ def attributes(record: type) -> tuple[Attribute, ...]:
 def check(record: object) -> None:
     """Makes every declared array of a new record a read-only one of its type, and lists tuples.
 
-    Offsets that are missing become 0, missing names of an axis numbers from 1.
+    Offsets that are missing become 0, other arrays that older files lack NaN, missing names of an axis numbers from 1.
 
     Raises:
         ShapeError: The sizes of two arrays, or of an array and the names of its axis, differ.
@@ -289,6 +292,8 @@ def check(record: object) -> None:
         value = getattr(record, name)
         if one.is_text or value is None:
             continue
+        if value is LATER:
+            value = unknown(one, sizes)
         array = read_only(value, dtype=one.dtype)
         wanted = [sizes.setdefault(axis, n) for axis, n in zip(one.axes, array.shape, strict=False)]
         if len(one.axes) != array.ndim or tuple(wanted) != array.shape:
@@ -297,6 +302,16 @@ def check(record: object) -> None:
     for name, one in declared.items():
         if one.is_text and one.axes and not getattr(record, name):
             object.__setattr__(record, name, numbered(sizes.get(one.axes[0], 0)))
+
+
+def unknown(one: Quantity, sizes: Mapping[str, int]) -> Array:
+    """A quantity of which nothing is known.
+
+    Args:
+        one: Its declaration.
+        sizes: Sizes of the axes that have other ones in every trial.
+    """
+    return np.full(shape_of(one.axes, sizes), np.nan)
 
 
 def _described(axes: Sequence[str], sizes: Mapping[str, int]) -> str:

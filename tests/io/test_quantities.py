@@ -8,7 +8,18 @@ import pytest
 from mbkf.conventions import Array
 from mbkf.errors import ShapeError
 from mbkf.io.dimensions import ANGLE, METRE, ONE
-from mbkf.io.quantities import attribute, attributes, check, flag, offset, quantities, quantity, spread, texts
+from mbkf.io.quantities import (
+    LATER,
+    attribute,
+    attributes,
+    check,
+    flag,
+    offset,
+    quantities,
+    quantity,
+    spread,
+    texts,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +33,7 @@ class Record:
     seen: Array = flag("time", "seen")
     place_m: Array | None = quantity("plate xyz", METRE, "place", None, key="place")
     state: Array | None = quantity("time", ONE, "state", None, codes={0: "off", 1: "on"})
+    later: Array = quantity("time dof xyz", ONE, "known later", LATER)
     title: str = attribute("title", "untitled")
 
     def __post_init__(self):
@@ -64,6 +76,12 @@ def test_arrays_are_read_only_and_of_their_type():
 def test_a_missing_offset_is_0_where_the_spread_is_known():
     r = made(angle_sd=np.where(np.eye(2, 3) > 0, np.nan, 1.0))
     np.testing.assert_array_equal(r.angle_sd_offset, np.where(np.isnan(r.angle_sd), np.nan, 0.0))
+
+
+def test_what_older_files_lack_is_unknown():
+    assert made().later.shape == (2, 3, 3) and np.isnan(made().later).all()
+    with pytest.raises(ShapeError, match=r"^later must have shape \(2, 3, 3\)"):
+        made(later=np.zeros((2, 3)))
 
 
 def test_missing_names_of_an_axis_are_numbers():
