@@ -73,12 +73,12 @@ class BodyFunctions(Protocol):
         wrench: In[Array, "6"],
         /,
     ) -> tuple[Made[Array, "residual: 6"], Made[Array, "by_state: 6 3*nv+12"]]:
-        """The root's six equations, see :meth:`mbkf.kernel.tree.CompiledTree.root`.
+        """The root's six equations ID(q, v, a) − Jᵀ w in its own axes; derivatives by q, v, a and two wrenches.
 
         Args:
             tree: The body.
             q, v, a: Motion.
-            wrench: Sum of all contacts.
+            wrench: w, sum of both wrenches.
         """
 
     def generalised_forces(
@@ -91,13 +91,13 @@ class BodyFunctions(Protocol):
         wrenches: In[Array, "12"],
         /,
     ) -> Made[Array, "tau: nv"]:
-        """Generalised forces under the feet's wrenches.
+        """Generalised forces ID(q, v, a) − Σ J_fᵀ w_f.
 
         Args:
             tree: The body.
             q, v, a: Motion.
             moves: True where a dof moves the right, the left foot.
-            wrenches: Of both feet.
+            wrenches: w_f of the right, the left foot.
         """
 
     def torque_derivatives(
@@ -120,7 +120,7 @@ class BodyFunctions(Protocol):
             tree: The body.
             q, v, a: Motion.
             moves: True where a dof moves the right, the left foot.
-            wrenches: Of both feet.
+            wrenches: w_f of the right, the left foot.
         """
 
     def height_jacobian(
@@ -171,9 +171,9 @@ class BodyFunctions(Protocol):
 
         Args:
             tree: The body.
-            residual: r, rad.
+            residual: r, rotation less its reading, rad.
             jacobian: J; between joints it is not read.
-            weights: Diagonal of W, 1/rad.
+            weights: Diagonal of W, 1/sd of each reading, 1/rad.
         """
 
     def limit_excess(

@@ -3,27 +3,16 @@
 #include <math.h>
 
 #include "declared.h"
+#include "rotation.h"
 
 static const double LEAST_COSINE = 1e-9;
-
-/* Rotation matrix of a unit quaternion (x, y, z, w). */
-static void rotation(const double *u, double R[3][3])
-{
-    const double x = u[0], y = u[1], z = u[2], w = u[3];
-    const double rows[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                               {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                               {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            R[i][j] = rows[i][j];
-}
 
 /* E (angles x axes i, j, k), as rate_map of mbkf/numerics/cardan.py for the principal angles of R. */
 static void rates(const double *u, const int *axis, const double *signs, double E[3][3])
 {
-    double R[3][3];
-    rotation(u, R);
-    const double r00 = R[axis[0]][axis[0]], r01 = R[axis[0]][axis[1]], r02 = R[axis[0]][axis[2]];
+    double R[9];
+    rotation_matrix(u, R);
+    const double *row = R + axis[0], r00 = row[3 * axis[0]], r01 = row[3 * axis[1]], r02 = row[3 * axis[2]];
     const double length = hypot(r00, r01);
     const double cos_c = length > 0.0 ? r00 / length : 1.0, sin_c = length > 0.0 ? -r01 / length : 0.0;
     const double size = hypot(length, r02), cosine = length / size;
@@ -38,11 +27,11 @@ static void rates(const double *u, const int *axis, const double *signs, double 
 /* E of the root's position: axes R. */
 static void root_rates(const double *u, const double *axes, double E[3][3])
 {
-    double R[3][3];
-    rotation(u, R);
+    double R[9];
+    rotation_matrix(u, R);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            E[i][j] = axes[3 * i] * R[0][j] + axes[3 * i + 1] * R[1][j] + axes[3 * i + 2] * R[2][j];
+            E[i][j] = axes[3 * i] * R[3 * j] + axes[3 * i + 1] * R[3 * j + 1] + axes[3 * i + 2] * R[3 * j + 2];
 }
 
 void mbkf_joint_variances(int nq, int n, int k, const double *q, const int *quaternions, const int *axes,

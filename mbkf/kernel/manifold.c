@@ -4,8 +4,8 @@
 #include "rotation.h"
 #include "tree.h"
 
-/* Left Jacobian V of a turn w times u: how far exp6(u, w) goes. */
-static void travelled(const double *w, const double *u, double *p)
+/* Translation of exp6(u, w): left Jacobian of w times u. */
+static void translation_of(const double *w, const double *u, double *p)
 {
     double c[3], across[3], twice[3];
     coefficients(w, c);
@@ -15,8 +15,8 @@ static void travelled(const double *w, const double *u, double *p)
         p[i] = u[i] + c[1] * across[i] + c[2] * twice[i];
 }
 
-/* v turned by a quaternion of unit length. */
-static void turned_by(const double *q, const double *v, double *found)
+/* v rotated by a unit quaternion. */
+static void rotated_by(const double *q, const double *v, double *found)
 {
     double across[3], twice[3];
     cross(q, v, across);
@@ -28,13 +28,13 @@ static void turned_by(const double *q, const double *v, double *found)
 static void step_free(const double *q, const double *step, double *stepped)
 {
     double own[3], moved[3], turn[4];
-    travelled(step + 3, step, own);
-    turned_by(q + 3, own, moved);
+    translation_of(step + 3, step, own);
+    rotated_by(q + 3, own, moved);
     for (int i = 0; i < 3; i++)
         stepped[i] = q[i] + moved[i];
     quaternion_of(step + 3, turn);
-    quaternion_product(q + 3, turn, stepped + 3);
-    if (turn[3] < 0.0) /* of two quaternions of a rotation the one near the old */
+    unit_product(q + 3, turn, stepped + 3);
+    if (turn[3] < 0.0) /* of both quaternions of a rotation the one near the old */
         for (int i = 3; i < 7; i++)
             stepped[i] = -stepped[i];
 }
@@ -49,7 +49,7 @@ void mbkf_integrate(Tree *tree, const double *q, const double *step, double *mov
             step_free(from, by, to);
         else if (joint->kind == SPHERICAL) {
             quaternion_of(by, turn);
-            quaternion_product(from, turn, to);
+            unit_product(from, turn, to);
         } else
             to[0] = from[0] + by[0];
     }
@@ -62,8 +62,8 @@ static void put(const double *block, double *matrix, long nv, long row, long col
         memcpy(matrix + (row + i) * nv + column, block + 3 * i, 3 * sizeof *block);
 }
 
-/* exp(-[w]x) and the right Jacobian of a turn w. */
-static void turn_derivatives(const double *w, double *by_q, double *by_step)
+/* exp(-[w]x) and the right Jacobian of a rotation vector w. */
+static void rotation_derivatives(const double *w, double *by_q, double *by_step)
 {
     double c[3];
     coefficients(w, c);
@@ -71,9 +71,9 @@ static void turn_derivatives(const double *w, double *by_q, double *by_step)
     rotation_series(w, -c[1], c[2], by_step);
 }
 
-/* How the travel of exp6(u, w) changes with w, in its own axes: T. Barfoot, State Estimation for Robotics (2017),
+/* Derivative of the translation of exp6(u, w) by w, in its own axes: T. Barfoot, State Estimation for Robotics (2017),
  * eq. 7.86, of (-u, -w). */
-static void travel_by_turn(const double *u, const double *w, double *found)
+static void translation_by_rotation(const double *u, const double *w, double *found)
 {
     const double t2 = dot3(w, w), t = sqrt(t2), s = sin(t), c = cos(t), back_u[3] = {-u[0], -u[1], -u[2]};
     const double back_w[3] = {-w[0], -w[1], -w[2]};
@@ -102,19 +102,19 @@ static void travel_by_turn(const double *u, const double *w, double *found)
 
 static void free_derivatives(const double *step, double *by_q, double *by_step, long nv, long first)
 {
-    double back[9], right[9], p[3], P[9], swing[9];
+    double back[9], right[9], p[3], P[9], block[9];
     const long turn = first + 3;
-    turn_derivatives(step + 3, back, right);
+    rotation_derivatives(step + 3, back, right);
     put(back, by_q, nv, first, first), put(back, by_q, nv, turn, turn);
     put(right, by_step, nv, first, first), put(right, by_step, nv, turn, turn);
-    travelled(step + 3, step, p);
+    translation_of(step + 3, step, p);
     for (int i = 0; i < 3; i++)
         p[i] = -p[i];
     cross_matrix(p, P);
-    matrix_product(back, P, swing);
-    put(swing, by_q, nv, first, turn);
-    travel_by_turn(step, step + 3, swing);
-    put(swing, by_step, nv, first, turn);
+    matrix_product(back, P, block);
+    put(block, by_q, nv, first, turn);
+    translation_by_rotation(step, step + 3, block);
+    put(block, by_step, nv, first, turn);
 }
 
 void mbkf_integration_derivatives(Tree *tree, const double *step, double *by_q, double *by_step)
@@ -128,7 +128,7 @@ void mbkf_integration_derivatives(Tree *tree, const double *step, double *by_q, 
         if (tree->joint[i].kind == FREE)
             free_derivatives(step + first, by_q, by_step, nv, first);
         else if (tree->joint[i].kind == SPHERICAL) {
-            turn_derivatives(step + first, back, right);
+            rotation_derivatives(step + first, back, right);
             put(back, by_q, nv, first, first);
             put(right, by_step, nv, first, first);
         } else
@@ -136,8 +136,8 @@ void mbkf_integration_derivatives(Tree *tree, const double *step, double *by_q, 
     }
 }
 
-/* turn = p* q of unit quaternions (x, y, z, w) */
-static void turn_between(const double *p, const double *q, double *turn)
+/* turn = conjugate of p times q. */
+static void rotation_between(const double *p, const double *q, double *turn)
 {
     turn[0] = p[3] * q[0] - p[0] * q[3] - p[1] * q[2] + p[2] * q[1];
     turn[1] = p[3] * q[1] - p[1] * q[3] - p[2] * q[0] + p[0] * q[2];
@@ -155,7 +155,7 @@ void mbkf_deviation(Tree *tree, const double *start, const double *q, double *an
         const long first = joint->at_v;
         double block[9], turn[4];
         if (joint->kind == SPHERICAL) {
-            turn_between(start + joint->at_q, q + joint->at_q, turn);
+            rotation_between(start + joint->at_q, q + joint->at_q, turn);
             rotation_vector_of(turn, angles + first, block);
             put(block, jacobian, nv, first, first);
         } else if (joint->kind == HINGE) {

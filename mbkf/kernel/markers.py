@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.kernel.loading import Library, library
+from mbkf.kernel.loading import library
 from mbkf.kernel.tree import CompiledTree
 
 
@@ -30,32 +30,17 @@ class Innovations(NamedTuple):
 class CompiledMarkers:
     """Markers fixed to the segments of a compiled body."""
 
-    def __init__(self, kernel: Library, tree: CompiledTree, joint_ids: Array, local_m: Array) -> None:
+    def __init__(self, tree: CompiledTree, joint_ids: Array, local_m: Array) -> None:
         """Keeps the markers' places.
 
         Args:
-            kernel: The compiled kernel.
             tree: The body.
             joint_ids: (M,) joints that carry them.
             local_m: (M, 3) places in the joints' frames.
         """
-        self._kernel, self._tree = kernel, tree.handle
+        self._kernel, self._tree = tree.kernel, tree.handle
         self._joint_ids = np.ascontiguousarray(joint_ids, dtype=np.int32)
         self._local = np.ascontiguousarray(local_m, dtype=float)
-
-    @classmethod
-    def where_built(
-        cls, tree: CompiledTree | None, joint_ids: Array, local_m: Array
-    ) -> CompiledMarkers | None:
-        """Markers, or None where the body is not compiled.
-
-        Args:
-            tree: The body.
-            joint_ids: (M,) joints that carry them.
-            local_m: (M, 3) places in the joints' frames.
-        """
-        kernel = library()
-        return None if tree is None or kernel is None else cls(kernel, tree, joint_ids, local_m)
 
     def places(self, q: Array) -> tuple[Array, Array]:
         """(M, 3) places in the world at q (nq,), and (6, nv) the body's spatial Jacobian there."""

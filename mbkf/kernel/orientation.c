@@ -1,8 +1,13 @@
-/* One step of the orientation filter (mbkf/imu/orientation_ekf.py, OrientationFilter.passage). */
+/* One step of the orientation filter (OrientationFilter.passage of mbkf/imu/orientation_ekf.py, whose names these are).
+ *
+ * The error (rotation in the world, gyroscope bias, velocity) passes by Phi = [1, -dt R, 0; 0, 1, 0; -dt [f]x, 0, 1] with
+ * the sensor's rotation R and the force f in the world; readings of single components update it one after the other. */
 #include "orientation.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "rotation.h"
 
 static const double NO_READING = 1e9, TURN = 6.283185307179586;
 
@@ -11,18 +16,7 @@ static int finite3(const double *v)
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-/* out = a b, quaternions x y z w. */
-static void product(const double *a, const double *b, double *out)
-{
-    const double x = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
-    const double y = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
-    const double z = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
-    const double w = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
-    out[0] = x, out[1] = y, out[2] = z, out[3] = w;
-}
-
-/* Quaternion of a rotation vector. */
-static void turn_of(const double *v, double *q)
+void orientation_turn(const double *v, double *q)
 {
     const double half = 0.5 * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     const double share = 0.5 * (half > 0.0 ? sin(half) / half : 1.0);
@@ -31,22 +25,8 @@ static void turn_of(const double *v, double *q)
     q[3] = cos(half);
 }
 
-static void matrix_of(const double *q, double *R)
-{
-    const double x = q[0], y = q[1], z = q[2], w = q[3];
-    R[0] = 1 - 2 * (y * y + z * z), R[1] = 2 * (x * y - z * w), R[2] = 2 * (x * z + y * w);
-    R[3] = 2 * (x * y + z * w), R[4] = 1 - 2 * (x * x + z * z), R[5] = 2 * (y * z - x * w);
-    R[6] = 2 * (x * z - y * w), R[7] = 2 * (y * z + x * w), R[8] = 1 - 2 * (x * x + y * y);
-}
-
-static void turned(const double *R, const double *v, double *out)
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
-}
-
-/* v x M's columns, for the rows of a matrix: out_i = sum_j skew(v)_ij M_j with rows M_j of n numbers. */
-static void crossed(const double *v, const double *M, int n, double scale, double *out)
+/* out += scale [v]x M for three rows of n numbers. */
+static void add_cross(const double *v, const double *M, int n, double scale, double *out)
 {
     for (int j = 0; j < n; j++) {
         const double a = M[j], b = M[n + j], c = M[2 * n + j];
@@ -59,10 +39,10 @@ static void crossed(const double *v, const double *M, int n, double scale, doubl
 void orientation_transition(const OrientationNoise *noise, const OrientationStep *step, const double *M, double *out)
 {
     memcpy(out, M, sizeof(double) * SQUARE);
-    crossed(step->force, M, ERRORS, -noise->dt_s, out + 6 * ERRORS);
+    add_cross(step->force, M, ERRORS, -noise->dt_s, out + 6 * ERRORS);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
-            const double share = -noise->dt_s * step->R[3 * i + k];
+            const double share = -noise->dt_s * step->R[3 * k + i];
             for (int j = 0; j < ERRORS; j++)
                 out[i * ERRORS + j] += share * M[(3 + k) * ERRORS + j];
         }
@@ -122,7 +102,7 @@ static void headed(const OrientationNoise *noise, double *P, double *dx, const d
     const double none[3] = {0.0, 0.0, 0.0};
     const int seen = finite3(mag), first = isnan(usual[0]) && seen;
     double field[3];
-    turned(R, seen ? mag : none, field);
+    rotated(R, seen ? mag : none, field);
     memcpy(learnt, usual, 3 * sizeof(double));
     if (!seen) {
         read_one(P, dx, 2, 0.0, NO_READING);
@@ -195,10 +175,10 @@ void orientation_step(const OrientationNoise *noise, const OrientationState *bef
         after->last[i] = now;
         velocity[i] = noise->dt_s * rate[i];
     }
-    turn_of(velocity, turn);
-    product(before->quaternion, turn, q);
-    matrix_of(q, step->R);
-    turned(step->R, forced ? force : up, step->force);
+    orientation_turn(velocity, turn);
+    quaternion_product(before->quaternion, turn, q);
+    rotation_matrix(q, step->R);
+    rotated(step->R, forced ? force : up, step->force);
     if (!forced)
         memcpy(step->force, up, sizeof up);
     for (int i = 0; i < 3; i++) {
@@ -220,8 +200,8 @@ void orientation_step(const OrientationNoise *noise, const OrientationState *bef
     memcpy(after->calm, before->calm, sizeof after->calm);
     if (noise->resting)
         rested(noise, after->P, step->dx, before, gyro, force, after->calm);
-    turn_of(step->dx, turn);
-    product(turn, q, after->quaternion);
+    orientation_turn(step->dx, turn);
+    quaternion_product(turn, q, after->quaternion);
     const double *p = after->quaternion;
     const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
     for (int i = 0; i < 4; i++)

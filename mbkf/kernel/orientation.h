@@ -12,8 +12,8 @@ typedef struct {
     double quaternion[4], bias[3], velocity[3], P[SQUARE], movement, field[3], calm[7], last[6];
 } OrientationState;
 
-/* A step's part that a smoother needs: covariance before readings, rotation of the sensor (3 x 3), by which its bias
- * becomes an error, force in the world, by which this becomes a velocity, and the correction. */
+/* A step's part that a smoother needs: covariance before readings, rotation of the sensor (3 x 3, column by column) and
+ * force in the world, which make the transition, and the correction. */
 typedef struct {
     double prior[SQUARE], R[9], force[3], dx[ERRORS];
 } OrientationStep;
@@ -22,7 +22,10 @@ typedef struct {
 void orientation_step(const OrientationNoise *noise, const OrientationState *before, const double *gyro,
                       const double *force, const double *mag, OrientationState *after, OrientationStep *step);
 
-/* The error's transition of a step from the left: out = Phi M. */
+/* Quaternion of a rotation vector. */
+void orientation_turn(const double *v, double *q);
+
+/* out = Phi M with the error's transition Phi of a step. */
 void orientation_transition(const OrientationNoise *noise, const OrientationStep *step, const double *M, double *out);
 
 #endif

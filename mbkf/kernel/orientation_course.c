@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "call.h"
+#include "rotation.h"
 
 /* A sample's place in the results. */
 typedef struct {
@@ -95,15 +96,9 @@ static int smoothed_back(const OrientationNoise *noise, const OrientationState *
 /* A row's quaternion rotated by a correction in the world, and its bias and variances. */
 static void correct_row(const double *delta, const double *P, Row row)
 {
-    const double half = 0.5 * sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]);
-    const double share = 0.5 * (half > 0.0 ? sin(half) / half : 1.0);
-    const double a[4] = {share * delta[0], share * delta[1], share * delta[2], cos(half)};
-    double b[4], *q = row.quaternion;
-    memcpy(b, q, sizeof b);
-    q[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
-    q[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
-    q[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
-    q[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
+    double turn[4], *q = row.quaternion;
+    orientation_turn(delta, turn);
+    quaternion_product(turn, q, q);
     const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     for (int i = 0; i < 4; i++)
         q[i] /= length;

@@ -1,4 +1,4 @@
-/* Rotation vectors, quaternions x y z w, and their derivatives. Matrices of three rows, row by row. */
+/* Rotation vectors w, quaternions x y z w, and their derivatives. Matrices are row by row unless it is said. */
 #ifndef MBKF_ROTATION_H
 #define MBKF_ROTATION_H
 
@@ -30,7 +30,7 @@ static inline void rotation_series(const double *w, double a, double b, double *
             sum[3 * i + j] = a * sum[3 * i + j] + b * w[i] * w[j] + (i == j ? 1.0 - b * square : 0.0);
 }
 
-/* Coefficients of the quaternion_of's rotation_series: sin t / t, (1 - cos t) / t^2, (t - sin t) / t^3. */
+/* sin t / t, (1 - cos t) / t^2 and (t - sin t) / t^3 of t = |w|. */
 static inline void coefficients(const double *w, double c[3])
 {
     const double square = dot3(w, w), t = sqrt(square), half = sin(0.5 * t);
@@ -45,18 +45,37 @@ static inline void coefficients(const double *w, double c[3])
     c[2] = (1.0 - c[0]) / square;
 }
 
-/* product = p q of unit quaternions, of unit length. */
+/* Rotation matrix of a unit quaternion, column by column. */
+static inline void rotation_matrix(const double *q, double *R)
+{
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    R[0] = 1.0 - 2.0 * (y * y + z * z), R[1] = 2.0 * (x * y + z * w), R[2] = 2.0 * (x * z - y * w);
+    R[3] = 2.0 * (x * y - z * w), R[4] = 1.0 - 2.0 * (x * x + z * z), R[5] = 2.0 * (y * z + x * w);
+    R[6] = 2.0 * (x * z + y * w), R[7] = 2.0 * (y * z - x * w), R[8] = 1.0 - 2.0 * (x * x + y * y);
+}
+
+/* product = p q of quaternions; product may be p or q. */
 static inline void quaternion_product(const double *p, const double *q, double *product)
 {
     const double x = p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1];
     const double y = p[3] * q[1] - p[0] * q[2] + p[1] * q[3] + p[2] * q[0];
     const double z = p[3] * q[2] + p[0] * q[1] - p[1] * q[0] + p[2] * q[3];
     const double w = p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2];
-    const double scale = 0.5 * (3.0 - (x * x + y * y + z * z + w * w)); /* 1 / length, as lengths are nearly 1 */
-    product[0] = x * scale, product[1] = y * scale, product[2] = z * scale, product[3] = w * scale;
+    product[0] = x, product[1] = y, product[2] = z, product[3] = w;
 }
 
-/* Quaternion of a rotation vector. */
+/* The same of unit quaternions, of unit length to rounding. */
+static inline void unit_product(const double *p, const double *q, double *product)
+{
+    double raw[4];
+    quaternion_product(p, q, raw);
+    const double square = raw[0] * raw[0] + raw[1] * raw[1] + raw[2] * raw[2] + raw[3] * raw[3];
+    const double scale = 0.5 * (3.0 - square); /* 1 / length, as lengths are nearly 1 */
+    for (int i = 0; i < 4; i++)
+        product[i] = raw[i] * scale;
+}
+
+/* Unit quaternion of a rotation vector. */
 static inline void quaternion_of(const double *w, double *q)
 {
     const double square = dot3(w, w), t = sqrt(square);
@@ -66,7 +85,7 @@ static inline void quaternion_of(const double *w, double *q)
     q[3] = cos(0.5 * t);
 }
 
-/* Rotation vector of a quaternion, of at most half a turn, and its derivative by a turn in its own axes. */
+/* Rotation vector of a quaternion, at most pi long, and its derivative by a rotation in its own axes. */
 static inline void rotation_vector_of(const double *q, double *w, double *jacobian)
 {
     const double n = sqrt(dot3(q, q)), sign = q[3] < 0.0 ? -1.0 : 1.0, t = 2.0 * atan2(n, sign * q[3]);

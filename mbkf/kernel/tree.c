@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "rotation.h"
+
 /* A joint from its row of each array; 0 where it exceeds the tree's sizes. */
 static int is_filled(Tree *tree, int i, int parent, int kind, int first_q, int first_v)
 {
@@ -70,15 +72,6 @@ void mbkf_free_tree(Tree *tree)
     free(tree);
 }
 
-/* Rotation of a unit quaternion x y z w. */
-static void rotation_of_quaternion(const double *q, double *R)
-{
-    const double x = q[0], y = q[1], z = q[2], w = q[3];
-    R[0] = 1.0 - 2.0 * (y * y + z * z), R[1] = 2.0 * (x * y + z * w), R[2] = 2.0 * (x * z - y * w);
-    R[3] = 2.0 * (x * y - z * w), R[4] = 1.0 - 2.0 * (x * x + z * z), R[5] = 2.0 * (y * z + x * w);
-    R[6] = 2.0 * (x * z + y * w), R[7] = 2.0 * (y * z - x * w), R[8] = 1.0 - 2.0 * (x * x + y * y);
-}
-
 /* Rotation by an angle about a unit axis. */
 static void rotation_of_hinge(const double *n, double angle, double *R)
 {
@@ -97,9 +90,9 @@ static void place(const Joint *joint, const double *q, const double *parent, dou
         rotated(joint->rotation, q, moved);
         for (int i = 0; i < 3; i++)
             at[i] += moved[i];
-        rotation_of_quaternion(q + 3, own);
+        rotation_matrix(q + 3, own);
     } else if (joint->kind == SPHERICAL)
-        rotation_of_quaternion(q, own);
+        rotation_matrix(q, own);
     else
         rotation_of_hinge(joint->axis, q[0], own);
     for (int i = 0; i < 9; i += 3)

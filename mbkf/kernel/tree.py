@@ -26,7 +26,8 @@ class CompiledTree:
     The model's numbers are read once: later changes of it do not count. Motions may be rows or columns of tables.
 
     Attributes:
-        handle: The kernel's tree.
+        kernel: The compiled kernel.
+        handle: Its tree.
         nv: Degrees of freedom.
     """
 
@@ -37,7 +38,7 @@ class CompiledTree:
             kernel: The compiled kernel.
             model: One whose joints :data:`KINDS` has.
         """
-        self._kernel, self.nv, self._neutral = kernel, model.nv, _read(pin.neutral(model))
+        self.kernel, self.nv, self._neutral = kernel, model.nv, _read(pin.neutral(model))
         joints, places, inertias = model.joints[1:], model.jointPlacements, model.inertias
         kinds = [KINDS[joint.shortname()] for joint in joints]
         axes = [
@@ -70,95 +71,57 @@ class CompiledTree:
 
     def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
         """(4 J, 3) frames and (6, nv) Jacobian as :meth:`mbkf.model.body.Body.frames_and_jacobian`."""
-        return self._kernel.frames_and_jacobian(self.handle, _read(q))
+        return self.kernel.frames_and_jacobian(self.handle, _read(q))
 
     def root(self, q: Array, v: Array, a: Array, wrench: Array) -> tuple[Array, Array]:
-        """The root's six equations ID(q, v, a) − Jᵀ w, in its own axes; force N, moment N m.
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity in the tangent space.
-            a: (nv,) acceleration.
-            wrench: (6,) of all contacts: force N and moment N m about the world's origin.
-
-        Returns:
-            (6,) residual, and (6, 3 nv + 12) its derivatives by q (in the tangent space), v, a and either of two
-            wrenches whose sum is w.
-        """
-        return self._kernel.root_dynamics(self.handle, _read(q), _read(v), _read(a), _read(wrench))
+        """(6,) residual and (6, 3 nv + 12) derivatives. Args: as :meth:`BodyFunctions.root_dynamics`."""
+        return self.kernel.root_dynamics(self.handle, _read(q), _read(v), _read(a), _read(wrench))
 
     def tau(self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array) -> Array:
-        """(nv,) generalised forces ID(q, v, a) − Σ J_fᵀ w_f.
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity in the tangent space.
-            a: (nv,) acceleration.
-            moves: (2, nv) True where a dof moves a foot.
-            wrenches: (12,) of the feet: force N and moment N m about the world's origin.
-        """
+        """(nv,) generalised forces. Args: as :meth:`BodyFunctions.generalised_forces`."""
         motion = _read(q), _read(v), _read(a)
-        return self._kernel.generalised_forces(self.handle, *motion, moves, _read(wrenches))
+        return self.kernel.generalised_forces(self.handle, *motion, moves, _read(wrenches))
 
     def torques(
         self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array
     ) -> tuple[Array, Array, Array]:
-        """:meth:`tau`, its derivatives (nv, 3 nv + 12) by q, v, a and the wrenches, and the Jacobian (6, nv).
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity in the tangent space.
-            a: (nv,) acceleration.
-            moves: (2, nv) True where a dof moves a foot.
-            wrenches: (12,) of the feet: force N and moment N m about the world's origin.
-        """
+        """:meth:`tau`, its derivatives, Jacobian (6, nv). Args: as :meth:`BodyFunctions.torque_derivatives`."""
         motion = _read(q), _read(v), _read(a)
-        return self._kernel.torque_derivatives(self.handle, *motion, moves, _read(wrenches))
+        return self.kernel.torque_derivatives(self.handle, *motion, moves, _read(wrenches))
 
     def height_jacobian(self, q: Array, joint_ids: Int32Array) -> Array:
         """(n, nv) derivative of the heights of the origins of n joints by the configuration q (nq,)."""
-        return self._kernel.height_jacobian(self.handle, _read(q), joint_ids)
+        return self.kernel.height_jacobian(self.handle, _read(q), joint_ids)
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
-        return self._kernel.integrate(self.handle, _read(q), _read(dv))
+        return self.kernel.integrate(self.handle, _read(q), _read(dv))
 
     def integration_derivatives(self, dv: Array) -> tuple[Array, Array]:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv; the configuration does not matter."""
-        return self._kernel.integration_derivatives(self.handle, _read(dv))
+        return self.kernel.integration_derivatives(self.handle, _read(dv))
 
     def deviation(self, q: Array, start: Array | None = None) -> tuple[Array, Array]:
-        """(nv,) rotation of every joint from another configuration, rad, and its Jacobian (nv, nv) by q.
-
-        Both are zero for free joints.
+        """(nv,) rotation of every joint, rad, and its Jacobian (nv, nv) by q; both are zero for free joints.
 
         Args:
             q: (nq,) configuration.
-            start: (nq,) the other; None for Pinocchio's neutral one.
+            start: (nq,) configuration from which joints rotate; None for Pinocchio's neutral one.
         """
-        return self._kernel.deviation(self.handle, self._neutral if start is None else _read(start), _read(q))
+        return self.kernel.deviation(self.handle, self._neutral if start is None else _read(start), _read(q))
 
     def posture_information(self, residual: Array, jacobian: Array, weights: Array) -> tuple[Array, Array]:
-        """Information matrix JᵀW²J (nv, nv) and vector −JᵀW²r (nv,) of readings of the joints' rotations.
-
-        Args:
-            residual: (nv,) r, rotation less the reading, rad.
-            jacobian: (nv, nv) J, that of :meth:`deviation`: entries between joints are not read.
-            weights: (nv,) W's diagonal, 1/sd of each reading, 1/rad.
-        """
-        return self._kernel.posture_information(self.handle, residual, _read(jacobian), _read(weights))
+        """Information (nv, nv) and (nv,) of rotations. Args: as :meth:`BodyFunctions.posture_information`."""
+        return self.kernel.posture_information(self.handle, residual, _read(jacobian), _read(weights))
 
     def limit_excess(self, deviation: Array, lower: Array, upper: Array) -> Array | None:
         """(nv,) distance of each rotation from the range of its limits, rad; None where all lie within.
 
         A spherical joint that is within them the other way round, beyond half a turn, is within them.
 
-        Args:
-            deviation: (nv,) rotations, rad.
-            lower: (nv,) least, rad.
-            upper: (nv,) greatest, rad.
+        Args: as :meth:`BodyFunctions.limit_excess`.
         """
-        count, excess = self._kernel.limit_excess(self.handle, _read(deviation), lower, upper)
+        count, excess = self.kernel.limit_excess(self.handle, _read(deviation), lower, upper)
         return excess if count else None
 
 

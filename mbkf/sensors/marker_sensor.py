@@ -97,7 +97,8 @@ class MarkerSensor:
         places = np.zeros((len(self.segments), len(model.supports), 4))
         places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
         self._places = places.reshape(len(self.segments), 4 * len(model.supports))
-        self.compiled = CompiledMarkers.where_built(model.tree, self.joint_ids, self.local_m)
+        tree = model.tree
+        self.compiled = None if tree is None else CompiledMarkers(tree, self.joint_ids, self.local_m)
 
     def positions(self, q: Array) -> Array:
         """(M, 3) world positions at the configuration q (nq,)."""

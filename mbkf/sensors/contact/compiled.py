@@ -6,6 +6,8 @@ where no plate reads, is left to :mod:`.stances`.
 
 from __future__ import annotations
 
+import numpy as np
+
 from mbkf.conventions import Array
 from mbkf.kernel.contact import (
     BELOW,
@@ -14,8 +16,6 @@ from mbkf.kernel.contact import (
     ON_ONE_PLATE,
     ON_OPEN_FLOOR,
     STRAY,
-    CompiledFeet,
-    FeetConstants,
     Stand,
 )
 from mbkf.kernel.tree import CompiledTree
@@ -44,19 +44,30 @@ class CompiledContact:
             dt_s: Time between frames.
         """
         segments, points_m = sole_locals(model)
-        feet = FeetConstants(
-            point_joints=[model.joint(segment).joint_id for segment in segments],
-            points_m=points_m,
-            foot_joints=[model.joint(segment).joint_id for segment in model.roles.feet],
-            root_joint=model.root.joint_id,
-            window=frames_of(BELT_WINDOW_S, dt_s),
-            still=frames_of(STILL_FLOOR_S, dt_s),
-            fall=fall_frames(dt_s),
-            dt_s=dt_s,
+        known, least_n, surfaces_m = plates[:, :3].T.copy()
+        self._window = frames_of(BELT_WINDOW_S, dt_s)
+        self._plates, self._surfaces_m = len(plates), surfaces_m.tolist()
+        self._decide, self._feet = (
+            tree.kernel.decide_contact,
+            tree.kernel.make_feet(
+                tree.handle,
+                np.array([model.joint(segment).joint_id for segment in segments], dtype=np.int32),
+                np.array([model.joint(segment).joint_id for segment in model.roles.feet], dtype=np.int32),
+                model.root.joint_id,
+                np.ascontiguousarray(points_m),
+                self._window,
+                frames_of(STILL_FLOOR_S, dt_s),
+                fall_frames(dt_s),
+                min(self._surfaces_m, default=np.nan),
+                dt_s,
+                LIMITS,
+                known != 0.0,
+                least_n,
+                surfaces_m,
+                plates[:, 3:7].copy(),
+                plates[:, 7:].copy().reshape(-1, 4, 4),
+            ),
         )
-        self._feet = CompiledFeet(tree, feet, LIMITS, plates)
-        self._surfaces_m = plates[:, 2].tolist()
-        self._plates, self._window = len(plates), feet.window
 
     @classmethod
     def where_built(cls, model: Body, plates: Array, dt_s: float) -> CompiledContact | None:
@@ -86,7 +97,10 @@ class CompiledContact:
             supported: True where another part than the feet carries load.
         """
         before = memory if isinstance(memory, PackedMemory) else memory.packed(self._window)
-        stand = self._feet.stand(motion, plate_wrench, supported, before.numbers)
+        q, v, a = (np.ascontiguousarray(one, float) for one in motion)
+        wrench = np.ascontiguousarray(plate_wrench, float)
+        stand = Stand(*self._decide(self._feet, q, v, a, wrench, supported, before.numbers))
+        stand.after.setflags(write=False)
         flags, kept = stand.flags, PackedMemory(stand.after, self._plates, self._window)
         decision = (_CONTACTS[flags & KINDS], stand.wrench, stand.middles_m, flags & STRAY > 0, kept)
         if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR | MOVING_OR_NEAR | BELOW):

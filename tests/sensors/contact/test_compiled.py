@@ -56,6 +56,7 @@ def assert_decided_alike(model, plates, dt_s, frames):
         found = compiled.decide(ours, q, v, a, loads, supported)
         expected = python.decide(theirs, q, v, a, loads, supported)
         assert_same(found, expected)
+        assert not found.memory.numbers.flags.writeable
         assert_same(found.memory.numbers, expected.memory.packed(found.memory.window).numbers)
         ours, theirs = found.memory, expected.memory
         met.append(expected)
