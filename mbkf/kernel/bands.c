@@ -1,5 +1,5 @@
-/* Bands of rows: most rows read wrenches alone, which saves most of their products. Rows whose columns differ by less
- * than a tenth of the state are taken together. */
+/* Most rows read wrenches alone: products with their bands take a fraction of the time. Rows whose bands differ by less
+ * than a tenth of the state form one band. */
 #include "bands.h"
 
 static void columns_of(const double *row, int N, int *first, int *last)

@@ -1,4 +1,4 @@
-/* Rows of readings (m x N), of which most are zero but in a few neighbouring columns; see bands.c. */
+/* Rows of readings (m x N), most of which are zero outside of a few neighbouring columns; see bands.c. */
 #ifndef MBKF_BANDS_H
 #define MBKF_BANDS_H
 
@@ -7,7 +7,7 @@ typedef struct {
     int start, end, first, last;
 } Band;
 
-/* The next band from a row on. */
+/* The band that begins with a row. */
 Band band_from(int start, int m, int N, const double *rows);
 
 /* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column. */

@@ -1,5 +1,4 @@
-/* BLAS and LAPACK as SciPy carries them: one library for NumPy's path and ours, which chooses its instructions
- * at run time. Matrices of these routines are column by column. */
+/* BLAS and LAPACK of SciPy, which choose their instructions at run time. Matrices are column by column. */
 #ifndef MBKF_BLAS_H
 #define MBKF_BLAS_H
 

@@ -1,5 +1,5 @@
-/* ContactDetector.decide of mbkf/sensors/contact/causal.py and UnmeasuredFeet.decide of unmeasured.py, whose rules and
- * names these are. */
+/* Contact of both feet in one frame, by the rules of mbkf/sensors/contact/rules.py in the order of causal.py
+ * (ContactDetector.decide) and unmeasured.py (UnmeasuredFeet.decide). Functions name those that they repeat. */
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +31,7 @@ typedef struct {
 
 static const double *plate_before(const Scene *scene, int k) { return scene->before + HEAD + PER_PLATE * k; }
 
-/* ContactDetector._both_on */
+/* rules.stand_together, of feet over the same plate */
 static int both_on(Scene *scene, const Plate *plate, double slack)
 {
     const ContactLimits *limits = &scene->feet->limits;
@@ -50,7 +50,7 @@ static int both_on(Scene *scene, const Plate *plate, double slack)
     return hypot(hypot(velocity[0][0], velocity[0][1]), velocity[0][2]) < slack * limits->parted_m_s;
 }
 
-/* ContactDetector._owner and soles.nearer_foot */
+/* ContactDetector._owner and rules.nearer_foot */
 static int owner_of(Scene *scene, const Plate *plate, const double *pressed, int before)
 {
     const ContactLimits *limits = &scene->feet->limits;
@@ -66,7 +66,7 @@ static int owner_of(Scene *scene, const Plate *plate, const double *pressed, int
 }
 
 /* Assigns plates to feet and sums their readings, those below a load apart; returns flags of the decision. */
-static int plates_assigned(Scene *scene, const Seen *seen, double *after, double *foot_wrench, double *below)
+static int assign_plates(Scene *scene, const Seen *seen, double *after, double *foot_wrench, double *below)
 {
     int flags = 0;
     memset(foot_wrench, 0, 12 * sizeof *foot_wrench);
@@ -121,8 +121,8 @@ static double sole_height(const Scene *scene)
     return known;
 }
 
-/* UnmeasuredFeet._movement, and the floor that it shows */
-static void floor_found(Scene *scene, double *after)
+/* UnmeasuredFeet._movement; the height and velocity of the floor follow from it */
+static void find_floor(Scene *scene, double *after)
 {
     double (*soles)[SOLE][3] = scene->motion.sole, low[3] = {NAN, NAN, NAN};
     const double height = after[SOLE_HEIGHT] = sole_height(scene);
@@ -133,10 +133,11 @@ static void floor_found(Scene *scene, double *after)
     const int foot = point[LEFT][2] < point[RIGHT][2] ? LEFT : RIGHT;
     if (point[foot][2] < scene->floor_m + scene->feet->limits.stand_height_m)
         velocity_of(&scene->motion, foot, point[foot], low);
-    movement_followed(scene->feet, scene->before, low, scene->motion.pelvis, after);
-    movement_floor(scene->feet, after, scene->floor_m_s);
+    movement_add_frame(scene->feet, scene->before, low, scene->motion.pelvis, after);
+    movement_velocity(scene->feet, after, scene->floor_m_s);
 }
 
+/* True if a plate reads less than a load. */
 static int reads_nothing(const Scene *scene, const Seen *seen, int k)
 {
     return seen->wrench[6 * k + 2] < scene->feet->plate[k].least_n;
@@ -162,7 +163,7 @@ static int watched(Scene *scene, const Seen *seen, int foot)
     return 0;
 }
 
-/* _touches */
+/* unmeasured._touches */
 static int touches(Scene *scene, int foot, double floor_m, double height, double speed)
 {
     for (int k = 0; k < SOLE_ENDS; k++) {
@@ -173,7 +174,7 @@ static int touches(Scene *scene, int foot, double floor_m, double height, double
     return 0;
 }
 
-/* UnmeasuredFeet._carried_on and _touching */
+/* UnmeasuredFeet._touched_s and _touching */
 static double touched_for(Scene *scene, const Seen *seen, int foot)
 {
     const ContactLimits *limits = &scene->feet->limits;
@@ -206,7 +207,7 @@ static int carries_alone(Scene *scene, const Seen *seen, int foot)
     return 1;
 }
 
-/* _falls */
+/* unmeasured._acceleration and rules.falls */
 static int falls(const Scene *scene, const Seen *seen)
 {
     const double x = seen->q[3], y = seen->q[4], z = seen->q[5], w = seen->q[6];
@@ -218,7 +219,7 @@ static int falls(const Scene *scene, const Seen *seen)
     return dot3(up, rise) < scene->feet->limits.fall_m_s2;
 }
 
-/* _near */
+/* unmeasured._near and rules.Touch.nearness */
 static double near_of(Scene *scene, int foot, double height, double speed)
 {
     double least = 0.0;
@@ -233,8 +234,8 @@ static double near_of(Scene *scene, int foot, double height, double speed)
     return exp(-0.5 * least);
 }
 
-/* Feet that carry the body where both seemed to be in the air and nothing else carries it: UnmeasuredFeet.decide */
-static void something_carries(Scene *scene, const Seen *seen, const double *after)
+/* Feet that carry the body if both seem to be in the air and nothing else carries it: UnmeasuredFeet.decide */
+static void find_carrying(Scene *scene, const Seen *seen, const double *after)
 {
     int *carries = scene->carries;
     if (scene->unloaded + scene->silent == scene->feet->plates)
@@ -250,7 +251,7 @@ static void something_carries(Scene *scene, const Seen *seen, const double *afte
 }
 
 /* UnmeasuredFeet.decide, of feet that no plate reads */
-static void elsewhere_decided(Scene *scene, const Seen *seen, double *after, double *near)
+static void decide_elsewhere(Scene *scene, const Seen *seen, double *after, double *near)
 {
     const ContactLimits *limits = &scene->feet->limits;
     int *carries = scene->carries;
@@ -261,7 +262,7 @@ static void elsewhere_decided(Scene *scene, const Seen *seen, double *after, dou
     }
     const int in_air = scene->kind[RIGHT] == AIR && scene->kind[LEFT] == AIR && !seen->supported;
     if (in_air && !carries[RIGHT] && !carries[LEFT])
-        something_carries(scene, seen, after);
+        find_carrying(scene, seen, after);
     const int flies = in_air && !carries[RIGHT] && !carries[LEFT], alone = flies && !scene->unloaded;
     after[AIRBORNE] = flies ? after[AIRBORNE] + 1.0 : 0.0;
     for (int f = 0; f < FEET; f++)
@@ -292,11 +293,11 @@ int mbkf_decide_contact(Feet *feet, const double *q, const double *v, const doub
     near[RIGHT] = near[LEFT] = 0.0;
     memset(after, 0, sizeof *after * feet->memory);
     feet_at(feet, q, v, &scene.motion);
-    int flags = plates_assigned(&scene, &seen, after, foot_wrench, below);
-    floor_found(&scene, after);
+    int flags = assign_plates(&scene, &seen, after, foot_wrench, below);
+    find_floor(&scene, after);
     after[TOUCHING] = after[TOUCHING + 1] = 0.0;
     if (scene.kind[RIGHT] == AIR || scene.kind[LEFT] == AIR)
-        elsewhere_decided(&scene, &seen, after, near);
+        decide_elsewhere(&scene, &seen, after, near);
     else
         after[AIRBORNE] = 0.0;
     for (int f = 0; f < FEET; f++) {

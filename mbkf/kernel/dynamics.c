@@ -77,7 +77,7 @@ static void set_force(Composite *one)
 }
 
 /* From the root to the leaves: motion, inertia and force of every segment by itself. */
-static void segments(Tree *tree, const double *v, const double *a)
+static void set_segments(Tree *tree, const double *v, const double *a)
 {
     Composite *world = &tree->composite[0];
     memset(tree->composite, 0, tree->joints * sizeof *tree->composite);
@@ -106,7 +106,7 @@ static void add_gyration(const Composite *one, const double *s, double *force)
     }
 }
 
-/* Of one dof, whose axis moves with joint one behind the joint before. */
+/* Derivatives by a dof whose axis moves with joint one, behind the joint before. */
 static void differentiate(const Composite *one, const Composite *before, const double *axis, Derivative *by)
 {
     double own[6], pulled[6], dragged[6];
@@ -126,25 +126,10 @@ static void differentiate(const Composite *one, const Composite *before, const d
     cross_force(axis, one->force, by->turned_force);
 }
 
-static void gather(Composite *to, const Composite *from)
-{
-    to->inertia.mass += from->inertia.mass;
-    for (int i = 0; i < 3; i++) {
-        to->inertia.first[i] += from->inertia.first[i];
-        to->impulse[i] += from->impulse[i];
-    }
-    for (int i = 0; i < 6; i++) {
-        to->inertia.second[i] += from->inertia.second[i];
-        to->force[i] += from->force[i];
-    }
-    for (int i = 0; i < 9; i++)
-        to->gyration[i] += from->gyration[i];
-}
-
 void tree_forces(Tree *tree, const double *q, const double *v, const double *a)
 {
     tree_place(tree, q);
-    segments(tree, v, a);
+    set_segments(tree, v, a);
     for (int i = tree->joints - 1; i > 0; i--) {
         const int parent = tree->joint[i].parent;
         for (int k = 0; parent && k < 6; k++)
@@ -155,13 +140,13 @@ void tree_forces(Tree *tree, const double *q, const double *v, const double *a)
 void tree_force_derivatives(Tree *tree, const double *q, const double *v, const double *a)
 {
     tree_place(tree, q);
-    segments(tree, v, a);
+    set_segments(tree, v, a);
     for (int i = tree->joints - 1; i > 0; i--) {
         const Joint *joint = &tree->joint[i];
         Composite *before = &tree->composite[joint->parent];
         for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++)
             differentiate(&tree->composite[i], before, tree->axes[k], &tree->by[k]);
         if (joint->parent)
-            gather(before, &tree->composite[i]);
+            accumulate(before, &tree->composite[i]);
     }
 }

@@ -1,5 +1,5 @@
-/* Cholesky factors and division by them, block of columns by block: what stands left of a block is taken off by one
- * product, which LAPACK's routines, made for larger matrices, are slower at. They do it where products are BLAS's. */
+/* Cholesky factors and division by them, block of columns by block: one product subtracts all columns left of a block.
+ * At a body's size that is faster than LAPACK's routines, which are used where BLAS multiplies matrices. */
 #include "factor.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 
 enum { WIDTH = 8 };
 
-/* The lower factor of a block of columns (rows x width), whose left neighbours are taken off. */
+/* Lower factor of a block of columns (rows x width), from which its left neighbours are subtracted. */
 VECTORISED static int panel(int rows, int width, double *A, int lda)
 {
     for (int j = 0; j < width; j++) {

@@ -3,7 +3,7 @@
 #define MBKF_FACTOR_H
 
 /* Lower factor L of A = L L' (n x n) in place of A, whose lower triangle alone is read; zero right of the diagonal.
- * Returns 0, or 1 where A is not positive definite. */
+ * Returns 1 if A is not positive definite, else 0. */
 int factored(int n, double *A);
 
 /* X L^-T (rows x n) in place of X. */

@@ -1,5 +1,5 @@
-/* mbkf/sensors/contact/floor.py and mbkf/numerics/running_median.py on a record of numbers. After the plates it holds,
- * each of the window's length: for x and y the latest velocities and those that are numbers in ascending order; then
+/* mbkf/sensors/contact/floor.py and mbkf/numerics/running_median.py on a memory of numbers. Behind the plates it holds,
+ * each of the window's length: for x and y the latest velocities, and those that are not NaN in ascending order; then
  * the pelvis, x, y and z of each frame. */
 #include "floor_motion.h"
 
@@ -22,8 +22,8 @@ static int rank_of(const double *ranked, int count, double value)
     return low;
 }
 
-/* Numbers in order without one of them and with another, either NaN for none; how many there are then. */
-static int ranked_anew(const double *before, int count, double old, double value, double *ranked)
+/* Copies ordered numbers without an old one and with a new one, each of which may be NaN; returns the new count. */
+static int update_ranks(const double *before, int count, double old, double value, double *ranked)
 {
     memcpy(ranked, before, sizeof *ranked * count);
     if (!isnan(old)) {
@@ -42,7 +42,7 @@ static int ranked_anew(const double *before, int count, double old, double value
 }
 
 /* Movement.with_frame */
-void movement_followed(const Feet *feet, const double *before, const double *low, const double *pelvis, double *after)
+void movement_add_frame(const Feet *feet, const double *before, const double *low, const double *pelvis, double *after)
 {
     const int window = feet->window, at = window_at(feet), frames = (int)before[FRAMES], gone = frames == window;
     const int kept = frames - gone;
@@ -50,7 +50,7 @@ void movement_followed(const Feet *feet, const double *before, const double *low
         const int latest = at + 2 * i * window, ranked = latest + window;
         memcpy(after + latest, before + latest + gone, sizeof *after * kept);
         after[latest + kept] = low[i];
-        after[RANKED + i] = ranked_anew(before + ranked, (int)before[RANKED + i], gone ? before[latest] : NAN, low[i],
+        after[RANKED + i] = update_ranks(before + ranked, (int)before[RANKED + i], gone ? before[latest] : NAN, low[i],
                                         after + ranked);
     }
     const int path = at + 4 * window;
@@ -73,7 +73,7 @@ static double median(const double *ranked, int count, int zeros)
 }
 
 /* Movement.floor_m_s */
-void movement_floor(const Feet *feet, const double *record, double *floor_m_s)
+void movement_velocity(const Feet *feet, const double *record, double *floor_m_s)
 {
     const int window = feet->window, at = window_at(feet), frames = (int)record[FRAMES];
     double found[2], past[2];
@@ -90,7 +90,7 @@ void movement_floor(const Feet *feet, const double *record, double *floor_m_s)
         memcpy(floor_m_s, found, sizeof found);
 }
 
-/* Movement.held_up: curvature is the product of heights with the parabola that is at right angles to straight lines. */
+/* Movement.held_up: the curvature of heights is their product with a parabola orthogonal to straight lines. */
 int movement_held_up(const Feet *feet, const double *record)
 {
     const int n = feet->fall, frames = (int)record[FRAMES];

@@ -10,11 +10,11 @@ enum { FOOT_OF_PLATE = 0, PRESSED = 1, PRESSED_BY = 3, PER_PLATE = 4, NEVER = -2
 
 static inline int memory_length(const Feet *feet) { return HEAD + PER_PLATE * feet->plates + 7 * feet->window; }
 
-/* One frame more: horizontal velocity of the lowest sole point, NaN where it is not near the floor. */
-void movement_followed(const Feet *feet, const double *before, const double *low, const double *pelvis, double *after);
+/* Adds a frame: horizontal velocity of the lowest sole point, NaN where it is not near the floor, and the pelvis. */
+void movement_add_frame(const Feet *feet, const double *before, const double *low, const double *pelvis, double *after);
 
 /* Horizontal velocity of the floor; zero unless a belt is evident. */
-void movement_floor(const Feet *feet, const double *record, double *floor_m_s);
+void movement_velocity(const Feet *feet, const double *record, double *floor_m_s);
 
 /* True if a body whose feet were both decided to be in the air did not fall. */
 int movement_held_up(const Feet *feet, const double *record);

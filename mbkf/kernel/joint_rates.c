@@ -1,5 +1,5 @@
-/* Variances of the angles and rates of joints with three angles: diagonals of E C E' with the rates' matrix E of
- * mbkf/numerics/cardan.py, from rotation matrices alone, without an angle. */
+/* Variances of the angles and rates of joints with three angles: diagonals of E C E', where E maps angular velocity to
+ * rates of angles (rate_map of mbkf/numerics/cardan.py). E follows from the rotation matrix, without an angle. */
 #include <math.h>
 
 #include "declared.h"
@@ -7,7 +7,7 @@
 
 static const double LEAST_COSINE = 1e-9;
 
-/* E (angles x axes i, j, k), as rate_map of mbkf/numerics/cardan.py for the principal angles of R. */
+/* E (angles x axes) of a joint whose angles turn about the axes i, j and k in this order. */
 static void rates(const double *u, const int *axis, const double *signs, double E[3][3])
 {
     double R[9];
@@ -24,7 +24,7 @@ static void rates(const double *u, const int *axis, const double *signs, double 
             E[angle][axis[i]] = signs[1 + angle] * rows[angle][i];
 }
 
-/* E of the root's position: axes R. */
+/* E of the root's position, in axes of its own: axes R. */
 static void root_rates(const double *u, const double *axes, double E[3][3])
 {
     double R[9];

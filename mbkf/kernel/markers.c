@@ -58,18 +58,7 @@ static void accumulate_reading(Composite *on, double weight, const double *p, co
     }
 }
 
-static void accumulate(Composite *to, const Composite *from)
-{
-    to->inertia.mass += from->inertia.mass;
-    for (int i = 0; i < 3; i++)
-        to->inertia.first[i] += from->inertia.first[i];
-    for (int i = 0; i < 6; i++) {
-        to->inertia.second[i] += from->inertia.second[i];
-        to->force[i] += from->force[i];
-    }
-}
-
-/* Dofs of a joint against those of its own and of the joints that bear it. */
+/* Entries of a joint's dofs with those of its own and of the joints that carry it. */
 static void project(const Tree *tree, int i, const double (*motion)[6], double *matrix, double *vector)
 {
     const Joint *joint = &tree->joint[i];
@@ -96,7 +85,7 @@ double mbkf_marker_information(int M, Tree *tree, const int *joint_ids, const do
     memset(matrix, 0, sizeof *matrix * tree->nv * tree->nv);
     memset(vector, 0, sizeof *vector * tree->nv);
     memset(tree->composite, 0, sizeof *tree->composite * tree->joints);
-    /* Moments about the markers' middle: far from the world's origin they would lose digits. */
+    /* Moments are about the markers' middle: about the world's origin, far away, they would lose digits. */
     for (int m = 0; m < M; m++)
         if (trusted[m]) {
             used++;

@@ -1,5 +1,5 @@
-/* Products of the size of a body's state: for 512-bit vectors in tiles that stay in registers, else by BLAS. At 50 to
- * 200 rows BLAS spends as much on packing its operands as on their product, and not every BLAS knows every processor. */
+/* Products of the size of a body's state: with 512-bit vectors in tiles that stay in registers, else by BLAS. At 50 to
+ * 200 rows BLAS spends as much time on packing its operands as on their product. */
 #include "product.h"
 
 #include <string.h>
@@ -33,8 +33,8 @@ static void by_blas(int part, int rows, int columns, int inner, double factor, c
 
 enum { LANES = 8, VECTORS = 3, HEIGHT = LANES * VECTORS, BREADTH = 8 };
 
-/* A tile of up to height vectors x breadth; both are constants where this is inlined, and that is within a loop:
- * else compilers do not unroll its own ones in time to keep all sums in registers. */
+/* A tile of up to height vectors x breadth. Both are constants where this is inlined: else compilers would not unroll the
+ * loops and keep all sums in registers. */
 WIDE static inline __attribute__((always_inline)) void tile(int height, int breadth, const __mmask8 *mask, int inner,
                                                             double factor, const double *A, int lda,
                                                             const double *B, int ldb, double keep, const double *D,
@@ -104,7 +104,7 @@ static int possible(void) { return __builtin_cpu_supports("avx512f") && __builti
 static int possible(void) { return 0; }
 #endif
 
-static int own = -1; /* not asked yet */
+static int own = -1; /* unknown yet */
 
 int product_is_own(void)
 {

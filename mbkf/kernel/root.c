@@ -1,4 +1,4 @@
-/* The root's six equations, in its own axes. */
+/* The root's six equations ID(q, v, a) - J'w in its own axes, and their derivatives by q, v, a and the wrenches. */
 #include "dynamics.h"
 
 /* A force and its moment about the root joint in the root's axes, down a column. */
@@ -14,7 +14,7 @@ static void in_root_axes(const double *frame, const double *force, double *colum
         column[i * stride] = parts[i];
 }
 
-/* A wrench that stands still in the world turns in the root's axes when these turn. */
+/* A wrench that is constant in the world turns in the root's axes when these turn. */
 static void add_turned(const Tree *tree, const double *wrench, double *by_q, long stride)
 {
     for (int i = 0; i < 6; i++) {
@@ -34,7 +34,7 @@ void mbkf_root_dynamics(Tree *tree, const double *q, const double *v, const doub
     tree_force_derivatives(tree, q, v, a);
     for (long k = 0; k < nv; k++) {
         Derivative *by = &tree->by[k];
-        if (k >= 6) /* forces turn with these dofs and the root's axes do not */
+        if (k >= 6) /* forces turn with these dofs; the root's axes do not */
             for (int i = 0; i < 6; i++)
                 by->force_by_q[i] += by->turned_force[i];
         in_root_axes(frame, by->force_by_q, by_state + k, stride);

@@ -110,7 +110,7 @@ void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const 
     double *R = Z + (long)N * N, *S = R + (long)N * m;
     transposed(N, m, rows, N, R);
     half_before(N, smoothed, PL, n, information, m, rows, R, S, Z);
-    /* Half of the sum, whose transpose is added at the end. */
+    /* Half of the sum; its transpose is added at the end. */
     product(WHOLE, N, n, n, -1.0, Z, N, information, n, 0.5, L, before, N);
     for (long i = (long)n * N; i < (long)N * N; i++)
         before[i] = 0.5 * L[i];

@@ -55,12 +55,12 @@ VECTORISED static double dot(int n, const double *x, const double *y)
     return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
-/* total (n) += factor x y, number by number, summed over columns one after the other */
-VECTORISED static void gather(int n, int columns, double factor, const double *x, const double *y, double *total)
+/* total (n) += x y, number by number, summed over columns one after the other */
+VECTORISED static void add_products(int n, int columns, const double *x, const double *y, double *total)
 {
     for (int j = 0; j < columns; j++, x += n, y += n)
         for (int i = 0; i < n; i++)
-            total[i] += factor * x[i] * y[i];
+            total[i] += x[i] * y[i];
 }
 
 /* diagonal (N) of the errors' covariance, and root (n_seen x nv): W, column by column, 0 in columns that are not seen.
@@ -87,7 +87,7 @@ static int error_diagonal(const Errors *e, double *root, double *diagonal, doubl
         diagonal[nv + dof] += square * skin;
         diagonal[2 * nv + dof] += square * square * skin;
     }
-    gather(N, e->n_rows, 1.0, e->rows, e->rows, diagonal);
+    add_products(N, e->n_rows, e->rows, e->rows, diagonal);
     return 0;
 }
 
@@ -100,7 +100,7 @@ static void symmetric_form(int m, int n, const double *T, int N, const double *P
         if (b)
             product(WHOLE, m, width, b, 2.0, T, m, P + b, N, 0.0, NULL, Y, m);
         product(WHOLE, m, width, width, 1.0, own, m, P + (long)b * N + b, N, b ? 1.0 : 0.0, Y, Y, m);
-        gather(m, width, 1.0, own, Y, variance);
+        add_products(m, width, own, Y, variance);
     }
 }
 
@@ -118,7 +118,7 @@ VECTORISED static void oscillation(int m, int n, int nv, double rate, const doub
     }
 }
 
-/* variance (m) += factor times the squares of columns of twice as many numbers, the second half upon the first */
+/* variance (m) += factor times the squares of columns of 2 m numbers, both halves added */
 VECTORISED static void folded(int m, int columns, double factor, const double *R, double *variance)
 {
     for (int j = 0; j < columns; j++, R += 2L * m)
@@ -176,7 +176,7 @@ static void error_of(const Errors *e, const double *root, int m, int n, const do
                 some = 1;
             }
         if (some)
-            gather(m, 1, 1.0, Y, Y, variance);
+            add_products(m, 1, Y, Y, variance);
     }
 }
 

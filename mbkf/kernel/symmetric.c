@@ -1,4 +1,4 @@
-/* Tiles of eight by eight: a tile and its mirror image fit into the fastest cache, whole rows and columns do not. */
+/* Tiles of eight by eight: a tile and its mirror image fit into the fastest cache, rows and columns do not. */
 #include "symmetric.h"
 
 #include "vectorised.h"
@@ -15,27 +15,27 @@ static inline void mirror_tile(int N, const double *from, double *to)
 
 VECTORISED void mirror(int N, double *X)
 {
-    const int whole = N - N % TILE;
-    for (int i = 0; i < whole; i += TILE) {
+    const int full = N - N % TILE;
+    for (int i = 0; i < full; i += TILE) {
         for (int b = 1; b < TILE; b++)
             for (int a = 0; a < b; a++)
                 X[(long)(i + b) * N + i + a] = X[(long)(i + a) * N + i + b];
-        for (int j = i + TILE; j < whole; j += TILE)
+        for (int j = i + TILE; j < full; j += TILE)
             mirror_tile(N, X + (long)i * N + j, X + (long)j * N + i);
     }
-    for (int j = whole; j < N; j++)
+    for (int j = full; j < N; j++)
         for (int i = 0; i < j; i++)
             X[(long)j * N + i] = X[(long)i * N + j];
 }
 
 VECTORISED void transpose(int N, const double *X, double *out)
 {
-    const int whole = N - N % TILE;
-    for (int i = 0; i < whole; i += TILE)
-        for (int j = 0; j < whole; j += TILE)
+    const int full = N - N % TILE;
+    for (int i = 0; i < full; i += TILE)
+        for (int j = 0; j < full; j += TILE)
             mirror_tile(N, X + (long)i * N + j, out + (long)j * N + i);
     for (int i = 0; i < N; i++)
-        for (int j = i < whole ? whole : 0; j < N; j++)
+        for (int j = i < full ? full : 0; j < N; j++)
             out[(long)j * N + i] = X[(long)i * N + j];
 }
 

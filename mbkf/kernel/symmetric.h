@@ -2,7 +2,7 @@
 #ifndef MBKF_SYMMETRIC_H
 #define MBKF_SYMMETRIC_H
 
-/* Copies what stands right of the diagonal, row by row, to the left of it. */
+/* Copies the part above the diagonal, row by row, to the part below. */
 void mirror(int N, double *X);
 
 /* out = X'; out is not X. */

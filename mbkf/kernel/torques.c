@@ -3,12 +3,12 @@
  * The force f of all that a joint carries does work along the joint's axes: tau_i = J_i . f. A dof k behind i changes f
  * and not J_i. A dof k before i, or of the same joint, turns both alike; besides, f changes by Y (acceleration by k) +
  * D (velocity by k) as in dynamics.c, and J_i . Y s = s . Y J_i, J_i . D s = s . D'J_i. Dofs of which neither is before
- * the other do not meet. */
+ * the other do not couple. */
 #include "dynamics.h"
 
 #include <string.h>
 
-/* X J_k with (J_k x J_i) . w = J_i' X J_k: what a turn by dof k changes (_turned_wrench of newton_euler.py). */
+/* X J_k with (J_k x J_i) . w = J_i' X J_k: effect of a rotation by dof k (_turned_wrench of newton_euler.py). */
 static void turned_wrench(const double *w, const double *column, double *found)
 {
     double moment[3];
@@ -30,13 +30,13 @@ static void gyrated(const Composite *one, const double *axis, double *found)
 }
 
 /* Derivatives of dof i's force by the dofs k of a joint before its own, or of its own, and of theirs by dof i. */
-static void meet(const Tree *tree, const Joint *joint, int same, int i, const double *gyration, double *by_state)
+static void couple(const Tree *tree, const Joint *joint, int same, int i, const double *gyration, double *by_state)
 {
     const long nv = tree->nv, block = nv * nv;
     const Derivative *of = &tree->by[i];
-    double whole[6];
+    double total[6];
     for (int c = 0; c < 6; c++)
-        whole[c] = of->force_by_q[c] + of->turned_force[c];
+        total[c] = of->force_by_q[c] + of->turned_force[c];
     for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++) {
         const Derivative *by = &tree->by[k];
         const double *axis = tree->axes[k];
@@ -46,14 +46,14 @@ static void meet(const Tree *tree, const Joint *joint, int same, int i, const do
         down[2 * block] = dot6(axis, of->force_by_a);
         if (same)
             continue;
-        up[0] = dot6(axis, whole);
+        up[0] = dot6(axis, total);
         up[block] = dot6(axis, of->force_by_v);
         up[2 * block] = down[2 * block];
     }
 }
 
-/* Takes the feet's wrenches off. */
-static void unload(const Tree *tree, const char *moves, const double *wrenches, double *tau)
+/* Subtracts the feet's wrenches. */
+static void subtract_wrenches(const Tree *tree, const char *moves, const double *wrenches, double *tau)
 {
     for (int foot = 0; foot < 2; foot++)
         for (int k = 0; k < tree->nv; k++)
@@ -61,8 +61,8 @@ static void unload(const Tree *tree, const char *moves, const double *wrenches, 
                 tau[k] -= dot6(tree->axes[k], wrenches + 6 * foot);
 }
 
-/* by_state for one foot: its wrench stands still when dofs before turn an axis. */
-static void unload_derivatives(const Tree *tree, const char *own, const double *w, double *by_state, double *by_wrench)
+/* The same for by_state and one foot, whose wrench is constant in the world while dofs before turn an axis. */
+static void subtract_derivatives(const Tree *tree, const char *own, const double *w, double *by_state, double *by_wrench)
 {
     const long nv = tree->nv;
     for (int n = 1; n < tree->joints; n++) {
@@ -90,7 +90,7 @@ void mbkf_generalised_forces(Tree *tree, const double *q, const double *v, const
         for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++)
             tau[k] = dot6(tree->axes[k], tree->composite[n].force);
     }
-    unload(tree, moves, wrenches, tau);
+    subtract_wrenches(tree, moves, wrenches, tau);
 }
 
 void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
@@ -106,13 +106,13 @@ void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const
             double gyration[3];
             tau[i] = dot6(tree->axes[i], one->force);
             gyrated(one, tree->axes[i], gyration);
-            meet(tree, joint, 1, i, gyration, by_state);
+            couple(tree, joint, 1, i, gyration, by_state);
             for (int m = joint->parent; m; m = tree->joint[m].parent)
-                meet(tree, &tree->joint[m], 0, i, gyration, by_state);
+                couple(tree, &tree->joint[m], 0, i, gyration, by_state);
         }
     }
-    unload(tree, moves, wrenches, tau);
+    subtract_wrenches(tree, moves, wrenches, tau);
     for (int foot = 0; foot < 2; foot++)
-        unload_derivatives(tree, moves + foot * nv, wrenches + 6 * foot, by_state, by_state + 3 * block + 6 * foot * nv);
+        subtract_derivatives(tree, moves + foot * nv, wrenches + 6 * foot, by_state, by_state + 3 * block + 6 * foot * nv);
     memcpy(jacobian, tree->axes, sizeof *tree->axes * nv);
 }

@@ -47,6 +47,22 @@ struct Tree {
     Derivative *by;       /* (nv) */
 };
 
+/* Adds a composite to that of the parent. */
+static inline void accumulate(Composite *to, const Composite *from)
+{
+    to->inertia.mass += from->inertia.mass;
+    for (int i = 0; i < 3; i++) {
+        to->inertia.first[i] += from->inertia.first[i];
+        to->impulse[i] += from->impulse[i];
+    }
+    for (int i = 0; i < 6; i++) {
+        to->inertia.second[i] += from->inertia.second[i];
+        to->force[i] += from->force[i];
+    }
+    for (int i = 0; i < 9; i++)
+        to->gyration[i] += from->gyration[i];
+}
+
 /* Frames and axes at a configuration. */
 void tree_place(Tree *tree, const double *q);
 

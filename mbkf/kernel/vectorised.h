@@ -1,4 +1,4 @@
-/* Loops compiled for several instruction sets, of which the best is taken at run time, where the compiler can. */
+/* Functions compiled for several instruction sets, the best of which is chosen at run time, if the compiler can. */
 #ifndef MBKF_VECTORISED_H
 #define MBKF_VECTORISED_H
 

@@ -1,5 +1,10 @@
-/* FootContact.linearise, of feet that do not bear together, and FootContact.inflate of mbkf/sensors/foot_contact.py;
- * all_possible of mbkf/sensors/contact/possible.py; PlateBuffer.mean of mbkf/stream/receiving/plate_buffer.py. */
+/* Readings and random walks of the feet's wrenches about the middles c of the soles, with S = [1, 0; [c]x, 1]:
+ *
+ *     rows diag(1/sd) S(-c)      of FootContact.linearise (mbkf/sensors/foot_contact.py), feet read one by one
+ *     P += S(c) diag(sd^2) S(c)'   of FootContact.inflate
+ *
+ * and readings of plates: all_possible (mbkf/sensors/contact/possible.py), PlateBuffer.mean
+ * (mbkf/stream/receiving/plate_buffer.py). */
 #include <math.h>
 #include <string.h>
 
@@ -29,7 +34,6 @@ void mbkf_wrench_rows(const double *middles, const double *right, const double *
     }
 }
 
-/* With S = [1 0; [c]x 1] of a middle c, S diag(sd^2) S'. */
 void mbkf_add_wrench_walk(int N, double *P, int first, const double *middles, const double *sd, const double *belt)
 {
     const double force = sd[0] * sd[0], moment = sd[1] * sd[1];
@@ -58,7 +62,7 @@ int mbkf_wrenches_possible(int n, int plates, const double *readings, const doub
     for (long s = 0; s < count; s++) {
         const double *w = readings + 6 * s, vertical = w[2], farthest = reach[s % plates];
         const double bears = vertical + limits->slack * W, least = bears > 0.0 ? bears : 0.0;
-        /* What is not a number compares as false. */
+        /* NaN compares as false. */
         possible &= fabs(vertical) <= limits->most * W && vertical >= -limits->pull * W &&
                     hypot(w[0], w[1]) <= limits->friction * least && hypot(w[3], w[4]) <= farthest * least &&
                     fabs(w[5]) <= limits->friction * farthest * least;
