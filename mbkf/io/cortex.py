@@ -13,13 +13,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from mbkf.errors import FileFormatError
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_table import ForceTable, plates_of_table
 from mbkf.io.records import PlateReadings
-from mbkf.io.text import TextFile, check_order, compare_count, number, numbers, read_text
+from mbkf.io.text import TextFile, blank_separated, check_order, compare_count, number, read_text
 
 _MOST_HEADER_LINES = 20
 
@@ -36,22 +34,11 @@ def read_forces_cortex(path: str | Path, options: CaptureOptions) -> tuple[Plate
     file = read_text(Path(path), "a .forces file")
     header, start = _header(file)
     names = file.lines[start].lstrip("#").split()
-    rows = []
-    for line, text in enumerate(file.lines[start + 1 :], start=start + 2):
-        cells = text.split()
-        if not cells:
-            continue
-        if len(cells) != len(names):
-            reason = f"{len(cells)} values for {len(names)} columns; export the file again"
-            raise FileFormatError(file.path, reason, line)
-        rows.append(numbers(cells, file.path, line))
-    if not rows:
-        raise FileFormatError(file.path, "cut short: no samples after the names", start + 1)
-    options.notes.extend(compare_count(file, _count(header, "numberofsamples"), len(rows), "samples"))
+    values = blank_separated(file.lines, file.path, start + 1, len(names))
+    options.notes.extend(compare_count(file, _count(header, "numberofsamples"), len(values), "samples"))
     rate_hz = number(header.get("samplerate", ""))
     if rate_hz is None or not rate_hz > 0.0:
         raise FileFormatError(file.path, "the header gives no SampleRate; write SampleRate=… into it")
-    values = np.array(rows)
     check_order(file.path, values[:, 0], "the number of the sample")
     table = ForceTable(
         str(path), tuple(names[1:]), values[:, 1:], rate_hz, (values[0, 0] - 1.0) / rate_hz, None, None, False

@@ -12,6 +12,7 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, ShapeError, UnknownName
 from mbkf.io.atomic import replacing
+from mbkf.io.text import blank_separated
 
 _WRITTEN_BY_US = {"nrows", "ncolumns", "indegrees", "version", "datarows", "datacolumns", "range", "name"}
 _MOST_DIGITS = 16
@@ -81,7 +82,7 @@ def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
     names = _cells(lines[start])
     if not names or names[0].lower() != "time":
         raise FileFormatError(path, "the first column is not 'time'", start + 1)
-    rows = _rows(path, lines, start + 1, len(names))
+    rows = blank_separated(lines, path, start + 1, len(names))
     back = np.flatnonzero(~(np.diff(rows[:, 0]) >= 0.0))
     if len(back):
         raise FileFormatError(
@@ -145,31 +146,3 @@ def _cells(line: str) -> list[str]:
     """Names between tabs, or between blanks in a line without tabs."""
     cells = line.split("\t") if "\t" in line else line.split()
     return [cell.strip() for cell in cells if cell.strip()]
-
-
-def _rows(path: Path, lines: list[str], start: int, width: int) -> Array:
-    table = []
-    for number, line in enumerate(lines[start:], start=start + 1):
-        cells = line.split()
-        if not cells:
-            continue
-        if len(cells) != width:
-            raise FileFormatError(path, f"{len(cells)} values for {width} columns; export it again", number)
-        table.append(cells)
-    if not table:
-        raise FileFormatError(path, "cut short: no rows after the column names", start)
-    try:
-        return np.array(table, dtype=np.float64)
-    except ValueError as error:
-        for number, cells in enumerate(table, start=start + 1):
-            if any(not _is_number(cell) for cell in cells):
-                raise FileFormatError(path, f"a value is not a number ({error})", number) from error
-        raise
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

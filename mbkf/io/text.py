@@ -61,6 +61,30 @@ def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
         raise FileFormatError(path, f"not a number ({error}); correct or blank it", line) from error
 
 
+def blank_separated(lines: Sequence[str], path: Path, start: int, width: int) -> Array:
+    """(T, width) numbers of the lines from an index on; blank lines are passed over.
+
+    Args:
+        lines: Lines of the file.
+        path: The file, for messages.
+        start: Index of the first row.
+        width: Number of columns.
+
+    Raises:
+        FileFormatError: A row has another length, a value is not a number, or there are no rows; names the line.
+    """
+    rows = []
+    for line, text in enumerate(lines[start:], start=start + 1):
+        cells = text.split()
+        if cells and len(cells) != width:
+            raise FileFormatError(path, f"{len(cells)} values for {width} columns; export it again", line)
+        if cells:
+            rows.append(numbers(cells, path, line))
+    if not rows:
+        raise FileFormatError(path, "cut short: no rows after the column names; export it again", start)
+    return np.array(rows)
+
+
 def csv_rows(lines: Sequence[str], path: Path, first: int = 1, delimiter: str = ",") -> Iterator[list[str]]:
     """Cells of lines, of which quotation marks may join some.
 

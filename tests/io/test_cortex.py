@@ -51,7 +51,7 @@ def test_counts_that_disagree_are_told(tmp_path):
     [
         (lambda text: "", "line 1: not a .forces file"),
         (lambda text: text.replace("#Sample", "Sample"), "no line of column names"),
-        (lambda text: "\n".join(text.splitlines()[:5]) + "\n", "line 5: cut short: no samples"),
+        (lambda text: "\n".join(text.splitlines()[:5]) + "\n", "line 5: cut short: no rows"),
         (lambda text: text.replace("SampleRate=500.000000", "SampleRate="), "no SampleRate"),
         (lambda text: text[: len(text) // 2], "values for 15 columns"),
         (lambda text: "\n".join(text.splitlines()[:100]), "cut short: the header promises 300 samples, 95"),

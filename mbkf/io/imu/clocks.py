@@ -77,18 +77,10 @@ def _at(one: ImuReadings, times: Array, rate_hz: float) -> ImuReadings:
     kept = np.clip(own, 0, one.samples - 1)
     own_samples = bool((np.abs(one.time_s[kept] - times) < _SAME_S).all())
 
-    def pick(values: Array | None, kind: str) -> Array | None:
-        if values is None or own_samples:
-            return None if values is None else values[kept]
-        return resampled(Signal(one.name, kind, one.time_s, values), times)
+    def pick(values: Array, kind: str) -> Array:
+        own_signal = Signal(one.name, kind, one.time_s, values)
+        found = values[kept] if own_samples else resampled(own_signal, times)
+        return found / np.linalg.norm(found, axis=1, keepdims=True) if kind == "quat" else found
 
-    force, turning = pick(one.specific_force_mps2, "acc"), pick(one.angular_velocity_rad_s, "gyr")
-    turn = pick(one.orientation, "quat")
-    if turn is not None:
-        turn = turn / np.linalg.norm(turn, axis=1, keepdims=True)
-    assert force is not None
-    assert turning is not None
-    return ImuReadings(
-        one.name, times, force, turning, pick(one.magnetic_field, "mag"), rate_hz, one.frame, turn,
-        None if one.moving is None else one.moving[kept],
-    )  # fmt: skip
+    moving = None if one.moving is None else one.moving[kept]
+    return replace(one.at(times, pick, moving), rate_hz=rate_hz)

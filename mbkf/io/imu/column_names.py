@@ -35,20 +35,8 @@ _OTHER = {
 
 _GRAVITY_LESS = {"free", "linear", "user", "gravity"}
 _NOISE = {
-    "cal",
-    "calibrated",
-    "ln",
-    "low",
-    "noise",
-    "sensor",
-    "wr",
-    "wide",
-    "range",
-    "axis",
-    "data",
-    "is",
-    "value",
-}
+    "cal", "calibrated", "ln", "low", "noise", "sensor", "wr", "wide", "range", "axis", "data", "is", "value",
+}  # fmt: skip
 _HEADS = re.compile(r"^(?:noraxon\s+)?myomotion-segments-", re.IGNORECASE)
 _SEPARATORS = " _.:-\t/|"
 _TIME = re.compile(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,13 +46,8 @@ class ImuReadings:
         object.__setattr__(self, "time_s", read_only(self.time_s))
         if self.time_s.ndim != 1:
             raise ShapeError("time_s", "(T,)", self.time_s.shape)
-        widths = {
-            "specific_force_mps2": 3,
-            "angular_velocity_rad_s": 3,
-            "magnetic_field": 3,
-            "orientation": 4,
-        }
-        for name, width in widths.items():
+        vectors = ("specific_force_mps2", "angular_velocity_rad_s", "magnetic_field")
+        for name, width in (*((name, 3) for name in vectors), ("orientation", 4)):
             value = getattr(self, name)
             if value is None:
                 continue
@@ -67,6 +63,28 @@ class ImuReadings:
             object.__setattr__(self, "moving", flags)
         if not (np.isfinite(self.rate_hz) and self.rate_hz > 0.0):
             raise InvalidInput(f"sensor {self.name}: the rate must be positive, got {self.rate_hz} Hz")
+
+    def at(
+        self, time_s: Array, pick: Callable[[Array, str], Array], moving: BoolArray | None = None
+    ) -> ImuReadings:
+        """The readings at other times.
+
+        Args:
+            time_s: (T',) the times, s.
+            pick: Values (T', n) of a quantity at these times, from its values (T, n) and kind ("acc", "gyr", "mag" or
+                "quat").
+            moving: (T',) samples of a movement.
+        """
+        field, turn = self.magnetic_field, self.orientation
+        return replace(
+            self,
+            time_s=time_s,
+            specific_force_mps2=pick(self.specific_force_mps2, "acc"),
+            angular_velocity_rad_s=pick(self.angular_velocity_rad_s, "gyr"),
+            magnetic_field=None if field is None else pick(field, "mag"),
+            orientation=None if turn is None else pick(turn, "quat"),
+            moving=moving,
+        )
 
     @property
     def samples(self) -> int:
@@ -92,22 +110,16 @@ def on_regular_grid(one: ImuReadings) -> ImuReadings:
         )
     known, first = np.unique(row, return_index=True)
 
-    def spread(values: Array | None) -> Array | None:
-        if values is None:
-            return None
+    def spread(values: Array, _kind: str) -> Array:
         grid = np.full((count, values.shape[1]), np.nan)
         grid[known] = values[first]
         return grid
 
-    force, rate = spread(one.specific_force_mps2), spread(one.angular_velocity_rad_s)
-    assert force is not None and rate is not None
-    times = one.time_s[0] + np.arange(count) / one.rate_hz
-    field, orientation = spread(one.magnetic_field), spread(one.orientation)
     moving = None
     if one.moving is not None:
         moving = np.zeros(count, dtype=bool)
         moving[known] = one.moving[first]
-    return ImuReadings(one.name, times, force, rate, field, one.rate_hz, one.frame, orientation, moving)
+    return one.at(one.time_s[0] + np.arange(count) / one.rate_hz, spread, moving)
 
 
 def rate_of(time_s: Array, where: str) -> float:
@@ -133,12 +145,4 @@ def between(one: ImuReadings, first_s: float, last_s: float) -> ImuReadings:
         last_s: The last one.
     """
     kept = (one.time_s >= first_s - 1e-9) & (one.time_s <= last_s + 1e-9)
-    return ImuReadings(
-        one.name,
-        one.time_s[kept],
-        one.specific_force_mps2[kept],
-        one.angular_velocity_rad_s[kept],
-        None if one.magnetic_field is None else one.magnetic_field[kept],
-        one.rate_hz,
-        one.frame,
-    )
+    return replace(one, orientation=None).at(one.time_s[kept], lambda values, _: values[kept])

@@ -8,7 +8,8 @@ end with a channel of type "FrameNumber" that counts frames or samples; without 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import ModuleType
 from typing import Any, TypeAlias
@@ -119,19 +120,16 @@ def marker_info(lsl: ModuleType, stream: StreamDescription, name: str, points: i
         points: Number of points in a frame without names.
     """
     labels = stream.marker_names or tuple(f"point{k + 1}" for k in range(points))
-    count = 3 * len(labels) + 1
-    info = lsl.StreamInfo(
-        name, MARKERS_TYPE, count, stream.rate_hz, lsl.cf_double64, f"mbkf-{name}-{stream.trial}"
-    )
-    desc = _described(info, stream, stream.start_time_s)
+    channels = [
+        {"label": f"{label}_{axis}", "marker": label, "type": f"Position{axis}", "unit": "meters"}
+        for label in labels
+        for axis in "XYZ"
+    ]
+    if not stream.marker_names:
+        channels = [{key: one[key] for key in ("label", "type", "unit")} for one in channels]
+    info = new_info(lsl, stream, name, MARKERS_TYPE, [*channels, counter_channel("frame")])
     if stream.plates:
-        desc.append_child_value("plates_stream", plates_name(name))
-    channels = desc.append_child("channels")
-    for label in labels:
-        for axis in "XYZ":
-            named = {"marker": label} if stream.marker_names else {}
-            _channel(channels, label=f"{label}_{axis}", **named, type=f"Position{axis}", unit="meters")
-    _channel(channels, label="frame", type="FrameNumber", unit="none")
+        info.desc().append_child_value("plates_stream", plates_name(name))
     return info
 
 
@@ -143,13 +141,21 @@ def plates_info(lsl: ModuleType, stream: StreamDescription, name: str) -> Stream
         stream: The plates and their rate.
         name: Name of the LSL stream of the markers.
     """
-    count = 6 * len(stream.plates) + 1
-    own = plates_name(name)
-    info = lsl.StreamInfo(
-        own, PLATES_TYPE, count, stream.plate_rate_hz, lsl.cf_double64, f"mbkf-{own}-{stream.trial}"
-    )
-    desc = _described(info, stream, stream.plates[0].start_time_s)
-    plates = desc.append_child("plates")
+    channels = [
+        {
+            "label": f"{plate.name}_{kind[0]}{axis.lower()}",
+            "plate": plate.name,
+            "type": f"{kind}{axis}",
+            "unit": unit,
+        }
+        for plate in stream.plates
+        for kind, unit in (("Force", "newtons"), ("Moment", "newtonmeters"))
+        for axis in "XYZ"
+    ]
+    start_s = stream.plates[0].start_time_s
+    timed = replace(stream, rate_hz=stream.plate_rate_hz, start_time_s=start_s)
+    info = new_info(lsl, timed, plates_name(name), PLATES_TYPE, [*channels, counter_channel("sample")])
+    plates = info.desc().append_child("plates")
     for plate in stream.plates:
         entry = plates.append_child("plate")
         entry.append_child_value("name", plate.name)
@@ -157,13 +163,6 @@ def plates_info(lsl: ModuleType, stream: StreamDescription, name: str) -> Stream
         entry.append_child_value("origin_m", _numbers(plate.origin_m))
         if plate.corners_m is not None:
             entry.append_child_value("corners_m", _numbers(plate.corners_m.ravel()))
-    channels = desc.append_child("channels")
-    for plate in stream.plates:
-        for kind, unit in (("Force", "newtons"), ("Moment", "newtonmeters")):
-            for axis in "XYZ":
-                label = f"{plate.name}_{kind[0]}{axis.lower()}"
-                _channel(channels, label=label, plate=plate.name, type=f"{kind}{axis}", unit=unit)
-    _channel(channels, label="sample", type="FrameNumber", unit="none")
     return info
 
 
@@ -198,7 +197,7 @@ def read_marker_info(info: StreamInfo) -> tuple[StreamDescription, MarkerLayout,
     layout = MarkerLayout(
         np.array(named, dtype=int).reshape(-1, 3),
         np.array(nameless, dtype=int).reshape(-1, 3),
-        _counter(channels),
+        counter_of(channels),
         rotation_to_world(desc.child_value("up") or "z") * _METRES[unit],
     )
     description = StreamDescription(
@@ -243,24 +242,41 @@ def read_plates_info(info: StreamInfo) -> tuple[tuple[PlateReadings, ...], Plate
         raise InvalidInput(
             f"{where} has force channels of {len(loads)} plates and describes {len(plates)} in <plates>"
         )
-    return tuple(plates), PlateLayout(np.array(loads, dtype=int).reshape(-1, 6), _counter(channels), rotation)
+    return tuple(plates), PlateLayout(
+        np.array(loads, dtype=int).reshape(-1, 6), counter_of(channels), rotation
+    )
 
 
-def _described(info: StreamInfo, stream: StreamDescription, start_s: float) -> StreamInfo:
+def new_info(
+    lsl: ModuleType, stream: StreamDescription, name: str, kind: str, channels: Sequence[Mapping[str, str]]
+) -> StreamInfo:
+    """The information of a stream that is sent.
+
+    Args:
+        lsl: The module pylsl.
+        stream: Trial, rate and start.
+        name: Name of the LSL stream.
+        kind: Its type.
+        channels: Entries of every channel.
+    """
+    identity = f"mbkf-{name}-{stream.trial}"
+    info = lsl.StreamInfo(name, kind, len(channels), stream.rate_hz, lsl.cf_double64, identity)
     desc = info.desc()
-    desc.append_child_value("manufacturer", "mbkf")
-    desc.append_child_value("trial", stream.trial)
-    desc.append_child_value("up", "z")
-    rate_hz = info.nominal_srate()
-    desc.append_child_value("rate_hz", repr(float(rate_hz)))
-    desc.append_child_value("start_time_s", repr(float(start_s)))
-    return desc
+    head = {"manufacturer": "mbkf", "trial": stream.trial, "up": "z"}
+    head |= {"rate_hz": repr(float(info.nominal_srate())), "start_time_s": repr(float(stream.start_time_s))}
+    for key, value in head.items():
+        desc.append_child_value(key, value)
+    listed = desc.append_child("channels")
+    for channel in channels:
+        entry = listed.append_child("channel")
+        for key, value in channel.items():
+            entry.append_child_value(key, value)
+    return info
 
 
-def _channel(channels: Any, **values: str) -> None:
-    entry = channels.append_child("channel")
-    for key, value in values.items():
-        entry.append_child_value(key, value)
+def counter_channel(label: str) -> dict[str, str]:
+    """The channel that counts frames or samples."""
+    return {"label": label, "type": "FrameNumber", "unit": "none"}
 
 
 def described_channels(info: StreamInfo) -> list[dict[str, str]]:
@@ -284,7 +300,8 @@ def _groups(channels: list[dict[str, str]], types: tuple[str, ...]) -> list[tupl
     ]
 
 
-def _counter(channels: list[dict[str, str]]) -> int | None:
+def counter_of(channels: list[dict[str, str]]) -> int | None:
+    """Number of the channel that counts, None without one."""
     return next((k for k, channel in enumerate(channels) if channel["type"].lower() == COUNTER), None)
 
 

@@ -17,7 +17,13 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.imu.channels import Channel, channel_signals
-from mbkf.stream.lsl.format import COUNTER, StreamInfo, described_channels
+from mbkf.stream.lsl.format import (
+    StreamInfo,
+    counter_channel,
+    counter_of,
+    described_channels,
+    new_info,
+)
 from mbkf.stream.source import StreamDescription
 from mbkf.trial.inertial.motion_inputs import MOST_HZ
 
@@ -63,24 +69,13 @@ def sensor_info(lsl: ModuleType, stream: StreamDescription, name: str) -> Stream
         stream: Sensors and rate.
         name: Name of the LSL stream.
     """
-    count = 6 * len(stream.sensors) + 1
-    info = lsl.StreamInfo(
-        name, SENSOR_TYPE, count, stream.rate_hz, lsl.cf_double64, f"mbkf-{name}-{stream.trial}"
-    )
-    desc = info.desc()
-    desc.append_child_value("manufacturer", "mbkf")
-    desc.append_child_value("trial", stream.trial)
-    channels = desc.append_child("channels")
-    for sensor in stream.sensors:
-        for kind, unit in _UNITS:
-            for axis in "xyz":
-                entry = channels.append_child("channel")
-                for key, value in (("label", f"{sensor}_{kind}_{axis}"), ("type", kind), ("unit", unit)):
-                    entry.append_child_value(key, value)
-    entry = channels.append_child("channel")
-    for key, value in (("label", "sample"), ("type", "FrameNumber"), ("unit", "none")):
-        entry.append_child_value(key, value)
-    return info
+    channels = [
+        {"label": f"{sensor}_{kind}_{axis}", "type": kind, "unit": unit}
+        for sensor in stream.sensors
+        for kind, unit in _UNITS
+        for axis in "xyz"
+    ]
+    return new_info(lsl, stream, name, SENSOR_TYPE, [*channels, counter_channel("sample")])
 
 
 def read_sensor_info(info: StreamInfo, units: Mapping[str, str]) -> SensorLayout | None:
@@ -113,7 +108,7 @@ def read_sensor_info(info: StreamInfo, units: Mapping[str, str]) -> SensorLayout
     if not info.nominal_srate() > 0.0:
         raise InvalidInput(f"{where} states no rate; the filter needs a regular one")
     rows = [by_kind[name, kind] for name in names for kind in ("gyr", "acc")]
-    counter = next((k for k, one in enumerate(channels) if one["type"].lower() == COUNTER), None)
+    counter = counter_of(channels)
     trial = info.desc().child_value("trial") or info.name()
     return SensorLayout(tuple(names), np.concatenate(rows), counter, float(info.nominal_srate()), trial)
 
