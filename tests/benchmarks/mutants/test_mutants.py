@@ -22,6 +22,7 @@ def tree(tmp_path):
         "mbkf/__init__.py": "",
         "mbkf/room/__init__.py": "",
         "mbkf/room/sums.py": CODE,
+        "mbkf/other/alone.py": "x = 1\n",
         "tests/room/test_sums.py": TEST,
         "tests/room/test_more.py": "import mbkf.room.sums\n",
         "tests/room/test_other.py": "import math\n",
@@ -57,7 +58,7 @@ def test_mirrored_tests_a_module_have_its_name_or_import_it(tree):
 
 @pytest.mark.parametrize(
     ("file", "new", "match"),
-    [("mbkf/room/sums.py", "2 * x", "changes nothing"), ("mbkf/other.py", "3 * x", "no test")],
+    [("mbkf/room/sums.py", "2 * x", "changes nothing"), ("mbkf/other/alone.py", "3 * x", "no test")],
 )
 def test_a_list_with_a_useless_mutant_is_refused(file, new, match, tree):
     path = tree / "list.toml"
