@@ -24,7 +24,7 @@ from mbkf.io.dimensions import (
     WRENCH,
     Unit,
 )
-from mbkf.io.quantities import Plot, flag, offset, quantity, spread
+from mbkf.io.quantities import LATER, Column, Plot, flag, offset, quantity, spread
 
 CONTACT_CODES = {-1: "unmeasured", 0: "air", 1: "own_plate", 2: "shared_plate"}
 """Support of a foot: something without a plate, air, a plate of its own, one plate under both feet."""
@@ -53,6 +53,15 @@ class Estimates:
         codes=CONTACT_CODES,
         key="footing",
         section="two-feet-on-one-plate",
+    )
+    foot_height_sd: Array = quantity(
+        "time foot",
+        METRE,
+        "standard deviation of the height of the foot; frames in which it is large do not count as valid",
+        LATER,
+        column=Column("reactions.mot", "ground_height_{side}_sd"),
+        plot=Plot("Ground reactions", "Height, standard deviation", "mm", factor=1e3, resolution=1e-5),
+        section="valid-frames",
     )
     tracked: BoolArray = flag("time", "enough markers to follow the body")
     rejected: BoolArray = flag("time marker", "marker sample refused by the innovation gate")
@@ -104,7 +113,6 @@ class TrackEstimates(Estimates):
         "nothing; NaN where the filter does not ask",
     )
     support_sd: Array = spread("support")
-    foot_height_sd: Array = quantity("time foot", METRE, "standard deviations of the height of the feet")
     angle_sd: Array = quantity(
         "time coordinate", ANGLE, "of the clinical coordinates, the root's in the world's axes"
     )
