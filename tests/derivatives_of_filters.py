@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from mbkf.filters.dynamic.support_loads import Loads, SupportLoads
-from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.torque.integrators import INTEGRATORS, Motion
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Frame
@@ -155,7 +155,7 @@ def flow(body, now, u, h, x):
     """Where an exact step of length h leads from a state that is x (n,) away in its tangent space."""
     nv = body.nv
     start = Motion(body.integrate(now.q, x[:nv]), now.v + x[nv : 2 * nv])
-    return runge_kutta(body, start, u + x[2 * nv :], h)
+    return INTEGRATORS["RK4"](body, start, u + x[2 * nv :], h)
 
 
 def flow_derivative(body, now, u, h):

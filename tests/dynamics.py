@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.settings import changed
@@ -79,6 +79,12 @@ def singer(model, extras=(), held=None, settings=None, dt_s=DT):
     return SingerPlant(model, Layout.dynamic(model.nv, extras), dt_s, held, settings or SingerSettings())
 
 
+def standard_filter(sensor, noise_m, detector, dt_s, unobservable, settings):
+    """The dynamic filter with its standard blocks."""
+    blocks = dynamic_blocks(sensor, noise_m, detector, dt_s, unobservable, settings)
+    return DynamicFilter(sensor, noise_m, dt_s, unobservable, settings, blocks)
+
+
 def dynamic_filter(
     model,
     plates=(),
@@ -96,7 +102,7 @@ def dynamic_filter(
     noise = np.full(len(sensor.segments), noise_m)
     unobservable = np.zeros(model.nv, dtype=bool) if unobservable is None else unobservable
     detector = ContactDetector(model, plates, dt_s)
-    return DynamicFilter.standard(sensor, noise, detector, dt_s, unobservable, settings_with(**settings))
+    return standard_filter(sensor, noise, detector, dt_s, unobservable, settings_with(**settings))
 
 
 def settings_with(**values):
@@ -189,7 +195,7 @@ class Trial:
         sensor = MarkerSensor(self.model, [marker.segment for marker in self.subject.markers], local)
         everywhere, noise = np.zeros(self.model.nv, dtype=bool), np.full(len(local), noise_m)
         detector, dt_s = self.detector(plates), 1.0 / self.motion.rate_hz
-        return DynamicFilter.standard(sensor, noise, detector, dt_s, everywhere, settings_with(**settings))
+        return standard_filter(sensor, noise, detector, dt_s, everywhere, settings_with(**settings))
 
     def state(self, t, rng=None):
         """The state at a frame and a covariance; with a generator, wrong by as much as that says."""

@@ -24,7 +24,7 @@ from benchmarks.double_pendulum.thesis import STUDY
 from benchmarks.double_pendulum.torque import START_VARIANCE, PendulumFilter, PendulumSettings
 from benchmarks.thesis_report.contents import Band, Findings, Sheet
 from mbkf.conventions import Array
-from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.torque.integrators import INTEGRATORS, Motion
 from mbkf.filters.torque.plant import Scheme
 from mbkf.filters.torque.settings import SCHEMES
 from mbkf.numerics.threads import single_threaded
@@ -129,6 +129,6 @@ def _drawn(begin: _Truth, rng: np.random.Generator) -> _Truth:
     for _ in range(FRAMES):
         for _ in range(SUBSTEPS):
             later = u + LOW_NOISE.effort_noise * np.sqrt(h) * rng.normal(size=4)
-            now, u = runge_kutta(body, now, 0.5 * (u + later), h), later
+            now, u = INTEGRATORS["RK4"](body, now, 0.5 * (u + later), h), later
         path.append((now.q, now.v, u))
     return _Truth(*(np.stack(part) for part in zip(*path, strict=True)))

@@ -20,7 +20,7 @@ from benchmarks.checks import Check, within
 from benchmarks.dynamic.methods import Mapper
 from benchmarks.dynamic.nis import nis
 from mbkf.conventions import Array
-from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.dynamic.smoother import smooth
@@ -130,7 +130,8 @@ class OwnPlant:
         self.plate_sd = np.repeat([plates.plate_force_n, plates.plate_moment_nm], 3)
         noise = np.full(len(self._sensor.segments), MARKER_SD_M)
         unobservable, feet = np.zeros(self.model.nv, dtype=bool), AlwaysMeasured(self.centres_m)
-        self.kalman = DynamicFilter.standard(self._sensor, noise, feet, DT_S, unobservable, SETTINGS)
+        blocks = dynamic_blocks(self._sensor, noise, feet, DT_S, unobservable, SETTINGS)
+        self.kalman = DynamicFilter(self._sensor, noise, DT_S, unobservable, SETTINGS, blocks)
         self.plant = cast("SingerPlant", self.kalman.plant)
 
     @cached_property

@@ -48,11 +48,6 @@ class Correction:
     nis: float
     readings: Information
 
-    @property
-    def gain_effect(self) -> Array:
-        """(N, n) K H restricted to the n observed components, so that I − K H can be formed."""
-        return self.covariance[:, : len(self.readings.vector)] @ self.readings.matrix
-
 
 def information(innovation: Array, jacobian: Array, sd: Array) -> Information:
     """Compresses independent readings.

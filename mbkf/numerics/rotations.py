@@ -1,4 +1,4 @@
-"""Rotation vectors of unit quaternions, with derivatives, for many rotations at once."""
+"""Rotation vectors of unit quaternions, for many rotations at once, and the derivative of a screw motion."""
 
 from __future__ import annotations
 
@@ -60,22 +60,8 @@ def quaternion_log(quaternions: Array) -> Array:
     return factor * vector
 
 
-def log_and_inverse_jacobian(quaternions: Array) -> tuple[Array, Array]:
-    """Rotation vectors φ (n, 3) and ∂φ/∂ω (n, 3, 3) for a local (right) rotation ω.
-
-    J_r⁻¹(φ) = I + ½[φ]× + (1/θ² − (1 + cos θ)/(2 θ sin θ)) [φ]×²  (Solà et al., arXiv:1812.01537, eq. 144).
-    """
-    phi = quaternion_log(quaternions)
-    theta = np.linalg.norm(phi, axis=-1)[..., None, None]
-    cross = skew(phi)
-    safe = np.maximum(theta, 1e-4)
-    exact = 1.0 / safe**2 - (1.0 + np.cos(safe)) / (2.0 * safe * np.sin(np.minimum(safe, np.pi - 1e-9)))
-    factor = np.where(theta < 1e-4, 1.0 / 12.0, exact)
-    return phi, np.eye(3) + 0.5 * cross + factor * (cross @ cross)
-
-
 def travel_by_turn(u: Array, w: Array) -> Array:
-    """(3, 3) how the travel of a screw motion exp(u, w) changes with its turn w, in the axes that it ends in.
+    """(3, 3) derivative of the travel of a screw motion exp(u, w) by its turn w, in the axes that it ends in.
 
     T. Barfoot, State Estimation for Robotics (2017), eq. 7.86, of (−u, −w); for small turns by its series, since the
     closed form loses nine digits there.

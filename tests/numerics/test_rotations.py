@@ -1,4 +1,4 @@
-"""Rotation vectors of quaternions against SciPy, and the inverse right Jacobian against finite differences."""
+"""Rotation vectors of quaternions against SciPy."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from mbkf.numerics.rotations import (
-    log_and_inverse_jacobian,
     nearest_rotations,
     quaternion_log,
     quaternion_of,
@@ -55,55 +54,6 @@ def test_log_keeps_tiny_angles(angle):
 
 def test_half_a_turn_has_angle_pi():
     assert np.linalg.norm(quaternion_log(np.array([0.6, 0.0, 0.8, 0.0]))) == pytest.approx(np.pi, rel=1e-15)
-
-
-@pytest.mark.parametrize("angle", MANY_ANGLES)
-def test_inverse_jacobian_is_the_derivative_of_the_log(angle):
-    """φ(R exp ω) by central differences in ω."""
-    rng, h = np.random.default_rng(2), 1e-5
-    phi = rotation_vector(rng.normal(size=3), angle)
-    R = Rotation.from_rotvec(phi)
-    numeric = np.stack(
-        [
-            (_log(R * Rotation.from_rotvec(h * e)) - _log(R * Rotation.from_rotvec(-h * e))) / (2 * h)
-            for e in np.eye(3)
-        ],
-        axis=1,
-    )
-    found, jacobian = log_and_inverse_jacobian(R.as_quat()[None])
-    np.testing.assert_allclose(found[0], phi, rtol=0, atol=1e-14)
-    np.testing.assert_allclose(jacobian[0], numeric, rtol=0, atol=2e-9 if angle < 3.12 else 2e-5)
-
-
-def _log(rotation):
-    return quaternion_log(rotation.as_quat())
-
-
-@given(VECTORS, ANGLES)
-def test_inverse_jacobian_leaves_the_axis_alone(direction, angle):
-    """J_r⁻¹(φ) φ = φ: turning further about one's own axis only adds to the angle."""
-    phi = rotation_vector(direction, angle)
-    _, jacobian = log_and_inverse_jacobian(Rotation.from_rotvec(phi).as_quat()[None])
-    np.testing.assert_allclose(jacobian[0] @ phi, phi, rtol=0, atol=1e-13)
-
-
-def test_many_at_once_are_each_alone():
-    quaternions = Rotation.random(6, random_state=np.random.default_rng(3)).as_quat()
-    phi, jacobians = log_and_inverse_jacobian(quaternions)
-    for i in range(6):
-        one, jacobian = log_and_inverse_jacobian(quaternions[i : i + 1])
-        np.testing.assert_array_equal(phi[i], one[0])
-        np.testing.assert_array_equal(jacobians[i], jacobian[0])
-
-
-@pytest.mark.parametrize("angle", [2e-5, 0.99e-4, 1.01e-4, 1e-3])
-def test_inverse_jacobian_has_its_series_at_small_angles(angle):
-    """J_r⁻¹ = I + ½[φ]× + [φ]×²/12 + O(φ⁴), on both sides of the switch to the closed form."""
-    phi = rotation_vector(np.array([0.2, -0.5, 0.8]), angle)
-    _, jacobian = log_and_inverse_jacobian(Rotation.from_rotvec(phi).as_quat()[None])
-    cross = skew(phi)
-    second = jacobian[0] - np.eye(3) - 0.5 * cross
-    np.testing.assert_allclose(second, cross @ cross / 12, rtol=0, atol=1e-15 + 1e-3 * angle**4)
 
 
 @given(VECTORS, st.floats(0, np.pi))

@@ -135,31 +135,6 @@ class DynamicFilter(Filter[DynamicState]):
         self.noise_m, self.spread_m = noise_m * settings.markers.marker_noise_scale, spread_m
         self.model, self.balance = model, NewtonEuler(model)
 
-    @classmethod
-    def standard(
-        cls,
-        sensor: MarkerSensor,
-        noise_m: Array,
-        detector: ContactDetector,
-        dt_s: float,
-        unobservable: BoolArray,
-        settings: DynamicSettings,
-        inertial: InertialSensor | None = None,
-    ) -> DynamicFilter:
-        """The filter with the blocks of :func:`dynamic_blocks`.
-
-        Args:
-            sensor: The markers on the body.
-            noise_m: (M,) their noise, m.
-            detector: Finds the support of the feet.
-            dt_s: Time between frames.
-            unobservable: (nv,) dofs that no marker of the capture moves with.
-            settings: Settings of plant and blocks.
-            inertial: Inertial sensors on the body.
-        """
-        blocks = dynamic_blocks(sensor, noise_m, detector, dt_s, unobservable, settings, inertial)
-        return cls(sensor, noise_m, dt_s, unobservable, settings, blocks)
-
     def first(self, q: Array, v: Array, a: Array, P: Array, frame: Frame) -> Step[DynamicState]:
         """A first estimate from a pose and velocity, corrected by a frame.
 

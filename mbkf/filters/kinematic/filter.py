@@ -101,11 +101,11 @@ class KinematicFilter(Filter[KinematicState]):
         fit = self._fit(measured_m, guess)
         if fit is None:
             return None
-        nv = self.model.nv
+        nv, q, v = self.model.nv, self.layout.q, self.layout.v
         speed = np.where(np.arange(nv) < 3, START_SPEED_SD_M_S, START_SPEED_SD_RAD_S)
-        P = np.zeros((2 * nv, 2 * nv))
-        P[:nv, :nv] = fit.covariance
-        P[nv:, nv:] = np.diag(np.where(self.unobservable, 1e-6, speed) ** 2)
+        P = np.zeros((self.layout.size, self.layout.size))
+        P[q, q] = fit.covariance
+        P[v, v] = np.diag(np.where(self.unobservable, 1e-6, speed) ** 2)
         return KinematicState(fit.q, np.zeros(nv), P)
 
     def _fit(self, measured_m: Array, guess: Array | None) -> PoseFit | None:

@@ -30,54 +30,24 @@ class Motion:
 
 
 Integrator = Callable[[ForcedBody, Motion, Array, float], Motion]
-"""(body, motion, forces u (nu,), step h in s) → the motion one step later."""
+"""(body, motion at the beginning, forces u (nu,) constant over the step, step h in s) → the motion at its end."""
 
 
-def forward_euler(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """z⁺ = z + ż h, ż⁺ = ż + z̈ h (thesis eq. 3.32), order 1.
-
-    Args:
-        body: The body.
-        now: Motion at the beginning of the step.
-        u: (nu,) forces, constant over the step: N m, N.
-        h: Step in s.
-
-    Returns:
-        The motion at its end.
-    """
+def _forward_euler(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
+    """z⁺ = z + ż h, ż⁺ = ż + z̈ h (thesis eq. 3.32), order 1."""
     return Motion(body.integrate(now.q, h * now.v), now.v + h * body.acceleration(now.q, now.v, u))
 
 
-def heun(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """Mean of the rates here and where an Euler step leads (thesis eq. 3.34), order 2.
-
-    Args:
-        body: The body.
-        now: Motion at the beginning of the step.
-        u: (nu,) forces, constant over the step: N m, N.
-        h: Step in s.
-
-    Returns:
-        The motion at its end.
-    """
+def _heun(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
+    """Mean of the rates here and where an Euler step leads (thesis eq. 3.34), order 2."""
     a = body.acceleration(now.q, now.v, u)
     ahead = Motion(body.integrate(now.q, h * now.v), now.v + h * a)
     a_ahead = body.acceleration(ahead.q, ahead.v, u)
     return Motion(body.integrate(now.q, 0.5 * h * (now.v + ahead.v)), now.v + 0.5 * h * (a + a_ahead))
 
 
-def trapezoidal_fixed_point(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """Mean of the rates at both ends (thesis eq. 3.35), order 2; solved by repeating it.
-
-    Args:
-        body: The body.
-        now: Motion at the beginning of the step.
-        u: (nu,) forces, constant over the step: N m, N.
-        h: Step in s.
-
-    Returns:
-        The motion at its end.
-    """
+def _trapezoidal_fixed_point(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
+    """Mean of the rates at both ends (thesis eq. 3.35), order 2; solved by repeating it."""
     a = body.acceleration(now.q, now.v, u)
     v = now.v + h * a
     for _ in range(FIXED_POINT_ITERATIONS):
@@ -90,20 +60,11 @@ def trapezoidal_fixed_point(body: ForcedBody, now: Motion, u: Array, h: float) -
     return Motion(body.integrate(now.q, 0.5 * h * (now.v + v)), v)
 
 
-def trapezoidal_newton(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
+def _trapezoidal_newton(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
     """The same rule (thesis eq. 3.35), solved by Newton's method in v⁺.
 
     g(v⁺) = v⁺ − v − h/2 (z̈ + z̈(q⁺, v⁺)) with q⁺ = q ⊕ h/2 (v + v⁺), so ∂g = I − h/2 (z̈_z D h/2 + z̈_ż), D the
     derivative of the retraction.
-
-    Args:
-        body: The body.
-        now: Motion at the beginning of the step.
-        u: (nu,) forces, constant over the step: N m, N.
-        h: Step in s.
-
-    Returns:
-        The motion at its end.
     """
     a = body.acceleration(now.q, now.v, u)
     v = now.v + h * a
@@ -121,18 +82,8 @@ def trapezoidal_newton(body: ForcedBody, now: Motion, u: Array, h: float) -> Mot
     return Motion(body.integrate(now.q, 0.5 * h * (now.v + v)), v)
 
 
-def runge_kutta(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """Classical Runge–Kutta in the tangent space at q (Munthe-Kaas), order 4: ξ̇ = D(ξ)⁻¹ v, v̇ = z̈(q ⊕ ξ, v).
-
-    Args:
-        body: The body.
-        now: Motion at the beginning of the step.
-        u: (nu,) forces, constant over the step: N m, N.
-        h: Step in s.
-
-    Returns:
-        The motion at its end.
-    """
+def _runge_kutta(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
+    """Classical Runge–Kutta in the tangent space at q (Munthe-Kaas), order 4: ξ̇ = D(ξ)⁻¹ v, v̇ = z̈(q ⊕ ξ, v)."""
 
     def rate(xi: Array, v: Array) -> tuple[Array, Array]:
         q = body.integrate(now.q, xi)
@@ -157,11 +108,11 @@ def _settled(change: Array, v: Array) -> bool:
 
 
 INTEGRATORS: dict[str, Integrator] = {
-    "FE": forward_euler,
-    "HE": heun,
-    "TF": trapezoidal_fixed_point,
-    "TN": trapezoidal_newton,
-    "RK4": runge_kutta,
+    "FE": _forward_euler,
+    "HE": _heun,
+    "TF": _trapezoidal_fixed_point,
+    "TN": _trapezoidal_newton,
+    "RK4": _runge_kutta,
 }
 """Integrators by the thesis's names, and one of order 4."""
 

@@ -18,6 +18,7 @@ from mbkf.filters.torque.plant import ForcedState
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.discretisation import symmetric
+from mbkf.sensors.layout import Layout
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class ForceNoise:
             dt_s: Time step.
             settings: Variances of the thesis's Table 4.3 or their replacements.
         """
-        self.body, self.settings = body, settings
+        self.body, self.settings, self._layout = body, settings, Layout.forced(body.nv, body.nu)
         mass = body.model.mass_kg
         toes = body.model.acceleration_sd if settings.toe_acceleration is None else settings.toe_acceleration
         self._toes = np.where(body.kinematic & ~body.fixed, toes, 0.0) ** 2 * dt_s
@@ -85,13 +86,12 @@ class ForceNoise:
 
     def __call__(self, state: ForcedState) -> Array:
         """(n, n) at a state."""
-        nv, n = self.body.nv, 2 * self.body.nv + self.body.nu
-        density = np.zeros((n, n))
-        density[np.arange(nv, 2 * nv), np.arange(nv, 2 * nv)] = self._toes
-        if self.settings.noise == "independent":
-            density[2 * nv :, 2 * nv :] = np.diag(self._independent)
-        else:
-            density[2 * nv :, 2 * nv :] = self._together(state)
+        layout, u = self._layout, self._layout["u"]
+        density = np.zeros((layout.size, layout.size))
+        density[layout.v, layout.v] = np.diag(self._toes)
+        density[u, u] = (
+            np.diag(self._independent) if self.settings.noise == "independent" else self._together(state)
+        )
         return density
 
     def _together(self, state: ForcedState) -> Array:

@@ -12,6 +12,7 @@ from mbkf.filters.torque.plant import ForcedState, TorquePlant
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.sensors.foot_plates import FootReading
+from mbkf.sensors.layout import Layout
 
 
 class TorqueStart:
@@ -64,22 +65,23 @@ class TorqueStart:
     def _agreed(self, motion: ForcedState, load_sd: Array) -> ForcedState:
         """Motion and reactions made to agree; ``motion`` has the covariance of (q, v) alone."""
         body, q, v, u = self.body, motion.q, motion.v, motion.u
-        nv, torque = body.nv, body.joint_forces(q, v, u)
+        layout, torque = Layout.dynamic(body.nv), body.joint_forces(q, v, u)
+        motion_part = layout.motion
         linear = body.linearise(q, v, u)
         mass = body.model.mass_matrix(q)[body.torque_dofs]
-        rows = np.zeros((body.nu, 3 * nv + 12))
-        rows[: len(mass), : 2 * nv] = -mass @ np.hstack([linear.by_q, linear.by_v])
-        rows[:, 2 * nv :] = body.force_rows(q)
+        rows = np.zeros((body.nu, layout.size))
+        rows[: len(mass), motion_part] = -mass @ np.hstack([linear.by_q, linear.by_v])
+        rows[:, layout.a.start :] = body.force_rows(q)
         residual = torque.by_u[:6] @ rows
-        residual[:, : 2 * nv] += np.hstack([torque.by_q, torque.by_v])[:6]
+        residual[:, motion_part] += np.hstack([torque.by_q, torque.by_v])[:6]
         spread = np.where(body.kinematic, 0.0, body.model.acceleration_sd)
         free = scipy.linalg.block_diag(motion.P, np.diag(spread**2), np.diag(load_sd**2))
         bound = condition(free, residual, self._residual, -torque.torque[:6])
-        whole = np.vstack([np.eye(2 * nv, 3 * nv + 12), rows])
+        whole = np.vstack([np.eye(motion_part.stop, layout.size), rows])
         return self.plant.retract(motion, whole @ bound.shift, whole @ bound.covariance @ whole.T)
 
     def _plain_covariance(self, P: Array) -> Array:
         """Forces known as well as a second of their own noise leaves them."""
         nothing = np.zeros(0)
         own = np.diag(self.plant.density(ForcedState(nothing, nothing, nothing, P)))
-        return scipy.linalg.block_diag(P, np.diag(own[2 * self.body.nv :]))
+        return scipy.linalg.block_diag(P, np.diag(own[self.plant.layout["u"]]))

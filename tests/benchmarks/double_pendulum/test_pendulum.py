@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.double_pendulum.pendulum import ROOT, DoublePendulum, PendulumShape
 from mbkf.errors import InvalidInput
-from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.torque.integrators import INTEGRATORS, Motion
 from tests.derivatives import slope
 
 SHAPE = PendulumShape()
@@ -64,7 +64,7 @@ def test_energy_grows_by_the_work_of_the_efforts(residual):
     now = Motion(q, v)
     before = energy(body, q, v)
     for _ in range(200):
-        later = runge_kutta(body, now, u, h)
+        later = INTEGRATORS["RK4"](body, now, u, h)
         power = [one.v @ body.effort_matrix(one.q) @ u for one in (now, later)]
         work, now = work + 0.5 * h * sum(power), later
     assert energy(body, now.q, now.v) - before == pytest.approx(work, rel=1e-6)

@@ -7,7 +7,6 @@ import pytest
 import scipy.linalg
 
 from benchmarks.dynamic.nis import nis
-from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Frame
@@ -28,6 +27,7 @@ from tests.dynamics import (
     memory_of,
     plates_under,
     random_state,
+    standard_filter,
     standing,
     trial,
 )
@@ -164,7 +164,7 @@ def with_markers(kalman, chosen):
     less = MarkerSensor(MODEL, [sensor.segments[k] for k in chosen], sensor.local_m[chosen])
     detector = ContactDetector(MODEL, PLATES, DT)
     noise = kalman.noise_m[chosen]
-    return DynamicFilter.standard(less, noise, detector, DT, kalman.unobservable, kalman.settings)
+    return standard_filter(less, noise, detector, DT, kalman.unobservable, kalman.settings)
 
 
 def test_the_order_of_markers_changes_nothing():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.double_pendulum.forced_bodies import WithIdleStates
-from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.torque.integrators import INTEGRATORS, Motion
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS
@@ -46,12 +46,12 @@ def loaded_body(force_state, seed=3):
 
 def flow_derivative(body, now, u, h, eps=1e-6):
     """(2 nv, n) derivative of an exact step of length h by (q, v, u), by central differences."""
-    nv, centre = body.nv, runge_kutta(body, now, u, h)
+    nv, centre = body.nv, INTEGRATORS["RK4"](body, now, u, h)
     columns = []
     for e in np.eye(2 * nv + body.nu):
         scale = eps * np.where(np.arange(len(e)) < 2 * nv, 1.0, 100.0) @ e
         ends = [
-            runge_kutta(
+            INTEGRATORS["RK4"](
                 body,
                 Motion(body.integrate(now.q, s * scale * e[:nv]), now.v + s * scale * e[nv : 2 * nv]),
                 u + s * scale * e[2 * nv :],
@@ -204,7 +204,7 @@ def test_covariance_is_what_the_errors_are():
         state = ForcedState(start[:1], start[1:2], start[2:], P)
         for _ in range(60):
             for _ in range(fine):
-                moved = runge_kutta(body, Motion(x[:1], x[1:2]), x[2:], DT / fine)
+                moved = INTEGRATORS["RK4"](body, Motion(x[:1], x[1:2]), x[2:], DT / fine)
                 wander = force_sd * np.sqrt(DT / fine) * rng.normal()
                 x = np.array([moved.q[0], moved.v[0], x[2] + wander])
             prior = plant.predict(state)
