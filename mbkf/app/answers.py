@@ -1,11 +1,14 @@
-"""What the page is told of sessions, as plain data, and what it may state of them."""
+"""Sessions and runs as plain data for the page, and the statements that the page makes about a session."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
+from mbkf.app.live_run import LiveRun
 from mbkf.app.recordings import recording_rows
 from mbkf.app.runs import Runs, RunState
 from mbkf.app.workspace import Workspace
-from mbkf.io.session import SessionNotes, TrialKind, plain_session, session_of
+from mbkf.io.session import TrialKind, plain_session, session_of
 from mbkf.study.survey.problems import plain_problem
 from mbkf.study.survey.session import SurveyedSession
 from mbkf.study.survey.trial import SurveyedTrial
@@ -22,79 +25,69 @@ def sessions(workspace: Workspace, runs: Runs) -> Plain:
 
 
 def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
-    """One session: its person, its trials, what is the matter, and how far it is.
+    """One session: person, trials, problems, and the state of its run.
 
     Args:
         workspace: The sessions.
         runs: Their runs.
-        name: Which session.
+        name: Of the session.
 
     Raises:
         InvalidInput: The session does not exist.
         FileFormatError: Its session file is damaged.
     """
-    looked = workspace.look(name)
+    found = workspace.survey(name)
     state = runs.state(name)
     return {
         "id": name,
-        "notes": plain_session(looked.notes),
-        "standing_kg": looked.standing_kg,
-        "problems": [plain_problem(one) for one in looked.problems],
-        "trials": [*(_trial(looked, one, state) for one in looked.trials), *recording_rows(workspace, name)],
+        "notes": plain_session(found.notes),
+        "standing_kg": found.standing_kg,
+        "problems": [plain_problem(one) for one in found.problems],
+        "trials": [*(_trial(found, one, state) for one in found.trials), *recording_rows(workspace, name)],
         "kinds": [kind.value for kind in TrialKind],
         "run": run_state(state),
     }
 
 
-def stated(workspace: Workspace, name: str, said: object) -> SessionNotes:
-    """Takes what the page states of a session, and writes it.
+def write_notes(workspace: Workspace, name: str, entries: object) -> None:
+    """Writes the page's statements about a session.
 
     Args:
         workspace: The sessions.
-        name: Which one.
-        said: Entries of a session file.
+        name: Of the session.
+        entries: Entries of a session file.
 
     Raises:
         InvalidInput: The session does not exist.
         FileFormatError: An entry is not possible.
         OSError: The session file cannot be written.
     """
-    notes = session_of(said if isinstance(said, dict) else {"name": said})
-    workspace.note(name, notes)
-    return notes
+    workspace.note(name, session_of(entries if isinstance(entries, dict) else {"name": entries}))
 
 
 def run_state(state: RunState | None) -> Plain | None:
-    """How far a run is; None for a session that never ran."""
+    """The state of a run; None for a session that never ran."""
     if state is None:
         return None
-    return {
-        "state": state.state,
-        "stage": state.stage,
-        "done": state.done,
-        "total": state.total,
-        "seconds": state.seconds,
-        "remaining_s": state.remaining_s,
-        "reason": state.reason,
-    }
+    names = ("state", "stage", "done", "total", "seconds", "remaining_s", "reason")
+    return {name: getattr(state, name) for name in names}
 
 
-def _trial(looked: SurveyedSession, trial: SurveyedTrial, state: RunState | None) -> Plain:
+def live_state(live: LiveRun) -> Plain:
+    """The state of the newest live run under "run"; None before the first one."""
+    state = live.state()
+    return {"run": None if state is None else {**asdict(state), "goes_on": state.goes_on}}
+
+
+def _trial(found: SurveyedSession, trial: SurveyedTrial, state: RunState | None) -> Plain:
     status, reason = ("", "") if state is None else state.trials.get(trial.name, ("", ""))
+    copied = ("name", "seconds", "rate_hz", "markers", "unnamed", "protocol", "plates", "events", "usable")
     return {
-        "name": trial.name,
+        **{name: getattr(trial, name) for name in copied},
         "file": trial.path.name,
-        "kind": looked.kind(trial).value,
+        "kind": found.kind(trial).value,
         "shown": trial.kind.value,
-        "excluded": looked.notes.trial(trial.name).excluded,
-        "seconds": trial.seconds,
-        "rate_hz": trial.rate_hz,
-        "markers": trial.markers,
-        "unnamed": trial.unnamed,
-        "protocol": trial.protocol,
-        "plates": trial.plates,
-        "events": trial.events,
-        "usable": trial.usable,
+        "excluded": found.notes.trial(trial.name).excluded,
         "problems": [plain_problem(one) for one in trial.problems],
         "status": status,
         "reason": reason,

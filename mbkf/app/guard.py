@@ -1,7 +1,7 @@
-"""Who may ask the page's server: this computer's own browser, with the token of this run.
+"""Protection of the page's server: only this computer's own browser with the token of this run gets a reply.
 
-Every request must name this computer as it names itself, must not come from another web page, and must carry the token,
-which the address that is opened first brings and a cookie keeps.
+Every request must name this computer as its host, must not come from another web page, and must carry the token, which
+the first address brings and a cookie keeps.
 """
 
 from __future__ import annotations
@@ -24,25 +24,24 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "X-Frame-Options": "SAMEORIGIN",
 }
-"""Headers of every answer."""
+"""Headers of every reply."""
 
 
 class Guard(BaseHTTPMiddleware):
-    """Refuses what other names, other web pages or strangers ask for."""
+    """Refuses requests of other hosts, of other web pages, and without the token.
+
+    Args:
+        app: The application that it protects.
+        token: Secret that every request must carry.
+        cookie: Name of the cookie that carries it.
+    """
 
     def __init__(self, app: ASGIApp, token: str, cookie: str) -> None:
-        """Takes what to protect.
-
-        Args:
-            app: What answers requests that are let through.
-            token: What every request must carry.
-            cookie: Name of the cookie that carries it.
-        """
         super().__init__(app)
         self._token, self._cookie = token, cookie
 
     async def dispatch(self, request: Request, call_next: Next) -> Response:
-        """The answer, or a refusal."""
+        """The reply, or a refusal."""
         if not own_request(request.headers.get("host", ""), request.headers.get("origin"), local=True):
             return PlainTextResponse("Refused.\n", status_code=403)
         if request.url.path == "/" and self._is_token(request.query_params.get("token", "")):
@@ -51,9 +50,9 @@ class Guard(BaseHTTPMiddleware):
             return opened
         if not self._is_token(request.cookies.get(self._cookie, "")):
             return PlainTextResponse("Open the address that mbkf app printed.\n", status_code=403)
-        answer = await call_next(request)
-        answer.headers.update(HEADERS)
-        return answer
+        reply = await call_next(request)
+        reply.headers.update(HEADERS)
+        return reply
 
-    def _is_token(self, said: str) -> bool:
-        return hmac.compare_digest(said.encode(), self._token.encode())
+    def _is_token(self, given: str) -> bool:
+        return hmac.compare_digest(given.encode(), self._token.encode())

@@ -1,4 +1,4 @@
-"""What the page asks of a live run, as options of ``mbkf live``."""
+"""A live run as the page describes it, as options of ``mbkf live``."""
 
 from __future__ import annotations
 
@@ -10,62 +10,61 @@ from mbkf.errors import InvalidInput
 from mbkf.study.survey.session import SurveyedSession
 
 LSL, NATNET, FILE = "lsl", "natnet", "file"
-"""Where frames come from."""
+"""Sources of the frames."""
 
 SUBJECT, STANDING = "subject", "standing"
-"""Whose body is followed: the session's scaled one, or one to be scaled as the person stands still."""
+"""Bodies: the session's scaled one, or one that is scaled while the person stands still."""
 
 MOST_LETTERS = 500
-"""Longer names are none."""
+"""Longest text that the page may send."""
+
+MISSING = {"stream": "choose a stream", "trial": "choose a capture"}
+"""Messages for texts that are missing; others are addresses."""
 
 
 def live_offer(workspace: Workspace, session: str) -> dict[str, object]:
-    """What a live run of a session can be made of: its captures, its body, and where Motive is looked for.
-
-    Args:
-        workspace: The sessions.
-        session: Which one.
+    """Choices for a live run of a session: its captures, and its body and mass where they are known.
 
     Raises:
         InvalidInput: The session does not exist.
         FileFormatError: Its session file is damaged.
     """
     return {
-        "captures": [one.name for one in workspace.look(session).trials if one.usable],
+        "captures": [one.name for one in workspace.survey(session).trials if one.usable],
         "subject": workspace.subject(session) is not None,
         "mass_kg": workspace.stated(session).mass_kg,
     }
 
 
-def live_options(workspace: Workspace, session: str, said: object) -> list[str]:
-    """The options of ``mbkf live`` that stand for what the page says.
+def live_options(workspace: Workspace, session: str, wanted: object) -> list[str]:
+    """The options of ``mbkf live`` for a run that the page asks for.
 
     Every value is one word with its option, so that none can be taken for another option.
 
     Args:
         workspace: The sessions.
-        session: Which one.
-        said: ``source`` ("lsl", "natnet" or "file") with ``stream``, ``server`` and ``local``, or ``trial``; ``body``
+        session: Name of the session.
+        wanted: ``source`` ("lsl", "natnet" or "file") with ``stream``, ``server`` and ``local``, or ``trial``; ``body``
             ("subject" or "standing").
 
     Raises:
-        InvalidInput: The session does not exist, or what is said is not possible.
+        InvalidInput: The session does not exist, or an entry is missing or not possible.
         FileFormatError: The session file is damaged.
     """
-    if not isinstance(said, Mapping):
-        raise InvalidInput("a live run is asked for with its source and body")
-    return [*_source(workspace.look(session), said), *_body(workspace, session, said)]
+    if not isinstance(wanted, Mapping):
+        raise InvalidInput("a live run needs a source and a body")
+    return [*_source(workspace.survey(session), wanted), *_body(workspace, session, wanted)]
 
 
-def _source(session: SurveyedSession, said: Mapping[str, object]) -> list[str]:
-    source = _text(said, "source")
+def _source(session: SurveyedSession, wanted: Mapping[str, object]) -> list[str]:
+    source = _text(wanted, "source")
     if source == LSL:
-        return ["--from=lsl", f"--stream={_needed(said, 'stream')}"]
+        return ["--from=lsl", f"--stream={_needed(wanted, 'stream')}"]
     if source == NATNET:
-        return ["--from=natnet", f"--server={_needed(said, 'server')}", f"--local={_needed(said, 'local')}"]
+        return ["--from=natnet", *(f"--{key}={_needed(wanted, key)}" for key in ("server", "local"))]
     if source != FILE:
         raise InvalidInput("choose a stream, Motive or a capture")
-    name = _needed(said, "trial")
+    name = _needed(wanted, "trial")
     for trial in session.trials:
         if trial.name == name:
             forces = [] if trial.forces is None else [f"--forces={trial.forces}"]
@@ -73,8 +72,8 @@ def _source(session: SurveyedSession, said: Mapping[str, object]) -> list[str]:
     raise InvalidInput(f"there is no capture '{name}'")
 
 
-def _body(workspace: Workspace, session: str, said: Mapping[str, object]) -> list[str]:
-    body = _text(said, "body")
+def _body(workspace: Workspace, session: str, wanted: Mapping[str, object]) -> list[str]:
+    body = _text(wanted, "body")
     if body == SUBJECT:
         subject = workspace.subject(session)
         if subject is None:
@@ -87,41 +86,37 @@ def _body(workspace: Workspace, session: str, said: Mapping[str, object]) -> lis
     return mass + ([] if notes.protocol is None else [f"--protocol={notes.protocol}"])
 
 
-def _needed(said: Mapping[str, object], key: str) -> str:
-    text = _text(said, key)
+def _needed(wanted: Mapping[str, object], key: str) -> str:
+    text = _text(wanted, key)
     if not text:
-        raise InvalidInput(
-            {"stream": "choose a stream", "trial": "choose a capture"}.get(
-                key, f"the {key} address is missing"
-            )
-        )
+        raise InvalidInput(MISSING.get(key, f"the {key} address is missing"))
     return text
 
 
-def _text(said: Mapping[str, object], key: str) -> str:
-    """A text of one line; empty where it is missing.
+def _text(wanted: Mapping[str, object], key: str) -> str:
+    """A short text; empty where it is missing.
 
     Raises:
-        InvalidInput: It is no such text.
+        InvalidInput: The entry is too long, or no text.
     """
-    text = said.get(key, "")
+    text = wanted.get(key, "")
     if not isinstance(text, str) or len(text) > MOST_LETTERS or "\0" in text:
         raise InvalidInput(f"the {key} must be a short text")
     return text.strip() if key in {"server", "local"} else text
 
 
 def recording_folder(workspace: Workspace, session: str, stamp: str) -> Path:
-    """A folder for a recording that neither a capture of the session nor a result has.
+    """A folder for a recording whose name neither a capture of the session nor a result has.
 
     Args:
         workspace: The sessions.
-        session: Which one.
-        stamp: The time, as a file's name may hold it.
+        session: Name of the session.
+        stamp: The time, in letters that a file's name may hold.
 
     Raises:
         InvalidInput: The session does not exist.
     """
-    place, captures = workspace.place(session), {one.name for one in workspace.look(session).trials}
+    place, captures = workspace.place(session), {one.name for one in workspace.survey(session).trials}
     name, number = f"live-{stamp}", 1
     while name in captures or (place / name).exists():
         number += 1

@@ -1,7 +1,7 @@
 """A live run as a process of its own, so that the page's server does not disturb the filter's timing.
 
-The process is ``mbkf live`` with its own options. It watches its standard input, which is held open here: closed, it
-ends the run as Ctrl-C does, but on every system and at any moment, and also where this server was killed.
+The process is ``mbkf live``. It watches its standard input, which this server holds open: closed, it ends the run as
+Ctrl-C does, but on every system, at any moment, and also if this server is killed.
 """
 
 from __future__ import annotations
@@ -27,27 +27,27 @@ from mbkf.stream.run.folder import LOG_FOLDER
 STARTING, RUNNING, ENDING, ENDED, FAILED = "starting", "running", "ending", "ended", "failed"
 
 PAGE = re.compile(rf"page: http://{re.escape(LOOPBACK)}:(\d+)/")
-"""How ``mbkf live`` tells where its page is."""
+"""The line in which ``mbkf live`` prints its page's address."""
 
 ERROR = "mbkf: error: "
 
 LONGEST_LINE = 2000
 END_S = 60.0
-"""Results are written within it, or never."""
+"""Longest time for writing results."""
 
 
 @dataclass(frozen=True)
 class LiveState:
-    """How far a live run is.
+    """The state of a live run.
 
     Attributes:
-        state: "starting" (no word came yet), "running", "ending", "ended" or "failed".
-        session: Whose it is.
-        name: The recording's.
-        said: What it said last, e.g. to the person who is to stand still.
-        port: Of its page, at this computer's own address; None before there is one.
-        reason: Why it failed; empty where it did not.
-        seconds: How long it has run.
+        state: "starting" (before its first output), "running", "ending", "ended" or "failed".
+        session: Name of its session.
+        name: Name of the recording.
+        said: Its last line, e.g. a prompt to the person to stand still.
+        port: Port of its page, at this computer's own address; None before there is one.
+        reason: Cause of a failure; empty without.
+        seconds: Time that it ran.
     """
 
     state: str
@@ -60,15 +60,18 @@ class LiveState:
 
     @property
     def goes_on(self) -> bool:
-        """Whether its process has not ended."""
+        """True until its process has ended."""
         return self.state in {STARTING, RUNNING, ENDING}
 
 
 class LiveRun:
-    """The live run of a page's server; one at a time."""
+    """The live run of a page's server; one at a time.
+
+    Args:
+        program: Command that starts mbkf.
+    """
 
     def __init__(self, program: Sequence[str] = (sys.executable, "-m", "mbkf")) -> None:
-        """Args: how mbkf is called."""
         self._program = tuple(program)
         self._lock = threading.Lock()
         self._process: subprocess.Popen[str] | None = None
@@ -77,7 +80,7 @@ class LiveRun:
         self._begin_s, self._port = 0.0, 0
 
     def state(self) -> LiveState | None:
-        """How far the newest run is; None before the first one."""
+        """The state of the newest run; None before the first one."""
         with self._lock:
             return self._state
 
@@ -85,20 +88,20 @@ class LiveRun:
         """Begins a run.
 
         Args:
-            session: Whose it is.
+            session: Name of its session.
             options: Of ``mbkf live``: the stream and the body.
-            folder: Where its results go.
+            folder: Folder of its results.
 
         Raises:
-            InvalidInput: Another one goes on.
+            InvalidInput: Another run has not ended.
             OSError: The process cannot be started.
         """
         with self._lock:
             if self._state is not None and self._state.goes_on:
                 raise InvalidInput(
-                    f"a live run goes on already, of session '{self._state.session}'; stop it first"
+                    f"a live run of session '{self._state.session}' goes on already; stop it first"
                 )
-            # A page at the address of the one before finds the plots and targets that the browser keeps for it.
+            # the browser keeps plots and targets by address, so the page gets the port of the run before
             words = [
                 *options,
                 "--view",
@@ -126,7 +129,7 @@ class LiveRun:
             self._reader.start()
 
     def stop(self) -> None:
-        """Asks the run to end and to write its results; nothing where none goes on."""
+        """Asks the run to end and to write its results, if there is one."""
         with self._lock:
             if self._state is None or self._process is None or self._state.state not in {STARTING, RUNNING}:
                 return
@@ -144,25 +147,29 @@ class LiveRun:
             self._reader.join()
 
     def _follow(self, process: subprocess.Popen[str], folder: Path) -> None:
-        """Listens to what the run says until it ends, then notes how; what a crash left in its log becomes results."""
+        """Reads the run's output until it ends, then its exit code; makes results of the log that a crash left."""
         assert process.stderr is not None
         last = ""
         while line := process.stderr.readline(LONGEST_LINE):
             last = line.strip() or last
-            self._heard(line.strip())
+            self._read(line.strip())
         code = process.wait()
         _close(process.stdin)
         _close(process.stderr)
-        why = "" if code == 0 else last.removeprefix(ERROR) or f"it ended with status {code} and said nothing"
+        why = (
+            ""
+            if code == 0
+            else last.removeprefix(ERROR) or f"it ended with status {code} and without a message"
+        )
         if why and self._recovered(folder):
-            why += "; what it had recorded until then is kept"
+            why += "; the frames recorded until then are kept"
         with self._lock:
             assert self._state is not None
             seconds = time.monotonic() - self._begin_s
             self._state = replace(self._state, state=FAILED if why else ENDED, reason=why, seconds=seconds)
 
     def _recovered(self, folder: Path) -> bool:
-        """Whether results could be made of the log that a run left without any."""
+        """Makes results of the log of a run that left none; False if that fails."""
         if not (folder / LOG_FOLDER).is_dir() or (folder / SUMMARY_FILE).is_file():
             return False
         words = [*self._program, "live", f"--recover={folder}"]
@@ -179,7 +186,7 @@ class LiveRun:
             return False
         return done.returncode == 0
 
-    def _heard(self, line: str) -> None:
+    def _read(self, line: str) -> None:
         page = PAGE.search(line)
         with self._lock:
             assert self._state is not None
@@ -192,7 +199,7 @@ class LiveRun:
 
 
 def _free(port: int) -> int:
-    """A port if nothing listens there now, else 0 for any that is free."""
+    """The port if it is free, else 0 for any free one."""
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -1,56 +1,35 @@
-"""The pages that the server gives out, each self-contained."""
+"""The start page, the report on a trial, and the frame of a live run's page."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.session import FootEvent
-from mbkf.viz.language import languages, words
-from mbkf.viz.page import asset, embedded
+from mbkf.stream.loopback import LOOPBACK
+from mbkf.viz.page import asset, embedded_words, fill, scripts
 from mbkf.viz.report.document import report_page
 
 SCRIPTS = (
     "element.js", "app_words.js", "app_live.js", "app_export.js", "app_report.js", "app_session.js", "app.js",
 )  # fmt: skip
-"""The page's own scripts, in the order they are needed."""
+"""Scripts of the start page, in the order they are needed."""
 
 SECTIONS = ("app", "live", "export", "problems")
-"""Sections of the language files with the page's words; no two have a word of one name."""
+"""Sections of the language files with the start page's texts; a key stands in one of them only."""
 
 
 def start_page() -> str:
     """The page of the sessions."""
-    text = asset("app.html")
-    known: dict[str, object] = {
-        code: {"name": name, "words": page_words(code)} for code, name in languages().items()
-    }
-    parts = {
-        "style": asset("app.css"),
-        "words": embedded("words", known),
-        "scripts": "\n".join(asset(name) for name in SCRIPTS),
-    }
-    for name, part in parts.items():
-        text = text.replace("{{" + name + "}}", part, 1)
-    return text
+    return fill("app.html", style=asset("app.css"), words=embedded_words(*SECTIONS), scripts=scripts(SCRIPTS))
 
 
-def page_words(language: str) -> dict[str, str]:
-    """The words of the page of the sessions, of all its sections.
-
-    Args:
-        language: Code, e.g. "es".
-    """
-    return {name: text for section in SECTIONS for name, text in words(language, section).items()}
-
-
-def report(folder: Path, events: tuple[FootEvent, ...] | None = None) -> str:
+def trial_report(folder: Path, events: tuple[FootEvent, ...] | None = None) -> str:
     """The report on a trial's result.
 
     Args:
         folder: The result.
-        events: Strikes and toe-offs that a person set; None for those that are found.
+        events: Strikes and toe-offs set by hand; None for the detected ones.
 
     Raises:
         FileFormatError: The result is damaged.
@@ -58,5 +37,6 @@ def report(folder: Path, events: tuple[FootEvent, ...] | None = None) -> str:
     return report_page(read_reconstruction(folder), read_summary(folder), by_hand=events)
 
 
-LOOKS: Mapping[str, Callable[[Path, tuple[FootEvent, ...] | None], str]] = {"report": report}
-"""Pages about a trial, by the last part of their path, that its result and its events by hand make."""
+def live_frame_page(port: int) -> str:
+    """A page that holds the live page at a port of this computer in a frame, and may hold nothing else."""
+    return fill("app_live.html", address=f"http://{LOOPBACK}:{port}")

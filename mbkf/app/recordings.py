@@ -19,10 +19,6 @@ Plain = dict[str, object]
 def recording_rows(workspace: Workspace, session: str) -> list[Plain]:
     """A session's recorded live runs as plain data, with the entries of a trial and "live".
 
-    Args:
-        workspace: The sessions.
-        session: Which one.
-
     Raises:
         InvalidInput: The session does not exist.
     """
@@ -37,27 +33,26 @@ def _row(folder: Path) -> Plain:
         "protocol": "", "plates": None, "events": 0, "usable": True, "problems": [], "status": "done", "reason": "",
     }  # fmt: skip
     try:
-        seen = _seen(folder, (folder / SUMMARY_FILE).stat().st_mtime_ns)
+        entries = _entries(folder, (folder / SUMMARY_FILE).stat().st_mtime_ns)
     except (MbkfError, OSError, ValueError) as error:
         return {**found, "status": "failed", "reason": " ".join(str(error).split())}
-    return {**found, **seen}
+    return {**found, **entries}
 
 
 @lru_cache(maxsize=256)
-def _seen(folder: Path, _stamp: int) -> Plain:
-    """What a recording's files tell; remembered until they change.
+def _entries(folder: Path, _stamp: int) -> Plain:
+    """The entries from a recording's files, cached until they change.
 
     Raises:
-        FileFormatError: They are damaged.
+        FileFormatError: A file is damaged.
     """
     summary = read_summary(folder)
     report = json.loads((folder / LIVE_FILE).read_text(encoding="utf-8"))
     lost, came = int(report.get("frames_lost", 0)), int(report.get("frames_in", 0))
-    told = Problem("frames_lost", (str(lost), str(lost + came)))
     return {
         "seconds": summary["duration_s"],
         "rate_hz": summary["rate_hz"],
         "markers": summary["markers_used"],
         "protocol": summary["protocol"],
-        "problems": [plain_problem(told)] if lost else [],
+        "problems": [plain_problem(Problem("frames_lost", (str(lost), str(lost + came))))] if lost else [],
     }

@@ -19,12 +19,7 @@ Plain = dict[str, object]
 
 
 def choices(workspace: Workspace, session: str) -> Plain:
-    """What a report may be compared with: other sessions with results, and files of norms.
-
-    Args:
-        workspace: The sessions.
-        session: The one that is reported on.
-    """
+    """Other sessions with results, and files of norms, for comparison with a session."""
     others = [name for name in workspace.sessions() if name != session and _is_done(workspace, name)]
     return {"sessions": others, "norms": [path.name for path in norms_files(workspace)]}
 
@@ -34,20 +29,20 @@ def report_of(workspace: Workspace, session: str, before: str, norms: str, langu
 
     Args:
         workspace: The sessions.
-        session: Which one.
-        before: An earlier one that it is compared with; empty for none.
-        norms: Name of a file of norms in the page's folder; empty for none.
-        language: Code of its language.
+        session: Its name.
+        before: Name of an earlier session to compare with; empty without.
+        norms: Name of a file of norms in the page's folder; empty without.
+        language: Code of the report's language.
 
     Raises:
-        InvalidInput: There is no such session, result, file of norms or language.
+        InvalidInput: Session, result, file of norms or language does not exist.
         FileFormatError: A file is damaged.
     """
     bands = None
     if norms:
         file = next((path for path in norms_files(workspace) if path.name == norms), None)
         if file is None:
-            raise InvalidInput(f"there are no norms '{norms}'")
+            raise InvalidInput(f"there is no file of norms '{norms}'")
         bands = read_norms(file)
     earlier = read_whole(workspace, before) if before else None
     return session_page(read_whole(workspace, session), earlier, bands, language)
@@ -56,17 +51,14 @@ def report_of(workspace: Workspace, session: str, before: str, norms: str, langu
 def read_whole(workspace: Workspace, session: str) -> Session:
     """A session with all results of trials that are not left out.
 
-    Args:
-        workspace: The sessions.
-        session: Which one.
-
     Raises:
-        InvalidInput: The session does not exist, or no result.
+        InvalidInput: The session does not exist, or has no result.
         FileFormatError: A file is damaged.
     """
     notes = workspace.stated(session)
     folder = workspace.root.name if session == "." else session
-    return session_from(workspace.results(session), _heading(notes.name, folder), notes)
+    heading = f"{notes.name}, {folder}" if notes.name not in ("", folder) else folder
+    return session_from(workspace.results(session), heading, notes)
 
 
 def build(workspace: Workspace) -> Plain:
@@ -100,10 +92,6 @@ def norms_files(workspace: Workspace) -> list[Path]:
             continue
         found.append(path)
     return found
-
-
-def _heading(name: str, folder: str) -> str:
-    return f"{name}, {folder}" if name and name != folder else folder
 
 
 def _is_done(workspace: Workspace, session: str) -> bool:

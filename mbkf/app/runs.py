@@ -1,7 +1,7 @@
-"""Runs of sessions, one after the other in a thread: what is done, what failed and why, and how long it will take.
+"""Runs of sessions, one after the other in a thread, with the state of each trial and the time that is left.
 
-What became of each trial stands in a file beside the results, so that a page, or a server that was killed, takes up
-where the last one stopped: trials that are done from the same files are not done again.
+The states stand in a file beside the results, so that a new page, or a server after a crash, continues where the last
+one stopped: trials that are done from the same files are not done again.
 """
 
 from __future__ import annotations
@@ -9,14 +9,15 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from os import cpu_count
 from pathlib import Path
 
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import write_text
 from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task
 from mbkf.study.batch.plan import Plan
 from mbkf.study.batch.run import outcomes_of
@@ -31,15 +32,15 @@ WAITING, RUNNING, FINISHED, CANCELLED, FAILED = "waiting", "running", "finished"
 
 @dataclass
 class RunState:
-    """How far the run of a session is.
+    """The state of a session's run.
 
     Attributes:
         state: "waiting", "running", "finished", "cancelled" or "failed".
-        stage: What is being done.
-        done, total: Trials.
-        seconds: How long it has run.
-        reason: Why it failed as a whole; empty where it did not.
-        trials: What became of trials, by name: "done", "unchanged" or "failed", and why.
+        stage: "scaled" or "trials".
+        done, total: Counts of trials.
+        seconds: Time since the run began.
+        reason: Cause of a failure of the whole run; empty without.
+        trials: Status of each trial by name ("done", "unchanged" or "failed"), and its reason.
     """
 
     state: str = WAITING
@@ -52,22 +53,21 @@ class RunState:
 
     @property
     def remaining_s(self) -> float | None:
-        """How long it will take; None before the first trial is done."""
+        """Estimated time until the end, s; None before the first trial is done."""
         if self.state != RUNNING or not self.done:
             return None
         return self.seconds / self.done * (self.total - self.done)
 
 
 class Runs:
-    """Runs sessions; one at a time, the others wait."""
+    """Runs one session at a time; begins with those that an earlier server left unfinished.
+
+    Args:
+        workspace: The sessions.
+        workers: Processes; by default one for each processor.
+    """
 
     def __init__(self, workspace: Workspace, workers: int | None = None) -> None:
-        """Takes up what was not finished.
-
-        Args:
-            workspace: The sessions.
-            workers: Processes; by default as many as this computer has processors.
-        """
         self._workspace, self._workers = workspace, workers or cpu_count() or 1
         self._states = _read(workspace.out / RUNS_FILE)
         self._changed = threading.Condition()
@@ -80,7 +80,7 @@ class Runs:
         self._thread.start()
 
     def start(self, session: str) -> None:
-        """Puts a session into the queue; one that waits or runs stays where it is."""
+        """Queues a session, unless it waits or runs already."""
         with self._changed:
             known = self._states.get(session)
             if known is None or known.state not in {WAITING, RUNNING}:
@@ -90,7 +90,7 @@ class Runs:
             self._changed.notify_all()
 
     def cancel(self, session: str) -> None:
-        """Ends the run of a session after the trials that are being done."""
+        """Ends the run of a session after the trials in progress."""
         with self._changed:
             state = self._states.get(session)
             if state is not None and state.state in {WAITING, RUNNING}:
@@ -100,12 +100,12 @@ class Runs:
                 self._write()
 
     def state(self, session: str) -> RunState | None:
-        """How far a session is; None for one that never ran."""
+        """The state of a session's run; None for one that never ran."""
         with self._changed:
             return self._states.get(session)
 
     def close(self) -> None:
-        """Ends the thread after the trials that are being done; the next one takes up the rest."""
+        """Ends the thread after the trials in progress; the next server continues."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()
@@ -132,21 +132,21 @@ class Runs:
             plan = self._workspace.plan(session)
             state.total = len(plan.trials)
             workers = LocalWorkers(min(self._workers, state.total))
-            watched = _Watched(workers, lambda task, found: self._told(session, begin, task, found))
+            watched = _Watched(workers, partial(self._note, session, begin))
             try:
                 found = outcomes_of(plan, self._workspace.out, ReconstructSettings(), watched)
             finally:
                 workers.close()
             self._finish(session, FINISHED, plan, found)
         except _Stopped:
-            ended = CANCELLED if session in self._cancelled else RUNNING  # closed: the next server goes on
+            ended = CANCELLED if session in self._cancelled else RUNNING  # closed: the next server continues
             self._finish(session, ended)
         except (MbkfError, OSError) as error:
             state.reason = " ".join(str(error).split())
             self._finish(session, FAILED)
 
-    def _told(self, session: str, begin: float, task: Task, found: Outcome) -> None:
-        """Notes what became of a task.
+    def _note(self, session: str, begin: float, task: Task, found: Outcome) -> None:
+        """Writes the outcome of a task into the states.
 
         Raises:
             _Stopped: The run was cancelled, or the page's server ends.
@@ -177,19 +177,18 @@ class Runs:
     def _write(self) -> None:
         """Writes all states; the caller holds the lock."""
         plain = {name: asdict(state) for name, state in self._states.items()}
-        with replacing(self._workspace.out / RUNS_FILE) as partial:
-            partial.write_text(json.dumps(plain, indent=1), encoding="utf-8")
+        write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1))
 
 
 class _Stopped(Exception):
-    """A run was to end."""
+    """The run ends before its last trial."""
 
 
 class _Watched:
-    """An executor that tells of each task's outcome as it comes."""
+    """An executor that reports each task's outcome as it comes."""
 
-    def __init__(self, executor: Executor, told) -> None:  # type: ignore[no-untyped-def]
-        self._executor, self._tell = executor, told
+    def __init__(self, executor: Executor, report: Callable[[Task, Outcome], None]) -> None:
+        self._executor, self._report = executor, report
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
         """Outcomes as they come."""
@@ -201,16 +200,16 @@ class _Watched:
                 yield task
 
         for number, outcome in self._executor.run(noted()):
-            self._tell(given[number], outcome)
+            self._report(given[number], outcome)
             yield number, outcome
 
     def close(self) -> None:
-        """Lets go of the workers."""
+        """Ends the workers."""
         self._executor.close()
 
 
 def _read(file: Path) -> dict[str, RunState]:
-    """The states that a file holds; none where it is missing or damaged."""
+    """The states in a file; empty if it is missing or damaged."""
     try:
         plain = json.loads(file.read_text(encoding="utf-8"))
         found = {str(name): RunState(**one) for name, one in plain.items()}

@@ -1,4 +1,4 @@
-"""The page's server, on this computer's own address alone: pages, plain data, files that are dropped."""
+"""The server of the laboratory's page, at this computer's own address only."""
 
 from __future__ import annotations
 
@@ -13,22 +13,16 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 
-from mbkf.app.export_routes import export_routes
 from mbkf.app.guard import Guard
-from mbkf.app.live_routes import live_routes
 from mbkf.app.live_run import LiveRun
-from mbkf.app.look_routes import look_routes
-from mbkf.app.marker_set_routes import marker_set_routes
-from mbkf.app.report_routes import report_routes
+from mbkf.app.routes import routes
 from mbkf.app.runs import Runs
-from mbkf.app.session_routes import session_routes
-from mbkf.app.trial_routes import trial_routes
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
 from mbkf.stream.loopback import LOOPBACK
 
 COOKIE = "mbkf-app-{port}"
-"""Cookies of one computer are the same for all ports."""
+"""Browsers share the cookies of a computer between its ports, so each port has its own."""
 
 START_S = 10.0
 
@@ -37,20 +31,20 @@ class AppServer:
     """Serves the page until it is closed.
 
     Attributes:
-        url: What to open, token included.
-        port: Where it listens.
+        url: Address to open, token included.
+        port: Its port.
     """
 
     def __init__(self, folder: Path, port: int = 0, workers: int | None = None) -> None:
-        """Listens, and takes up runs that were not finished.
+        """Begins to listen, and continues unfinished runs.
 
         Args:
             folder: The folder with the sessions; made where missing.
-            port: 0 for any that is free.
-            workers: Processes of a run; by default as many as this computer has processors.
+            port: 0 for any free one.
+            workers: Processes of a run; by default one for each processor.
 
         Raises:
-            InvalidInput: The port cannot be listened on.
+            InvalidInput: The port is not free.
             OSError: The folder cannot be made.
         """
         self.workspace = Workspace(folder)
@@ -59,13 +53,9 @@ class AppServer:
         self.port = int(self._socket.getsockname()[1])
         self.runs = Runs(self.workspace, workers)
         self.live = LiveRun()
-        config = uvicorn.Config(
-            application(self.workspace, self.runs, self.live, self._token, COOKIE.format(port=self.port)),
-            log_level="critical",
-            http="h11",
-            ws="none",
-            lifespan="off",
-        )
+        guard = Middleware(Guard, token=self._token, cookie=COOKIE.format(port=self.port))
+        app = Starlette(routes=routes(self.workspace, self.runs, self.live), middleware=[guard])
+        config = uvicorn.Config(app, log_level="critical", http="h11", ws="none", lifespan="off")
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(
             target=self._server.run, kwargs={"sockets": [self._socket]}, name="mbkf-app", daemon=True
@@ -79,43 +69,14 @@ class AppServer:
             raise InvalidInput("the page's server did not start")
         self.url = f"http://{LOOPBACK}:{self.port}/?token={self._token}"
 
-    def wait(self) -> None:
-        """Returns when the server was closed; an interrupt from the keyboard comes through."""
-        while self._thread.is_alive():
-            self._thread.join(0.2)
-
     def close(self) -> None:
-        """Ends server, live run and runs; the next one takes up what was not finished."""
+        """Ends server, live run and runs; the next server continues unfinished runs."""
         self._server.should_exit = True
         self.live.close()
         self.runs.close()
         self._thread.join(timeout=10.0)
         with contextlib.suppress(OSError):
             self._socket.close()
-
-
-def application(workspace: Workspace, runs: Runs, live: LiveRun, token: str, cookie: str) -> Starlette:
-    """The pages and what they ask for.
-
-    Args:
-        workspace: The sessions.
-        runs: Their runs.
-        live: The live run.
-        token: What every request must carry.
-        cookie: Name of the cookie that carries it.
-    """
-    return Starlette(
-        routes=[
-            *session_routes(workspace, runs),
-            *live_routes(workspace, live),
-            *export_routes(workspace),
-            *look_routes(workspace, runs),
-            *trial_routes(workspace),
-            *report_routes(workspace),
-            *marker_set_routes(workspace),
-        ],
-        middleware=[Middleware(Guard, token=token, cookie=cookie)],
-    )
 
 
 def _listening(port: int) -> socket.socket:

@@ -1,7 +1,8 @@
-"""The folder that a page works in: its sessions, what they hold, and where their results lie.
+"""The folder of a page: its sessions, their captures, and their results.
 
-A folder with captures is a session. A session goes by its path in the folder, "." for the folder itself. Results lie in
-``results`` beside the sessions, as ``mbkf batch`` puts them there.
+A folder with captures is a session, named by its path in the page's folder, "." for the folder itself. Results lie in
+``results`` beside the sessions, as ``mbkf batch`` writes them. Methods raise InvalidInput for a session that does not
+exist, and FileFormatError for a damaged session file.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
@@ -29,36 +30,33 @@ from mbkf.study.batch.plan import FORBIDDEN, Person, Plan, Trial
 from mbkf.study.survey.session import SurveyedSession, survey_session
 from mbkf.study.survey.trial import SurveyedTrial, survey_trial
 
+Stamp = tuple[tuple[int, int], ...]
+"""Sizes and times of a capture's files."""
+
 RESULTS = "results"
 """Folder of the results in the page's folder."""
 
 MOST_DEEP = 4
-"""Folders in folders that may be made for what is dropped on the page."""
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """A capture as it was when it was looked at: sizes and times of its files."""
-
-    stamp: tuple[tuple[int, int], ...]
-    trial: SurveyedTrial
+"""Most levels of folders that dropped files may bring."""
 
 
 class Workspace:
-    """Sessions of a folder; what was looked at once is remembered until the files change.
+    """Sessions of a folder; a survey of a capture is cached until its files change.
+
+    Args:
+        root: The folder; made if it is missing.
 
     Attributes:
         root: The folder.
-        out: Where results are put.
+        out: Folder of the results.
     """
 
     def __init__(self, root: Path) -> None:
-        """Args: the folder; made where missing."""
         self.root = root.absolute()
         self.root.mkdir(parents=True, exist_ok=True)
         self.out = self.root / RESULTS
-        self._seen: dict[Path, _Seen] = {}
-        self._looking, self._noting = threading.Lock(), threading.Lock()
+        self._cached: dict[Path, tuple[Stamp, SurveyedTrial]] = {}
+        self._surveying, self._noting = threading.Lock(), threading.Lock()
 
     def sessions(self) -> tuple[str, ...]:
         """The names of its sessions."""
@@ -68,84 +66,51 @@ class Workspace:
         """The folder of a session.
 
         Raises:
-            InvalidInput: The session does not exist.
+            InvalidInput: There is no such session.
         """
         if session not in self.sessions():
             raise InvalidInput(f"there is no session '{session}'")
         return self.root / session
 
-    def look(self, session: str) -> SurveyedSession:
-        """A session, looked at.
-
-        Raises:
-            InvalidInput: The session does not exist.
-            FileFormatError: Its session file is damaged.
-        """
+    def survey(self, session: str) -> SurveyedSession:
+        """A session with its trials and their problems."""
         folder = self.folder(session)
-        with self._looking:
+        with self._surveying:
             return survey_session(folder, self._surveyed, self.root)
 
     def plan(self, session: str) -> Plan:
-        """What is to be done for a session, as ``mbkf batch`` would do it.
+        """The work for a session, as ``mbkf batch`` plans it.
 
         Raises:
-            InvalidInput: The session does not exist, or no trial to be done.
+            InvalidInput: The session has no moving trial.
         """
         trials = self._trials(self.folder(session))
         if not trials:
-            raise InvalidInput("there is no moving trial to be done")
+            raise InvalidInput("the session has no moving trial to reconstruct")
         return Plan(trials)
 
     def place(self, session: str) -> Path:
-        """The folder of a session's results, as ``mbkf batch`` has it.
-
-        Raises:
-            InvalidInput: The session does not exist.
-        """
+        """The folder of a session's results, as for ``mbkf batch``."""
         return self.out / Person(*person_and_session(self.root, self.folder(session))).place
 
     def stated(self, session: str) -> SessionNotes:
-        """What session files state of a session, those above it included.
-
-        Raises:
-            InvalidInput: The session does not exist.
-            FileFormatError: One is damaged.
-        """
+        """The statements of session files about a session, those in folders above included."""
         return stated_of(self.root, self.folder(session))
 
     def subject(self, session: str) -> Path | None:
-        """The file of the session's scaled person: the session's own, that of a run, or of the newest live run.
-
-        None before there is one.
-
-        Raises:
-            InvalidInput: The session does not exist.
-        """
+        """The subject file of the session, of its run, or of its newest live run; None before there is one."""
         place = self.place(session)
-        folders = (
-            self.folder(session),
-            place,
-            *(place / name for name in reversed(self.recordings(session))),
-        )
+        live = (place / name for name in reversed(self.recordings(session)))
+        folders = (self.folder(session), place, *live)
         return next((file for folder in folders if (file := folder / SUBJECT_FILE).is_file()), None)
 
     def recordings(self, session: str) -> tuple[str, ...]:
-        """The names of a session's recorded live runs, in their order.
-
-        Raises:
-            InvalidInput: The session does not exist.
-        """
+        """The names of a session's recorded live runs, in their order."""
         reports = self.place(session).glob(f"*/{LIVE_FILE}")
         return tuple(sorted(one.parent.name for one in reports if (one.parent / SUMMARY_FILE).is_file()))
 
     def note(self, session: str, notes: SessionNotes) -> None:
-        """Writes what is stated of a session; events of trials stay as they are (:meth:`note_events`).
-
-        Raises:
-            InvalidInput: The session does not exist.
-            FileFormatError: Its session file is damaged.
-            OSError: It cannot be written.
-        """
+        """Writes the statements about a session; events of trials stay as they are (:meth:`note_events`)."""
         with self._noting:
             kept = {name: one.events for name, one in self._notes(session).trials.items()}
             names = dict.fromkeys([*notes.trials, *kept])
@@ -156,17 +121,12 @@ class Workspace:
             write_session(replace(notes, trials=stated), self.folder(session) / SESSION_FILE)
 
     def note_events(self, session: str, trial: str, events: tuple[FootEvent, ...] | None) -> None:
-        """Writes the events by hand of a trial; all else that is stated stays.
+        """Writes a trial's events by hand, or removes them with None; other statements stay as they are.
 
         Args:
-            session: Which session.
-            trial: Which of its trials.
-            events: They; None for those that are found.
-
-        Raises:
-            InvalidInput: The session does not exist.
-            FileFormatError: Its session file is damaged.
-            OSError: It cannot be written.
+            session: Name of the session.
+            trial: Name of the trial.
+            events: Events by hand; None for the detected ones.
         """
         with self._noting:
             notes = self._notes(session)
@@ -175,17 +135,17 @@ class Workspace:
 
     @contextmanager
     def putting(self, name: str) -> Iterator[BinaryIO]:
-        """Takes a file that is dropped on the page; it is there when the block ends without an error.
+        """Opens a file for the content of one that is dropped on the page; it appears when the block ends.
 
         Args:
             name: Its path in the folder, with slashes; missing folders are made.
 
         Yields:
-            Where to write what it holds.
+            The open file.
 
         Raises:
-            InvalidInput: The path leads out of the folder, or cannot be one.
-            OSError: It cannot be written.
+            InvalidInput: The path is not possible, or leads out of the folder.
+            OSError: The file cannot be written.
         """
         parts = PurePosixPath(name).parts
         if not 1 <= len(parts) <= MOST_DEEP + 1 or any(_is_bad(part) for part in parts):
@@ -200,17 +160,17 @@ class Workspace:
         """The folder of a trial's results.
 
         Raises:
-            InvalidInput: There are none.
+            InvalidInput: The trial has no results.
         """
         if trial in self.recordings(session):
             return self.place(session) / trial
         return self.out / self.trial(session, trial).place
 
     def trial(self, session: str, trial: str) -> Trial:
-        """A trial that has results, as ``mbkf batch`` would do it now.
+        """A trial that has results, as ``mbkf batch`` would plan it now.
 
         Raises:
-            InvalidInput: It has none.
+            InvalidInput: The trial has no results.
         """
         for one in self._with_results(session):
             if one.path.stem == trial:
@@ -218,11 +178,7 @@ class Workspace:
         raise InvalidInput(f"there is no result of '{trial}' yet")
 
     def with_results(self, session: str) -> tuple[str, ...]:
-        """Names of the trials of a session that have results.
-
-        Raises:
-            InvalidInput: The session does not exist.
-        """
+        """Names of the trials of a session that have results."""
         return tuple(one.path.stem for one in self._with_results(session))
 
     def _with_results(self, session: str) -> list[Trial]:
@@ -230,16 +186,11 @@ class Workspace:
         return [one for one in trials if (self.out / one.place / SUMMARY_FILE).is_file()]
 
     def events(self, session: str, trial: str) -> tuple[FootEvent, ...] | None:
-        """The events by hand of a trial or recording; None for those that are found.
-
-        Raises:
-            InvalidInput: The session does not exist.
-            FileFormatError: Its session file is damaged.
-        """
+        """The events by hand of a trial or recording; None without."""
         return self._notes(session).trial(trial).events
 
     def _notes(self, session: str) -> SessionNotes:
-        """What the session's own file states."""
+        """The statements of the session's own file."""
         file = self.folder(session) / SESSION_FILE
         return read_session(file) if file.is_file() else SessionNotes()
 
@@ -247,28 +198,28 @@ class Workspace:
         """The folders of a session's results: of each trial that is done and not left out, and of live runs.
 
         Raises:
-            InvalidInput: The session does not exist, or no result.
+            InvalidInput: The session has no result.
         """
         place = self.place(session)
         done = [self.out / one.place for one in self._with_results(session)]
         done += [place / name for name in self.recordings(session)]
         if not done:
-            raise InvalidInput(f"nothing of '{session}' is done yet; run it first")
+            raise InvalidInput(f"session '{session}' has no result yet; run it first")
         return done
 
     def _trials(self, folder: Path) -> tuple[Trial, ...]:
         """The moving trials of a session's folder that are not left out."""
         try:
             return tuple(one for one in plan_of_folder(self.root).trials if one.path.parent == folder)
-        except InvalidInput:  # there are standing ones only
+        except InvalidInput:  # there are standing trials only
             return ()
 
     def _surveyed(self, path: Path, forces: Path | None) -> SurveyedTrial:
         stamp = tuple((s.st_size, s.st_mtime_ns) for s in (file.stat() for file in (path, forces) if file))
-        seen = self._seen.get(path)
-        if seen is None or seen.stamp != stamp:
-            seen = self._seen[path] = _Seen(stamp, survey_trial(path, forces))
-        return seen.trial
+        cached = self._cached.get(path)
+        if cached is None or cached[0] != stamp:
+            cached = self._cached[path] = stamp, survey_trial(path, forces)
+        return cached[1]
 
 
 def _is_bad(part: str) -> bool:

@@ -58,10 +58,11 @@ def run(args: argparse.Namespace) -> int:
     print_summary(demo.summary, demo.folder / "result")
     _print_errors(demo)
     if args.report:
-        from mbkf.viz.report.document import labels_of, write_report
+        from mbkf.io.atomic import write_text
+        from mbkf.viz.report.document import labels_of, report_page
 
-        path = demo.folder / "report.html"
-        write_report(demo.result, demo.summary, path, labels_of(demo.folder / "result", demo.result.trial))
+        path, labels = demo.folder / "report.html", labels_of(demo.folder / "result", demo.result.trial)
+        write_text(path, report_page(demo.result, demo.summary, labels))
         print(path)
     return 0
 

@@ -28,15 +28,16 @@ def run(args: argparse.Namespace) -> int:
 
     from mbkf.cli.protocol import print_set
     from mbkf.cli.tables import terminal
+    from mbkf.io.atomic import write_text
     from mbkf.model.protocol import load_protocol
-    from mbkf.viz.protocol.page import write_show_page
+    from mbkf.viz.protocol.page import show_page
 
     protocol, console = load_protocol(args.protocol), terminal()
     print_set(protocol, console)
     if args.out is None and args.no_browser:
         return 0
     out = Path(args.out or Path(tempfile.mkdtemp(prefix="mbkf-")) / "marker_set.html")
-    write_show_page(protocol, out)
+    write_text(out, show_page(protocol))
     console.print(str(out), soft_wrap=True)
     if not args.no_browser:
         webbrowser.open(out.resolve().as_uri())

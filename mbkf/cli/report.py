@@ -65,22 +65,24 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _trial(args: argparse.Namespace, folder: Path) -> int:
+    from mbkf.io.atomic import write_text
     from mbkf.io.results_folder import read_reconstruction, read_summary
-    from mbkf.viz.report.document import labels_of, read_labels, write_report
+    from mbkf.viz.report.document import labels_of, read_labels, report_page
 
     result = read_reconstruction(folder)
     labels = labels_of(folder, result.trial) if args.labels is None else read_labels(args.labels)
     out = Path(args.out) if args.out else folder / "report.html"
-    write_report(result, read_summary(folder), out, labels)
+    write_text(out, report_page(result, read_summary(folder), labels))
     print(out)
     return 0
 
 
 def _session(args: argparse.Namespace, folders: list[Path]) -> int:
+    from mbkf.io.atomic import write_text
     from mbkf.io.norms import read_norms
     from mbkf.study.session.gather import results_in, session_from
     from mbkf.viz.language import ENGLISH
-    from mbkf.viz.session.document import session_page, write_session_report
+    from mbkf.viz.session.document import session_page
 
     norms = None if args.norms is None else read_norms(args.norms)
     if args.curves is not None:
@@ -95,7 +97,7 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
 
     before = None if args.against is None else read([Path(place) for place in args.against], None)
     session = read(folders, args.name)
-    write_session_report(session_page(session, before, norms, args.language or ENGLISH), out)
+    write_text(out, session_page(session, before, norms, args.language or ENGLISH))
     print(out)
     if args.curves is not None:
         write_session_curves(session, args.curves)

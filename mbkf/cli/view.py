@@ -29,16 +29,17 @@ def run(args: argparse.Namespace) -> int:
     """Writes the page, or serves it until interrupted."""
     import webbrowser
 
+    from mbkf.io.atomic import write_text
     from mbkf.io.results_folder import read_reconstruction
-    from mbkf.viz.scene.playback import playback_page, write_playback
+    from mbkf.viz.scene.recording import playback_page
     from mbkf.viz.server import PageServer
 
-    result = read_reconstruction(args.folder)
+    text = playback_page(read_reconstruction(args.folder))
     if args.html is not None:
-        write_playback(result, args.html)
+        write_text(args.html, text)
         print(args.html)
         return 0
-    server = PageServer(playback_page(result), address=args.address, port=args.port)
+    server = PageServer(text, address=args.address, port=args.port)
     try:
         print(f"{server.url}\nCtrl-C ends", flush=True)
         if not args.no_browser:

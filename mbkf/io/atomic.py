@@ -30,6 +30,16 @@ def replacing(path: str | Path) -> Iterator[Path]:
         temporary.replace(target)
 
 
+def write_text(path: str | Path, text: str) -> None:
+    """Writes a text file, whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
 def flush(path: Path) -> None:
     """Waits until a file is on the disk; does nothing on systems that only flush files open for writing.
 

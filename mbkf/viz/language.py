@@ -1,7 +1,7 @@
-"""The words of pages and reports in each language, from the files of ``mbkf/viz/languages``.
+"""Texts of pages and reports in each language, from the files of ``mbkf/viz/languages``.
 
-A language is a TOML file named after its code, with the language's own name and a section of words for each kind of
-page. A new language needs such a file only; tests hold every file complete.
+A language is a TOML file named after its code, with the language's own name and a section of texts for each kind of
+page. A new language needs such a file only; tests keep every file complete.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mbkf.errors import InvalidInput
 FOLDER = Path(__file__).resolve().parent / "languages"
 
 ENGLISH = "en"
-"""The language of texts that have no other."""
+"""The language of texts without a translation."""
 
 
 @cache
@@ -26,11 +26,7 @@ def languages() -> Mapping[str, str]:
 
 
 def words(language: str, section: str) -> Mapping[str, str]:
-    """The words of a kind of page.
-
-    Args:
-        language: Code, e.g. "es".
-        section: E.g. "app".
+    """The texts of a section, e.g. "app", in the language of a code, e.g. "es".
 
     Raises:
         InvalidInput: The language does not exist.
@@ -41,7 +37,7 @@ def words(language: str, section: str) -> Mapping[str, str]:
 
 
 def filled(text: str, *values: object) -> str:
-    """A text in which the values stand for {0}, {1} and so on."""
+    """A text with values in the places of {0}, {1} and so on."""
     for k, value in enumerate(values):
         text = text.replace(f"{{{k}}}", str(value))
     return text

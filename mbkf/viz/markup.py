@@ -1,9 +1,17 @@
-"""Pieces of HTML that the report is put together from."""
+"""Pieces of HTML for reports."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
+
+
+class Html(str):
+    """A text that is HTML already."""
+
+
+def _html(text: str) -> str:
+    return text if isinstance(text, Html) else escape(text)
 
 
 def section(name: str, title: str, *body: str) -> str:
@@ -33,25 +41,22 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], kind: str = ""
 
     Args:
         headings: Column headings.
-        rows: Cells of each row, HTML.
+        rows: Cells of each row; of :class:`Html`, or plain text.
         kind: CSS class of the table.
     """
     head = "".join(f"<th>{escape(text)}</th>" for text in headings)
     body = "".join(
-        "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows if row
+        "<tr>" + "".join(f"<td>{_html(cell)}</td>" for cell in row) + "</tr>" for row in rows if row
     )
     return f'<table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
 
 
 def folded(title: str, *body: str) -> str:
-    """Something that is shown when its title is clicked (and on paper)."""
+    """Content that is shown when its title is clicked (and on paper)."""
     return f"<details><summary>{escape(title)}</summary>{''.join(body)}</details>"
 
 
 def key(*entries: tuple[str, str]) -> str:
     """A legend: pairs of the class of a swatch and its text."""
-    return (
-        '<p class="key">'
-        + "".join(f'<span><i class="{cls}"></i>{escape(text)}</span>' for cls, text in entries)
-        + "</p>"
-    )
+    spans = "".join(f'<span><i class="{cls}"></i>{escape(text)}</span>' for cls, text in entries)
+    return f'<p class="key">{spans}</p>'

@@ -1,48 +1,77 @@
-"""The page as one piece of text: markup, style, scripts and meshcat's viewer, so that nothing else is ever loaded."""
+"""Pages as one text: markup, style, scripts, data and meshcat's viewer, so that nothing else is ever loaded."""
 
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Iterable, Mapping
 from functools import cache
+from html import escape
 from pathlib import Path
+
+from mbkf.viz.language import languages, words
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 
 SCRIPTS = (
     "element.js", "colours.js", "scene.js", "plot.js", "panel.js", "player.js", "live.js", "page.js",
 )  # fmt: skip
-"""The page's own scripts, in the order they are needed."""
+"""Scripts of the 3-D page, in the order they are needed."""
 
 
 def page(recording: dict[str, object] | None = None) -> str:
-    """The page.
+    """The 3-D page: it plays a recording (:mod:`mbkf.viz.scene.recording`), or its server's live stream without one."""
+    return fill(
+        "page.html",
+        connect="'self'" if recording is None else "'none'",
+        style=asset("page.css"),
+        recording="" if recording is None else embedded("recording", recording),
+        meshcat=viewer_script(),
+        scripts=scripts(SCRIPTS),
+    )
+
+
+def document(language: str, title: str, style: str, sections: Iterable[tuple[str, str]], body: str) -> str:
+    """A report: a page without scripts, with links to its sections.
 
     Args:
-        recording: What to play: ``scene`` and ``rows`` (see :mod:`mbkf.viz.scene.recording`); the page asks its
-            server for a live stream when None.
+        language: Its code, e.g. "en".
+        title: Of the window, plain text.
+        style: Style sheets, one after another.
+        sections: Identifier and title of each section that the page links to.
+        body: Heading and sections, HTML.
     """
-    parts = {
-        "connect": "'self'" if recording is None else "'none'",
-        "page.css": asset("page.css"),
-        "recording": "" if recording is None else embedded("recording", recording),
-        "meshcat": viewer_script(),
-        "scripts": _in_script("\n".join(asset(name) for name in SCRIPTS)),
-    }
-    text = asset("page.html")
-    for name, part in parts.items():
-        text = text.replace("{{" + name + "}}", part, 1)
-    return text
+    links = "".join(f'<a href="#{name}">{escape(text)}</a>' for name, text in sections)
+    return fill("report.html", language=language, title=escape(title), style=style, links=links, body=body)
 
 
+def fill(template: str, **parts: str) -> str:
+    """An asset with its parts in the places of ``{{name}}``."""
+    return re.sub(r"\{\{(\w+)\}\}", lambda place: parts[place[1]], asset(template))
+
+
+@cache
 def asset(name: str) -> str:
     """The text of a file of ``mbkf/viz/assets``."""
     return (ASSETS / name).read_text(encoding="utf-8")
 
 
-def embedded(name: str, data: dict[str, object]) -> str:
+def embedded(name: str, data: Mapping[str, object]) -> str:
     """Plain data as a script element that holds JSON, whatever its texts contain."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"), ensure_ascii=False)
     return f'<script type="application/json" id="{name}">' + text.replace("<", "\\u003c") + "</script>"
+
+
+def embedded_words(*sections: str) -> str:
+    """The texts of sections of the language files, in every language, for the scripts of a page."""
+    known = {
+        code: {
+            "name": name,
+            "words": {key: text for one in sections for key, text in words(code, one).items()},
+        }
+        for code, name in languages().items()
+    }
+    return embedded("words", known)
 
 
 @cache
@@ -52,6 +81,11 @@ def viewer_script() -> str:
     return _in_script(f"/*\n{licences.replace('*/', '* /')}\n*/\n{asset('meshcat/main.min.js')}")
 
 
+def scripts(names: Iterable[str]) -> str:
+    """Scripts of the assets, one after another, escaped for a script element."""
+    return _in_script("\n".join(asset(name) for name in names))
+
+
 def _in_script(text: str) -> str:
-    """A script that may stand inside a page: nothing in it ends the element early."""
+    """A script in which nothing ends its element early."""
     return text.replace("</script", "<\\/script").replace("<!--", "<\\!--")

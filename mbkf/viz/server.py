@@ -1,7 +1,7 @@
-"""A small web server for one page: its text, and a WebSocket that sends rows and takes words, in a thread of its own.
+"""A small web server for one page, in a thread of its own: the page's text, and a WebSocket for rows and requests.
 
-Bound to this computer alone unless another address is given; then every request must carry the token. Requests
-that another web page or another host name caused are refused.
+It listens to this computer only, unless another address is given; then every request must carry the token. Requests
+from another web page or with another host name are refused.
 """
 
 from __future__ import annotations
@@ -26,15 +26,22 @@ from websockets.http11 import Request, Response
 from mbkf.errors import InvalidInput
 from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 
+HEADERS = {
+    "Cache-Control": "no-store",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Connection": "close",
+}
+
 SEND_PERIOD_S = 1.0 / 30.0
 LONGEST_SLEEP_S = 0.2
 STOP_S = 3.0
 
 Newest = Callable[[], tuple[int, bytes] | None]
-"""The newest row and its number, or None where there is none; called at most 30 times a second per open page."""
+"""Returns the newest row and its number, or None without rows; called at most 30 times a second per open page."""
 
 Hear = Callable[[str], str]
-"""Takes what a page says and returns the answer to it; called in a thread, one word after another per open page."""
+"""Takes a request of a page and returns the reply; called in a thread, one request after another per open page."""
 
 
 class PageServer:
@@ -43,19 +50,19 @@ class PageServer:
     Args:
         text: The page.
         greeting: First message of the WebSocket.
-        newest: Where rows come from; None for a page that needs no stream.
-        hear: What takes the words that the page sends over the WebSocket; None for a page that only looks.
-        address: Where to listen.
-        port: 0 for any that is free.
-        token: What a request must carry; made up where the address is not this computer's own and none is given.
+        newest: Source of rows; None for a page without a stream.
+        hear: Replies to requests over the WebSocket; None for a page without requests.
+        address: Address to listen at.
+        port: 0 for any free one.
+        token: Secret of every request; by default a random one where the address is not this computer's own.
 
     Attributes:
-        url: What to open, token included.
-        port: Where it listens.
-        token: Secret that requests have to carry; empty where none is needed.
+        url: Address to open, token included.
+        port: Its port.
+        token: Secret of every request; empty if none is needed.
 
     Raises:
-        InvalidInput: The address or port cannot be listened on.
+        InvalidInput: The address or port cannot be used.
     """
 
     def __init__(
@@ -98,12 +105,12 @@ class PageServer:
             self._thread.join(STOP_S)
 
     def free(self) -> None:
-        """Stops listening, so that another server may listen there at once; connections and thread end soon after."""
+        """Frees the port at once for another server; connections and thread end soon after."""
         if self._end():
             self._freed.wait(STOP_S)
 
     def _end(self) -> bool:
-        """Asks the thread to end; False where it has."""
+        """Asks the thread to end; False if it has ended."""
         if self._loop is None or self._stop is None or not self._thread.is_alive():
             return False
         with contextlib.suppress(RuntimeError):  # the loop has just been closed
@@ -111,14 +118,14 @@ class PageServer:
         return True
 
     def wake(self) -> None:
-        """Announces a new row: it is made now, and not while the next frame is being answered."""
+        """Announces a new row, so that it is made now and not during the next frame."""
         if self._asleep and self._loop is not None:
             self._asleep = False
             with contextlib.suppress(RuntimeError):  # the server has just ended
                 self._loop.call_soon_threadsafe(self._fresh.set)
 
     def wait(self) -> None:
-        """Returns when the server was closed; an interrupt from the keyboard comes through."""
+        """Waits until the server is closed, or Ctrl-C."""
         while self._thread.is_alive():
             self._thread.join(0.2)
 
@@ -142,11 +149,11 @@ class PageServer:
             self._listening.set()
             await self._stop.wait()
             server.close()
-            await asyncio.sleep(0)  # what closing begins with
+            await asyncio.sleep(0)  # closing begins with freeing the port
             self._freed.set()
 
     def _answer(self, _connection: ServerConnection, request: Request) -> Response | None:
-        """The page, a refusal, or None where the WebSocket goes ahead."""
+        """The page, a refusal, or None to open the WebSocket."""
         url = urlsplit(request.path)
         if not self._allowed(request, parse_qs(url.query).get("token", [""])[0]):
             return _response(
@@ -159,13 +166,13 @@ class PageServer:
         return _response(HTTPStatus.NOT_FOUND, b"Nothing is here.\n")
 
     def _allowed(self, request: Request, token: str) -> bool:
-        """Whether the request carries the token and comes from this page rather than from another web page."""
+        """True for a request with the token that no other web page caused."""
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
         own = own_request(host, origin, self._local)
         return own and hmac.compare_digest(token.encode(), self.token.encode())
 
     async def _stream(self, connection: ServerConnection) -> None:
-        """Sends the newest row whenever there is one; a slow page gets fewer rows, never old ones."""
+        """Sends each newest row; a slow page gets fewer rows, never old ones."""
         if self._newest is None:
             await self._converse(connection)
             return
@@ -186,7 +193,7 @@ class PageServer:
             closed.cancel()
 
     async def _converse(self, connection: ServerConnection) -> None:
-        """Answers what the page says until it leaves."""
+        """Replies to requests until the page closes."""
         assert self._hear is not None
         with contextlib.suppress(ConnectionClosed):
             await connection.send(self._greeting)
@@ -195,7 +202,7 @@ class PageServer:
                     await connection.send(await asyncio.to_thread(self._hear, word))
 
     async def _woken(self, closed: asyncio.Future[Any]) -> None:
-        """Waits for a new row, for the connection's end, or a while."""
+        """Waits for a new row or the connection's end, at most LONGEST_SLEEP_S."""
         self._fresh.clear()
         self._asleep = True
         fresh: asyncio.Future[Any] = asyncio.ensure_future(self._fresh.wait())
@@ -204,14 +211,5 @@ class PageServer:
 
 
 def _response(status: HTTPStatus, body: bytes, kind: str = "text/plain; charset=utf-8") -> Response:
-    headers = Headers(
-        [
-            ("Content-Type", kind),
-            ("Content-Length", str(len(body))),
-            ("Cache-Control", "no-store"),
-            ("X-Content-Type-Options", "nosniff"),
-            ("Referrer-Policy", "no-referrer"),
-            ("Connection", "close"),
-        ]
-    )
+    headers = Headers({**HEADERS, "Content-Type": kind, "Content-Length": str(len(body))})
     return Response(status.value, status.phrase, headers, body)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from mbkf.numerics.runs import runs
 WIDTH, HEIGHT = 340.0, 150.0
 LEFT, RIGHT, TOP, BOTTOM = 40.0, 8.0, 24.0, 20.0
 BARS_WIDTH, BARS_NAME, BARS_ROW = 1000.0, 60.0, 20.0
-"""Measures of a chart of bars: breadth, room for the names, height of a row."""
+"""Measures of a chart of bars: width, room for the names, height of a row."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Line:
         side: "r", "l" or "" for its colour.
         thin: Drawn lightly, as one of several.
         dashed: Drawn with dashes.
-        scales: Whether the axis makes room for it; what does not fit is drawn on the frame's edge.
+        scales: True if the axis makes room for it; otherwise points outside lie on the frame's edge.
     """
 
     x: Array
@@ -73,10 +74,10 @@ def chart(
         x_range: First and last x shown.
         x_unit: Written after the last tick.
         marks: Vertical lines.
-        level: A horizontal line that means something (a bound, an expected value).
-        note: Shown when the pointer rests on the chart.
+        level: Height of a horizontal line: a bound, or an expected value.
+        note: Text shown while the pointer rests on the chart.
         width: In the drawing's own units, which the page scales.
-        height: Likewise.
+        height: In the same units.
     """
     low, high = _y_range([line for line in lines if line.scales], level)
     box = _Box(width, height, x_range, (low, high))
@@ -91,13 +92,10 @@ def chart(
     parts += [_band(box, one, one.sd, "band" if one.inner_sd is None else "band outer") for one in lines]
     parts += [_band(box, one, one.inner_sd, "band inner") for one in lines]
     parts += [_path(box, line) for line in lines]
-    heading = (
-        f'<text class="title" x="2" y="12">{escape(title)}<tspan class="unit"> {escape(unit)}</tspan></text>'
-    )
     hint = f"<title>{escape(note)}</title>" if note else ""
     return (
-        f'<svg class="chart" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="{escape(title)}">'
-        f"{hint}{heading}"
+        f'<svg class="chart" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="{escape(title)}">{hint}'
+        f'<text class="title" x="2" y="12">{escape(title)}<tspan class="unit"> {escape(unit)}</tspan></text>'
         f"{''.join(parts)}</svg>"
     )
 
@@ -116,7 +114,7 @@ def bar_chart(label: str, names: Sequence[str], bars: Sequence[Bar], span_s: tup
     """Bars over time, a row for each name, as an SVG element.
 
     Args:
-        label: What the chart shows, for those who do not see it.
+        label: Description of the chart for screen readers.
         names: Names of the rows.
         bars: The bars.
         span_s: First and last time shown.
@@ -176,32 +174,30 @@ class _Box:
     x_range: tuple[float, float]
     y_range: tuple[float, float]
 
-    def x(self, value: float) -> float:
+    def x(self, value: Any) -> Any:
+        """Place of x values from the left."""
         first, last = self.x_range
         return LEFT + (value - first) / ((last - first) or 1.0) * (self.width - LEFT - RIGHT)
 
-    def y(self, value: float) -> float:
+    def y(self, value: Any) -> Any:
+        """Place of y values from the top."""
         low, high = self.y_range
         return self.height - BOTTOM - (value - low) / (high - low) * (self.height - TOP - BOTTOM)
 
     def path(self, x: Array, y: Array) -> str:
-        """A path in tenths of a unit, each point relative to the one before (the shortest text there is).
+        """A path in tenths of a unit, each point relative to the last one (the shortest text).
 
-        What lies outside the frame is drawn on its edge.
+        Points outside the frame are drawn on its edge.
         """
-        (first, last), (low, high) = self.x_range, self.y_range
-        across = LEFT + (x - first) / ((last - first) or 1.0) * (self.width - LEFT - RIGHT)
-        down = (
-            self.height - BOTTOM - (np.clip(y, low, high) - low) / (high - low) * (self.height - TOP - BOTTOM)
-        )
-        tenths = np.round(10.0 * np.column_stack([across, down])).astype(int)
+        places = np.column_stack([self.x(x), self.y(np.clip(y, *self.y_range))])
+        tenths = np.round(10.0 * places).astype(int)
         steps = np.diff(tenths, axis=0).ravel()
         start = f"M{tenths[0, 0]} {tenths[0, 1]}l"
         return start + "".join(f"{n}" if n < 0 else f" {n}" for n in steps.tolist())
 
 
 def _y_range(lines: Sequence[Line], level: float | None) -> tuple[float, float]:
-    """All curves and most of their bands: bands may leave the frame where they are far wider than usual."""
+    """Range of all curves and of most bands: a band may leave the frame where it is far wider than usual."""
     values = [line.y[np.isfinite(line.y)] for line in lines]
     values += [np.array([] if level is None else [level])]
     for line in lines:
@@ -251,12 +247,8 @@ _TENTHS = 'transform="scale(.1)"'
 def _path(box: _Box, line: Line) -> str:
     known = np.isfinite(line.y)
     d = "".join(box.path(*_thinned(line.x[a:b], line.y[a:b], box.width)) for a, b in runs(known))
-    return (
-        f'<path {_TENTHS} class="{"thin" if line.thin else "line"} {_side(line.side)}'
-        f'{" dashed" if line.dashed else ""}" d="{d}"/>'
-        if d
-        else ""
-    )
+    kind, dashed = "thin" if line.thin else "line", " dashed" if line.dashed else ""
+    return f'<path {_TENTHS} class="{kind} {_side(line.side)}{dashed}" d="{d}"/>' if d else ""
 
 
 def _band(box: _Box, line: Line, sd: Array | None, kind: str) -> str:
@@ -273,7 +265,7 @@ def _band(box: _Box, line: Line, sd: Array | None, kind: str) -> str:
 
 
 def _thinned(x: Array, y: Array, width: float) -> tuple[Array, Array]:
-    """A curve with no more than a least and a greatest value for each unit of width."""
+    """A curve with at most a least and a greatest value for each unit of width."""
     bins = round(width)
     if len(x) <= 2 * bins:
         return x, y

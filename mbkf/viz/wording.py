@@ -14,15 +14,15 @@ SIDE_NAMES = {"r": "right", "l": "left"}
 
 @dataclass(frozen=True)
 class Wording:
-    """How one clinical coordinate is shown.
+    """Texts and units of a clinical coordinate.
 
     Attributes:
         title: E.g. "Knee flexion".
         side: "r", "l", or "" on the midline.
         joint: Name of its joint without the side, e.g. "knee".
-        positive: What a positive value means.
+        positive: Meaning of a positive value.
         turns: True for angles, False for the root's translations.
-        root: Whether it belongs to the root: what drives it is a residual, no torque.
+        root: True for the root, whose load is a residual and no torque.
     """
 
     title: str
@@ -39,12 +39,12 @@ class Wording:
 
     @property
     def unit(self) -> str:
-        """Unit of the coordinate as shown."""
+        """Unit shown."""
         return "°" if self.turns else "m"
 
     @property
     def factor(self) -> float:
-        """From rad or m to that unit."""
+        """Factor from rad or m to that unit."""
         return float(np.rad2deg(1.0)) if self.turns else 1.0
 
     @property
@@ -55,12 +55,7 @@ class Wording:
 
 @dataclass(frozen=True)
 class PartWording:
-    """How a part of the body that bears load is shown.
-
-    Attributes:
-        title: E.g. "Hand".
-        side: "r", "l", or "" on the midline.
-    """
+    """Title (e.g. "Hand") and side ("r", "l", or "" on the midline) of a part of the body that bears load."""
 
     title: str
     side: str

@@ -47,7 +47,7 @@ def test_all_sessions_in_short(workspace):
 
 def test_what_the_page_states_is_written(workspace):
     said = {"name": "A", "mass_kg": 60, "trial": {"walk1": {"kind": "run"}, "walk2": {"excluded": "fell"}}}
-    assert answers.stated(workspace, "P1", said).mass_kg == 60.0
+    answers.write_notes(workspace, "P1", said)
     told = answers.session(workspace, States({}), "P1")
     assert told["notes"] == {**said, "mass_kg": 60.0}
     assert [one["kind"] for one in told["trials"]] == ["static", "run", "walk"]
@@ -60,7 +60,7 @@ def test_what_cannot_be_is_refused_and_nothing_written(workspace, said):
     if said == "texttexttext":
         said = {"name": 3}
     with pytest.raises(FileFormatError):
-        answers.stated(workspace, "P1", said)
+        answers.write_notes(workspace, "P1", said)
     assert not (workspace.root / "P1" / "session.toml").exists()
     with pytest.raises(InvalidInput, match="no session"):
-        answers.stated(workspace, "P9", {})
+        answers.write_notes(workspace, "P9", {})

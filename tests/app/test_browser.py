@@ -78,5 +78,5 @@ def test_a_file_that_cannot_be_kept_is_told_and_the_others_are_taken(page, lab, 
         (folder / name).write_bytes((walk_folder() / "trial.c3d").read_bytes())
     page.locator("input[type=file]").first.set_input_files(folder)
     page.wait_for_selector("tbody tr")
-    assert "1 files were not taken" in page.locator("#told").inner_text()
+    assert "1 files were refused" in page.locator("#told").inner_text()
     assert [path.name for path in (lab.workspace.root / "P2").iterdir()] == ["walk.c3d"]

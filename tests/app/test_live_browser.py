@@ -2,7 +2,7 @@
 
 import pytest
 
-from mbkf.app import live_routes as module
+from mbkf.app import routes as module
 from mbkf.app.server import AppServer
 from mbkf.stream.lsl.discovery import FoundStream
 from tests.app.test_recordings import record

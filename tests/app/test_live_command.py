@@ -69,7 +69,7 @@ def test_the_scaled_body_is_taken_where_there_is_one(workspace, lab):
 @pytest.mark.parametrize(
     ("said", "why"),
     [
-        ([], "with its source and body"),
+        ([], "needs a source and a body"),
         ({}, "choose a stream, Motive or a capture"),
         ({"source": "file:/etc/passwd", "body": "standing"}, "choose a stream, Motive or a capture"),
         ({"source": "lsl", "body": "standing"}, "choose a stream"),

@@ -68,7 +68,7 @@ def test_what_it_says_is_told_and_it_ends_when_asked(begun, tmp_path):
     run = begun(FOLLOWS)
     now = said(run, "following walk")
     assert (now.state, now.port, now.session, now.name) == ("running", 51234, "P1", "live-1") and now.goes_on
-    with pytest.raises(InvalidInput, match="goes on already, of session 'P1'"):
+    with pytest.raises(InvalidInput, match="a live run of session 'P1' goes on already"):
         run.start("P2", [], tmp_path / "other")
     run.stop()
     run.stop()
@@ -98,7 +98,7 @@ def test_a_crash_without_a_word_is_told_with_its_status(tmp_path):
     assert run.state() is None
     run.stop()
     run.start("P1", [], tmp_path / "live-1")
-    assert once(run, "failed").reason == "it ended with status 7 and said nothing"
+    assert once(run, "failed").reason == "it ended with status 7 and without a message"
 
 
 @pytest.mark.parametrize("status", [0, 2])
@@ -106,7 +106,7 @@ def test_what_a_crash_left_in_its_log_is_recovered_if_it_can_be(begun, tmp_path,
     (tmp_path / "live-1" / LOG_FOLDER).mkdir(parents=True)
     end = f"sys.exit({status} if any(word.startswith('--recover') for word in sys.argv) else 1)"
     failed = once(begun(end), "failed")
-    kept = "; what it had recorded until then is kept"
+    kept = "; the frames recorded until then are kept"
     assert failed.reason == "following walk: 36 markers at 100 Hz" + ("" if status else kept)
     assert json.loads((tmp_path / "words.json").read_text()) == ["live", f"--recover={tmp_path / 'live-1'}"]
 

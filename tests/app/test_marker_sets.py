@@ -25,7 +25,7 @@ def test_what_is_saved_is_the_sessions(workspace):
     assert '"say":"marker_set/say?session=P1"' in page and "RASI" in page
     answer = json.loads(sets.say("P1", json.dumps({"do": "save", "choices": {"RASI": {"ignored": "loose"}}})))
     assert answer["saved"] == SET_FILE and answer["ignored"] == 1
-    assert workspace.look("P1").notes.protocol == SET_FILE
+    assert workspace.survey("P1").notes.protocol == SET_FILE
     (person,) = workspace.plan("P1").persons
     assert dict(load_protocol(person.protocol).ignored) == {"RASI": "loose"}
     again = sets.open("P1")
@@ -41,7 +41,7 @@ def test_an_unknown_set_is_told_until_one_is_stated(workspace):
         write_c3d(replace(capture, markers=odd), path)
 
     def doubts():
-        return [one for trial in workspace.look("P1").trials for one in trial.problems if one.marker_set]
+        return [one for trial in workspace.survey("P1").trials for one in trial.problems if one.marker_set]
 
     assert len(doubts()) == 2
     sets = MarkerSets(workspace)
@@ -51,14 +51,14 @@ def test_an_unknown_set_is_told_until_one_is_stated(workspace):
 
 
 def test_the_standing_trial_is_shown(workspace):
-    assert capture_to_show(workspace.look("P1")).name == "static.c3d"
+    assert capture_to_show(workspace.survey("P1")).name == "static.c3d"
     (workspace.root / "P1" / "static.c3d").unlink()
-    assert capture_to_show(workspace.look("P1")).name == "walk1.c3d"
+    assert capture_to_show(workspace.survey("P1")).name == "walk1.c3d"
     write_c3d(read_capture(walk_folder() / "raw.c3d"), workspace.root / "P1" / "walk1.c3d")
     with pytest.raises(InvalidInput, match="named markers"):
-        capture_to_show(workspace.look("P1"))
+        capture_to_show(workspace.survey("P1"))
 
 
 def test_nothing_is_said_before_a_page_is_open(workspace):
-    with pytest.raises(InvalidInput, match="open its page again"):
+    with pytest.raises(InvalidInput, match="is not open; open it again"):
         MarkerSets(workspace).say("P1", '{"do": "done"}')

@@ -44,12 +44,12 @@ def test_trials_that_are_left_out_do_not_count(workspace):
 
 
 def test_what_is_not_there_is_told(workspace, tmp_path):
-    with pytest.raises(InvalidInput, match="no norms 'x'"):
+    with pytest.raises(InvalidInput, match="no file of norms 'x'"):
         reports.report_of(workspace, "P1", "", "x", "en")
     with pytest.raises(InvalidInput, match="no session 'P9'"):
         reports.report_of(workspace, "P9", "", "", "en")
     with pytest.raises(InvalidInput, match=r"no session '\.\./P1'"):
         reports.report_of(workspace, "P1", "../P1", "", "en")
     study(tmp_path / "new", persons=1)
-    with pytest.raises(InvalidInput, match="nothing of 'P1' is done yet"):
+    with pytest.raises(InvalidInput, match="session 'P1' has no result yet"):
         reports.report_of(Workspace(tmp_path / "new"), "P1", "", "", "en")

@@ -95,14 +95,14 @@ def test_sessions_run_one_after_the_other_and_failures_are_told(workspace):
 @pytest.mark.usefixtures("quick")
 def test_a_cancelled_run_keeps_what_is_done(workspace, monkeypatch):
     runs = Runs(workspace, 1)
-    told = runs._told
+    note = runs._note
 
     def cancelling(session, begin, task, found):
         if isinstance(task, ReconstructTrial):
             runs.cancel(session)
-        told(session, begin, task, found)
+        note(session, begin, task, found)
 
-    monkeypatch.setattr(runs, "_told", cancelling)
+    monkeypatch.setattr(runs, "_note", cancelling)
     runs.start("P1")
     wait_for(lambda: runs.state("P1").state == CANCELLED)
     assert runs.state("P1").trials == {"walk1": ("done", "")}
@@ -126,13 +126,13 @@ def test_what_a_server_left_is_taken_up_by_the_next(workspace):
 @pytest.mark.usefixtures("quick")
 def test_a_server_that_ends_leaves_the_rest_to_the_next(workspace, monkeypatch):
     runs = Runs(workspace, 1)
-    told = runs._told
+    note = runs._note
 
     def closing(session, begin, task, found):
         runs._closing = True
-        told(session, begin, task, found)
+        note(session, begin, task, found)
 
-    monkeypatch.setattr(runs, "_told", closing)
+    monkeypatch.setattr(runs, "_note", closing)
     runs.start("P1")
     runs._thread.join(PATIENCE_S)
     assert json.loads((workspace.out / RUNS_FILE).read_text())["P1"]["state"] == RUNNING

@@ -28,18 +28,18 @@ def test_folders_with_captures_are_sessions(workspace, tmp_path):
 def test_captures_are_looked_at_once_until_they_change(workspace, monkeypatch):
     looked, original = [], module.survey_trial
     monkeypatch.setattr(module, "survey_trial", lambda *files: looked.append(files) or original(*files))
-    first = workspace.look("P1")
+    first = workspace.survey("P1")
     assert [trial.name for trial in first.trials] == ["static", "walk1", "walk2"]
-    assert workspace.look("P1") == first and len(looked) == 3
+    assert workspace.survey("P1") == first and len(looked) == 3
     file = workspace.root / "P1" / "walk1.c3d"
     file.write_bytes(file.read_bytes()[:5000])
-    assert not workspace.look("P1").trials[1].usable and len(looked) == 4
+    assert not workspace.survey("P1").trials[1].usable and len(looked) == 4
 
 
 def test_what_is_stated_is_written_and_read_back(workspace):
     notes = SessionNotes(name="somebody", mass_kg=70.0)
     workspace.note("P1", notes)
-    assert workspace.look("P1").notes == notes == read_session(workspace.root / "P1" / "session.toml")
+    assert workspace.survey("P1").notes == notes == read_session(workspace.root / "P1" / "session.toml")
 
 
 def test_its_plan_is_that_of_a_batch_and_results_are_no_captures(workspace):

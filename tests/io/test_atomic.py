@@ -3,7 +3,7 @@
 import pytest
 
 from mbkf.errors import FileFormatError
-from mbkf.io.atomic import check_folder, replacing
+from mbkf.io.atomic import check_folder, replacing, write_text
 
 
 def test_new_content_takes_the_place_of_the_old_and_folders_are_made(tmp_path):
@@ -14,6 +14,12 @@ def test_new_content_takes_the_place_of_the_old_and_folders_are_made(tmp_path):
             temporary.write_text(text)
         assert target.read_text() == text
     assert [path.name for path in target.parent.iterdir()] == ["deep.txt"]
+
+
+def test_a_text_is_written_whole(tmp_path):
+    for text in ("first é", "second"):
+        write_text(tmp_path / "new" / "file.txt", text)
+        assert (tmp_path / "new" / "file.txt").read_text(encoding="utf-8") == text
 
 
 def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):

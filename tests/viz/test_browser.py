@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from mbkf.io.atomic import write_text
 from mbkf.trial.results.summary import summarise
 from mbkf.viz.live.page import LivePage
-from mbkf.viz.report.document import write_report
-from mbkf.viz.scene.playback import write_playback
+from mbkf.viz.report.document import report_page
+from mbkf.viz.scene.recording import playback_page
 from tests.recordings import PLATE, SEAT, broken_walk, leaning_walk, walk, walker
 from tests.viz.browsing import PATIENCE_S, until
 from tests.viz.streams import feeding
@@ -73,7 +74,7 @@ def arrows(page):
 
 def test_arrows_act_where_loads_do_and_tell_measured_from_estimated(opened, tmp_path):
     r = leaning_walk()
-    write_playback(r, tmp_path / "walk.html")
+    write_text(tmp_path / "walk.html", playback_page(r))
     with opened((tmp_path / "walk.html").as_uri()) as page:
         followed(page)
         page.evaluate(f"mbkf.go({SEAT.start + 5})")
@@ -88,7 +89,7 @@ def test_arrows_act_where_loads_do_and_tell_measured_from_estimated(opened, tmp_
 
 
 def test_a_recording_plays_from_a_file_without_any_request(opened, tmp_path):
-    write_playback(broken_walk(), tmp_path / "walk.html")
+    write_text(tmp_path / "walk.html", playback_page(broken_walk()))
     with opened((tmp_path / "walk.html").as_uri()) as page:
         followed(page)
         assert page.title() == "walk <1> · mbkf"
@@ -120,7 +121,7 @@ def test_a_recording_plays_from_a_file_without_any_request(opened, tmp_path):
 
 def test_a_recording_opens_on_the_first_tracked_frame(opened, tmp_path):
     r = walk()
-    write_playback(replace(r, tracked=np.arange(r.frames) >= 37), tmp_path / "late.html")
+    write_text(tmp_path / "late.html", playback_page(replace(r, tracked=np.arange(r.frames) >= 37)))
     with opened((tmp_path / "late.html").as_uri()) as page:
         followed(page)
         assert page.evaluate("mbkf.frame") == 37
@@ -180,7 +181,7 @@ def test_a_page_whose_server_ends_says_so(opened):
 
 def test_the_report_opens_from_a_file_without_any_request(opened, tmp_path):
     r = broken_walk()
-    write_report(r, summarise(r), tmp_path / "report.html")
+    write_text(tmp_path / "report.html", report_page(r, summarise(r)))
     with opened((tmp_path / "report.html").as_uri()) as page:
         assert page.requested == [page.url]
         for name in ("quality", "gait", "motion", "reactions", "settings"):

@@ -3,7 +3,9 @@
 import json
 import re
 
-from mbkf.viz.page import SCRIPTS, asset, embedded, page
+import pytest
+
+from mbkf.viz.page import SCRIPTS, asset, document, embedded, fill, page
 
 
 def test_nothing_is_loaded_from_elsewhere():
@@ -33,3 +35,18 @@ def test_embedded_data_come_back_whatever_they_contain():
     (inner,) = re.findall(r">(.*)</script>", text)
     assert "<" not in inner
     assert json.loads(inner) == data
+
+
+def test_a_part_that_looks_like_a_place_stays_as_it_is():
+    text = fill("report.html", language="en", title="{{body}}", style="", links="", body="<p>{{style}}</p>")
+    assert "<title>{{body}}</title>" in text and "<p>{{style}}</p>" in text
+    with pytest.raises(KeyError):
+        fill("report.html", language="en")
+
+
+def test_a_report_has_no_script_and_links_its_sections():
+    text = document("es", "a <b>", "p {}", [("one", "One & two")], "<h1>x</h1>")
+    assert "<title>a &lt;b&gt;</title>" in text and '<html lang="es">' in text and "<h1>x</h1>" in text
+    assert (
+        '<a href="#one">One &amp; two</a>' in text and "<script" not in text and "default-src 'none'" in text
+    )

@@ -7,23 +7,23 @@ from dataclasses import dataclass
 
 TEXTS: Mapping[str, tuple[str, str]] = {
     "unreadable": ("cannot be read: {0}", "export it again, or leave it out"),
-    "no_marker": ("no marker is seen in it", "leave it out, or export its markers"),
+    "no_marker": ("no markers are visible", "leave it out, or export its markers"),
     "no_names": ("its points have no names", "the run names them by the scaled body"),
     "gaps": ("{0} % of the marker samples are missing", "intervals are wider there"),
-    "unknown_set": ("its marker set is not known", "it is inferred; look at it in the marker editor"),
+    "unknown_set": ("its marker set is not known", "it is inferred; check it in the marker editor"),
     "partly_known_set": (
         "protocol {0} knows only {1} % of its markers",
-        "the set is inferred; look at it in the marker editor",
+        "the set is inferred; check it in the marker editor",
     ),
-    "axes": ("{0}", "look at the trial in 3-D"),
+    "axes": ("{0}", "check the trial in 3-D"),
     "no_plate": ("no force plate", "torques are estimated, with wide intervals"),
     "mass": (
-        "the mass is stated as {0} kg, the plates bear {1} kg",
-        "take the mass that the plates bear, or check the plates",
+        "the stated mass is {0} kg, the plates weigh {1} kg",
+        "use the mass that the plates weigh, or check the plates",
     ),
-    "no_trial": ("no trial can be used", "add captures with markers"),
-    "no_static": ("no standing trial", "the body is scaled from the moving ones, and less certain"),
-    "frames_lost": ("{0} of {1} frames were lost", "see live.json for when"),
+    "no_trial": ("no usable trial", "add captures with markers"),
+    "no_static": ("no standing trial", "the body is scaled from moving trials, with more uncertainty"),
+    "frames_lost": ("{0} of {1} frames were lost", "live.json lists the times"),
 }
 """Problem and remedy by key; {0} and {1} stand for values."""
 

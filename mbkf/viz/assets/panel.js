@@ -58,7 +58,7 @@ class Panel {
       element("div", { className: "head" }, choose, card.value, remove),
       card.canvas,
       element("div", { className: "foot" }, card.positive,
-        element("label", { className: "target", title: phrase("band", "Band to train with") }, phrase("target", "target") + " ", bound("low", phrase("target_from", "Target from")), ` ${phrase("to", "to")} `, bound("high", phrase("target_to", "Target to")), " ", card.unit), card.verdict));
+        element("label", { className: "target", title: phrase("band", "Target band") }, phrase("target", "target") + " ", bound("low", phrase("target_from", "Target from")), ` ${phrase("to", "to")} `, bound("high", phrase("target_to", "Target to")), " ", card.unit), card.verdict));
     choose.onchange = () => { card.id = choose.value; card.low = card.high = ""; card.element.querySelectorAll("input").forEach((i) => { i.value = ""; }); this.changed(); };
     remove.onclick = () => { this.cards.splice(this.cards.indexOf(card), 1); card.element.remove(); this.changed(); };
     if (this.onSeek) {

@@ -1,4 +1,4 @@
-"""A browser without a window that shows one page, kept from the network."""
+"""A browser without a window or network that shows one page."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ BrowserPage: TypeAlias = Any
 """A page as playwright holds it, which may not be installed."""
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge")
-"""What Chromium and its kin are called."""
+"""Names of Chromium and its relatives."""
 
 FLAGS = (
     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", "--disable-sync",
     "--disable-background-networking", "--disable-component-update", "--hide-scrollbars",
 )  # fmt: skip
-"""WebGL is drawn by the processor, so that pictures do not depend on a graphics card, and nothing is fetched."""
+"""The processor draws WebGL, so that pictures do not depend on a graphics card; nothing is fetched."""
 
 
 @contextmanager
 def shown_page(text: str, width: int, height: int) -> Iterator[BrowserPage]:
-    """A page in a window that nobody sees.
+    """A page in an invisible window.
 
     Args:
         text: The page.
         width: Of the window, pixels.
-        height: Likewise.
+        height: Of the window, pixels.
 
     Yields:
         The page, loaded.
 
     Raises:
         MissingDependency: playwright is not installed.
-        InvalidInput: No browser is installed or starts, or it cannot draw the page.
+        InvalidInput: No browser starts, or it cannot draw the page.
     """
     library("playwright", "a film", "film")
     playwright = importlib.import_module("playwright.sync_api")
@@ -57,27 +57,18 @@ def shown_page(text: str, width: int, height: int) -> Iterator[BrowserPage]:
 
 
 def ways_to_start() -> list[dict[str, str]]:
-    """Where a browser may be: on the path, brought by playwright, or where Chrome and Edge are usually put."""
-    found = [path for name in NAMES if (path := shutil.which(name))]
-    return [
-        *({"executable_path": path} for path in found[:1]),
-        {},
-        {"channel": "chrome"},
-        {"channel": "msedge"},
-    ]
+    """Places of browsers: on the path, playwright's own, or the usual folders of Chrome and Edge."""
+    found = [{"executable_path": path} for name in NAMES if (path := shutil.which(name))]
+    return [*found[:1], {}, {"channel": "chrome"}, {"channel": "msedge"}]
 
 
 def _started(driver: Any, error: type[Exception]) -> Any:
     """The first browser that starts.
 
-    Args:
-        driver: Playwright's.
-        error: What it raises.
-
     Raises:
-        InvalidInput: None does.
+        InvalidInput: No browser starts.
     """
-    sandbox = not (hasattr(os, "geteuid") and os.geteuid() == 0)  # Chromium has none for the administrator
+    sandbox = not (hasattr(os, "geteuid") and os.geteuid() == 0)  # Chromium has no sandbox for root
     why = ""
     for way in ways_to_start():
         try:
@@ -85,7 +76,7 @@ def _started(driver: Any, error: type[Exception]) -> Any:
         except error as refused:
             why = why or _first_line(refused)
     raise InvalidInput(
-        f"a film needs Chromium, Chrome or Edge, and none starts here ({why}); install one, e.g. with: "
+        f"a film needs Chromium, Chrome or Edge, but no browser starts here ({why}); install one, for example by: "
         "playwright install chromium"
     )
 

@@ -10,17 +10,17 @@ from mbkf.stream.libraries import library
 from mbkf.viz.film.pictures import Picture
 
 QUALITY = {"crf": "20", "preset": "medium"}
-"""Of H.264: text stays sharp, and ten seconds take about a megabyte."""
+"""Settings of H.264: text stays sharp, and ten seconds take about a megabyte."""
 
 COLOURS = 128
-"""Of a GIF's picture."""
+"""Colours of a GIF's picture."""
 
 
 def write_mp4(pictures: Iterable[Picture], rate_hz: int, path: Path) -> None:
-    """Writes an MP4 file, which can be played before it is loaded whole.
+    """Writes an MP4 file that plays before it is fully loaded.
 
     Args:
-        pictures: They, all of one even size.
+        pictures: Pictures of one even size.
         rate_hz: Pictures per second.
         path: The file.
 
@@ -44,11 +44,11 @@ def write_mp4(pictures: Iterable[Picture], rate_hz: int, path: Path) -> None:
 
 
 def write_gif(pictures: Iterable[Picture], rate_hz: int, path: Path) -> None:
-    """Writes a GIF file that repeats without end.
+    """Writes a GIF file that repeats forever.
 
     Args:
-        pictures: They, all of one size.
-        rate_hz: Pictures per second; GIF knows whole hundredths of a second.
+        pictures: Pictures of one size.
+        rate_hz: Pictures per second; GIF counts whole hundredths of a second.
         path: The file.
 
     Raises:

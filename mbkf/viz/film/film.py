@@ -15,7 +15,7 @@ FILMS = {
     "mp4": (write_mp4, FilmSettings()),
     "gif": (write_gif, FilmSettings(width=640, height=360)),
 }
-"""How a film is written, and how it is drawn unless asked otherwise, by its format."""
+"""Writer and usual settings of each format."""
 
 
 def write_film(
@@ -31,14 +31,14 @@ def write_film(
         r: The result.
         kind: "mp4" or "gif".
         path: The file.
-        settings: Rate and size; by default those of :data:`FILMS`.
-        progress: Called with the stage, pictures drawn and pictures in all.
+        settings: Rate and size; of :data:`FILMS` by default.
+        progress: Called with the stage, pictures drawn and their total.
 
     Raises:
         UnknownName: The format is unknown.
-        FileFormatError: A folder stands where the file is needed.
+        FileFormatError: The path is a folder.
         MissingDependency: playwright or PyAV is not installed.
-        InvalidInput: The body is followed in no frame of the result, or no browser draws it.
+        InvalidInput: The result tracks the body in no frame, or no browser draws it.
         OSError: The file cannot be written.
     """
     if kind not in FILMS:

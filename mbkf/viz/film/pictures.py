@@ -1,4 +1,4 @@
-"""The pictures of a film: the 3-D view of a result at a constant rate, whatever time each takes to draw."""
+"""The pictures of a film: the 3-D view of a result at a constant rate, however long each takes to draw."""
 
 from __future__ import annotations
 
@@ -24,12 +24,11 @@ Picture = NDArray[np.uint8]
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """How a film is drawn.
+    """Rate and size of a film.
 
     Attributes:
-        rate_hz: Pictures per second of the motion and of the film; GIF counts hundredths of a second, so a divisor of
-            100 has no error.
-        width, height: Pixels, both even, as most players need.
+        rate_hz: Pictures per second; GIF counts hundredths of a second, so a divisor of 100 is exact.
+        width, height: Pixels, both even for most players.
     """
 
     rate_hz: int = 25
@@ -40,19 +39,21 @@ class FilmSettings:
 def film_pictures(
     r: Reconstruction, settings: FilmSettings, progress: StageCallback | None = None
 ) -> Iterator[Picture]:
-    """The pictures, one after another, from the first frame in which the body is followed.
+    """The pictures, one after another, from the first frame in which the body is tracked.
 
     Args:
         r: The result.
         settings: Rate and size.
-        progress: Called with the stage, pictures drawn and pictures in all.
+        progress: Called with the stage, pictures drawn and their total.
 
     Raises:
         MissingDependency: playwright is not installed.
-        InvalidInput: The body is followed in no frame of the result, or no browser draws it.
+        InvalidInput: The result tracks the body in no frame, or no browser draws it.
     """
     if not r.tracked.any():
-        raise InvalidInput(f"the body is followed in no frame of '{r.trial}', so there is no motion to film")
+        raise InvalidInput(
+            f"the result of '{r.trial}' tracks the body in no frame, so there is no motion to film"
+        )
     played = recording(r)
     scene = cast(dict[str, Any], played["scene"])
     times = r.times_s[:: round(r.rate_hz / scene["rate_hz"])]
@@ -68,7 +69,7 @@ def film_pictures(
 
 
 def film_rows(times_s: Array, first: int, rate_hz: float) -> NDArray[np.intp]:
-    """(P,) row of each picture: the one nearest to its time.
+    """(P,) row of each picture, the nearest in time.
 
     Args:
         times_s: (T,) times of the rows, s, rising.
@@ -84,7 +85,7 @@ def film_rows(times_s: Array, first: int, rate_hz: float) -> NDArray[np.intp]:
 
 
 def _decoded(address: str) -> Picture:
-    """The picture that a data address of PNG holds."""
+    """The picture in a data address of PNG."""
     from PIL import Image
 
     with Image.open(io.BytesIO(base64.b64decode(address.partition(",")[2]))) as image:

@@ -1,4 +1,4 @@
-"""The live page: a sink of frames that shows the newest one in every open browser."""
+"""The live page: a receiver of frames that shows the newest one in every open browser."""
 
 from __future__ import annotations
 
@@ -19,25 +19,24 @@ from mbkf.viz.server import PageServer
 class LivePage:
     """A web page that follows a live reconstruction (a ``FrameSink``).
 
-    A frame is only kept here; the server's own thread makes a row of the newest one, at most 30 times a second, just
-    after a frame has come and only while a page is open, so the filter never waits. The page may be closed and opened
-    again at any time.
+    :meth:`take` only keeps a frame. The server's own thread makes a row of the newest one, at most 30 times a second,
+    just after a frame has come and only while a page is open, so the filter never waits. The page may be closed and
+    opened again at any time.
 
     Args:
         model: The body.
         marker_names: (M,) markers of the frames, in their order.
         plate_corners_m: (K, 4, 3) corners of the force plates, NaN where not known; None without plates.
-        title: What the page is headed.
-        address: Where to listen; this computer alone by default.
-        port: 0 for any that is free.
-        token: What the page's address must carry. Another address than this computer's always has one: the given
-            one, or one that is made up.
+        title: Heading of the page.
+        address: Address to listen at; this computer only by default.
+        port: 0 for any free one.
+        token: Secret in the page's address; a random one by default where the address is not this computer's own.
 
     Attributes:
-        url: What to open in a browser, token included.
+        url: Address to open in a browser, token included.
 
     Raises:
-        InvalidInput: The address or port cannot be listened on.
+        InvalidInput: The address or port cannot be used.
     """
 
     def __init__(

@@ -1,24 +1,24 @@
-"""The waiting page: shows the terminal's prompts to the person to be scaled, until the live page takes its place."""
+"""The waiting page: shows the prompts to the person who is scaled, until the live page takes its place."""
 
 from __future__ import annotations
 
 import json
 
 from mbkf.stream.loopback import LOOPBACK
-from mbkf.viz.page import asset
+from mbkf.viz.page import asset, fill, scripts
 from mbkf.viz.server import PageServer
 
 
 class StandingPage:
-    """A web page that shows the newest sentence, large, and how much of the standing is done.
+    """A web page that shows the newest sentence, large, and the progress of the standing.
 
-    What is said before it is opened is shown then. An open page that loses its server asks at the same address until
-    another page answers, and becomes that one.
+    A sentence from before the page is opened is shown then. An open page that loses its server asks at the same address
+    until another page replies, and becomes that one.
 
     Args:
-        address: Where to listen; this computer alone by default.
-        port: 0 for any that is free.
-        token: What the page's address must carry, as for :class:`mbkf.viz.live.page.LivePage`.
+        address: Address to listen at; this computer only by default.
+        port: 0 for any free one.
+        token: Secret in the page's address, as for :class:`mbkf.viz.live.page.LivePage`.
     """
 
     def __init__(self, *, address: str = LOOPBACK, port: int = 0, token: str | None = None) -> None:
@@ -30,10 +30,10 @@ class StandingPage:
         """Serves the page; returns its address, token included.
 
         Args:
-            title: What the page is headed.
+            title: Heading of the page.
 
         Raises:
-            InvalidInput: The address or port cannot be listened on.
+            InvalidInput: The address or port cannot be used.
         """
         self._server = PageServer(
             standing_page(),
@@ -46,11 +46,11 @@ class StandingPage:
         return self._server.url
 
     def say(self, text: str) -> None:
-        """Shows a sentence instead of the one before; returns at once."""
+        """Shows a sentence instead of the last one; returns at once."""
         self._show(text, self._newest[2])
 
     def progress(self, share: float | None) -> None:
-        """Shows how much of the standing is done, 0 to 1; None hides it, as no frames come. Returns at once."""
+        """Shows the progress of the standing, 0 to 1; None hides it while no frames come. Returns at once."""
         self._show(self._newest[1], share)
 
     def hand_over(self) -> tuple[int, str]:
@@ -60,7 +60,7 @@ class StandingPage:
         return self._server.port, self._server.token
 
     def close(self) -> None:
-        """Ends the server if there is one; open pages show it."""
+        """Ends the server if there is one; open pages show that."""
         if self._server is not None:
             self._server.close()
 
@@ -78,11 +78,6 @@ class StandingPage:
 
 
 def standing_page() -> str:
-    """The page as one piece of text, in the look of the live page."""
-    text = asset("standing.html")
-    for name, part in (
-        ("style", asset("page.css") + asset("standing.css")),
-        ("script", asset("standing.js")),
-    ):
-        text = text.replace("{{" + name + "}}", part, 1)
-    return text
+    """The page, in the style of the live page."""
+    style = asset("page.css") + asset("standing.css")
+    return fill("standing.html", style=style, scripts=scripts(["standing.js"]))

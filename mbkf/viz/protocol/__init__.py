@@ -1,1 +1,1 @@
-"""Pages of marker sets: one to look at, one to change a set on."""
+"""Pages of marker sets: one that shows a set, one that edits it."""

@@ -1,4 +1,4 @@
-"""A colour for each segment of a body, so that neighbours stay apart; the left one is lighter than the right."""
+"""A colour for each segment of a body: neighbours differ, and the left one is lighter than the right."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ HUES = {
 """Colours of the right (or only) and the left segment."""
 
 OTHERS = ("#00838f", "#ad1457", "#558b2f", "#4527a0", "#ef6c00", "#37474f", "#0277bd", "#9e9d24")
-"""Colours of segments that are called otherwise, in turn."""
+"""Colours of segments with other names, in turn."""
 
 
 def segment_colours(segments: Iterable[str]) -> dict[str, str]:
-    """Colour by segment, as CSS has it."""
+    """Colour by segment, in CSS."""
     found: dict[str, str] = {}
     spare = 0
     for name in segments:

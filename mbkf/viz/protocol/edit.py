@@ -1,4 +1,4 @@
-"""The page on which a person changes a marker set, and the server behind it that saves the set."""
+"""The editor's page of a marker set, and the server behind it that saves the set."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from mbkf.viz.server import PageServer
 
 
 class MarkerSetEdit:
-    """A marker set that a page changes: the page says what a person chose, by marker; what it means is worked out here.
+    """A marker set in an editor: the page sends a person's choices by marker, and this class carries them out.
 
     Args:
         protocol: The set to begin with.
@@ -26,11 +26,11 @@ class MarkerSetEdit:
         out: The file that saving writes.
 
     Attributes:
-        done: Set once the page says so.
-        saved: The set as it was saved last; None before.
+        done: Set when the page reports that the person is done.
+        saved: The newest saved set; None before.
 
     Raises:
-        InvalidInput: The file's name is not a marker set's.
+        InvalidInput: The file's name is not possible for a marker set.
     """
 
     def __init__(self, protocol: Protocol, standing: Standing, out: str | Path) -> None:
@@ -42,7 +42,7 @@ class MarkerSetEdit:
         """The page.
 
         Args:
-            say: Address that the page says its words to; a WebSocket of its own server's where it is empty.
+            say: Address for the page's requests; its own server's WebSocket if empty.
         """
         data = {
             **set_data(self._protocol, self._standing),
@@ -53,7 +53,7 @@ class MarkerSetEdit:
         return page_text(data, EDIT_SCRIPTS, "'self'")
 
     def hear(self, word: str) -> str:
-        """Does what the page asks for, in JSON, and returns the answer, in JSON.
+        """Carries out a request of the page, in JSON, and returns the reply, in JSON.
 
         Args:
             word: ``{"do": "done"}``, or ``{"do": "save", "choices": {NAME: {WHAT: TEXT}}}`` with a field of
@@ -66,11 +66,11 @@ class MarkerSetEdit:
             if asked.get("do") == "done":
                 self.done.set()
                 return json.dumps({"done": True})
-            raise InvalidInput(f"the page asked for {asked.get('do')!r}, which is not known")
+            raise InvalidInput(f"the page sent the unknown request {asked.get('do')!r}")
         except (MbkfError, OSError) as error:
             return json.dumps({"trouble": str(error)})
         except ValueError:
-            return json.dumps({"trouble": "the page said something that is no request in JSON"})
+            return json.dumps({"trouble": "the page sent a request that is no JSON"})
 
     def _save(self, choices: object) -> dict[str, object]:
         known = (
@@ -83,21 +83,19 @@ class MarkerSetEdit:
 
 
 class EditPage(MarkerSetEdit):
-    """Serves a marker set to be changed until its page says that it is done.
-
-    It is served to this computer alone, and only to who has the token, since it writes a file.
+    """Serves an editor to this computer until its page is done; only with the token, since it writes a file.
 
     Args:
         protocol: The set to begin with.
         standing: The capture, with the body beside it.
         out: The file that saving writes.
-        port: 0 for any that is free.
+        port: 0 for any free one.
 
     Attributes:
-        url: What to open in a browser, token included.
+        url: Address to open in a browser, token included.
 
     Raises:
-        InvalidInput: The port cannot be listened on, or the file's name is not a marker set's.
+        InvalidInput: The port is not free, or the file's name is not possible for a marker set.
     """
 
     def __init__(self, protocol: Protocol, standing: Standing, out: str | Path, *, port: int = 0) -> None:
@@ -112,5 +110,5 @@ class EditPage(MarkerSetEdit):
 
 def _choice(said: object) -> Choice:
     if not isinstance(said, dict) or not set(said) <= {"segment", "landmark", "ignored"}:
-        raise InvalidInput("the page said a choice that is not known")
+        raise InvalidInput("the page sent an unknown choice")
     return Choice(**{key: str(value) for key, value in said.items()})

@@ -1,19 +1,17 @@
-"""The page of a marker set: the body with every marker on it in the colour of its segment, and a list of them."""
+"""The page of a marker set: the body with the markers in the colours of their segments, and a list of them."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.atomic import replacing
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
 from mbkf.model.segment_poses import segment_poses
 from mbkf.trial.protocol.editing import SURE
 from mbkf.trial.protocol.standing import Standing, faced_forward, in_world, neutral_on_floor
-from mbkf.viz.page import asset, embedded, viewer_script
+from mbkf.viz.page import asset, embedded, fill, viewer_script
+from mbkf.viz.page import scripts as joined
 from mbkf.viz.protocol.colours import segment_colours
 from mbkf.viz.scene.channels import Layout
 from mbkf.viz.scene.description import scene_description
@@ -22,7 +20,7 @@ SCRIPTS = ("element.js", "colours.js", "scene.js", "marker_labels.js", "marker_s
 EDIT_SCRIPTS = (*SCRIPTS, "marker_edit.js")
 
 UNKNOWN = "not in the set"
-"""What the page says of a marker of the capture that the set neither has nor leaves out."""
+"""The page's text for a marker of the capture that the set neither has nor leaves out."""
 
 
 def show_page(protocol: Protocol) -> str:
@@ -32,40 +30,26 @@ def show_page(protocol: Protocol) -> str:
     return page_text(set_data(protocol, standing), SCRIPTS, "'none'")
 
 
-def write_show_page(protocol: Protocol, path: str | Path) -> None:
-    """Writes that page, whole or not at all.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    text = show_page(protocol)
-    with replacing(path) as partial:
-        partial.write_text(text, encoding="utf-8")
-
-
 def page_text(data: dict[str, object], scripts: tuple[str, ...], connect: str) -> str:
     """The page as one piece of text.
 
     Args:
-        data: What it shows (see :func:`set_data`).
-        scripts: Its own scripts, in the order they are needed.
-        connect: Whom it may connect to, as a content security policy says.
+        data: Of :func:`set_data`, and for an editor its file and address.
+        scripts: Names of its own scripts, in the order they are needed.
+        connect: Addresses that it may connect to, as in a content security policy.
     """
-    parts = {
-        "connect": connect,
-        "style": asset("page.css") + asset("marker_set.css"),
-        "data": embedded("set", data),
-        "meshcat": viewer_script(),
-        "scripts": "\n".join(asset(name) for name in scripts).replace("</script", "<\\/script"),
-    }
-    text = asset("marker_set.html")
-    for name, part in parts.items():
-        text = text.replace("{{" + name + "}}", part, 1)
-    return text
+    return fill(
+        "marker_set.html",
+        connect=connect,
+        style=asset("page.css") + asset("marker_set.css"),
+        data=embedded("set", data),
+        meshcat=viewer_script(),
+        scripts=joined(scripts),
+    )
 
 
 def set_data(protocol: Protocol, standing: Standing) -> dict[str, object]:
-    """What the page shows, as JSON can hold it.
+    """The set and the body, as JSON can hold them.
 
     Args:
         protocol: The marker set.
@@ -103,7 +87,7 @@ def set_data(protocol: Protocol, standing: Standing) -> dict[str, object]:
 
 
 def _markers(protocol: Protocol, standing: Standing) -> list[dict[str, object]]:
-    """Every marker of the set and of the capture: where it is, and where the set has it."""
+    """Every marker of the set and of the capture: its place in the capture, and its place in the set."""
     match = protocol.match(standing.names)
     names = {marker.name: name for name, marker in match.items()}
     points = dict(zip(standing.names, standing.points_m, strict=True))

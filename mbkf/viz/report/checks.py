@@ -1,4 +1,4 @@
-"""The report's table of checks that stand apart from the filter, each with what noise explains and a verdict."""
+"""The report's table of checks without the filter: value, range that noise explains, verdict."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ORDER = ("outside", "doubtful", "inside", "not judged")
 
 
 def findings_table(checks: Sequence[Finding]) -> str:
-    """The table, worst first; nothing where nothing was checked."""
+    """The table, worst first; empty without checks."""
     if not checks:
         return ""
     ranked = sorted(checks, key=lambda one: ORDER.index(one.verdict))
@@ -22,8 +22,8 @@ def findings_table(checks: Sequence[Finding]) -> str:
         f"<th>{text}</th>" for text in ("Check", "", "found", "noise explains", "bound", "meaning")
     )
     return (
-        "<h3>Checks apart from the filter</h3><p>Markers, plates and clocks against each other, before a filter makes "
-        "them agree. A tick means: inside what noise explains.</p>"
+        "<h3>Checks without the filter</h3><p>Markers, plates and clocks against each other, before a filter makes "
+        "them agree. A tick means that noise explains the value.</p>"
         f'<table class="checks"><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>'
     )
 

@@ -1,4 +1,4 @@
-"""The report's contacts: what bore load and when, how large it got, and the forces on other parts than the feet."""
+"""The report's contacts: each part that bore load with its times and peak, and the forces on parts besides the feet."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ MOST_ROWS = 24
 
 HOW = {
     "measured": "measured by a plate of its own",
-    "shared": "share of a plate under both feet, by where they stand",
+    "shared": "share of a plate under both feet, by their places",
     "estimated": "estimated from the motion",
 }
 
 
 def contact_section(r: Reconstruction) -> str:
-    """When each part bore load, the table, and the forces on other parts than the feet."""
+    """The chart and the table of contacts, and the forces on parts besides the feet."""
     contacts = r.contacts
     if not contacts:
         return section("contacts", "Contacts", paragraph("No load on the body is known."))
@@ -43,12 +43,7 @@ def contact_section(r: Reconstruction) -> str:
 
 
 def contact_chart(r: Reconstruction, contacts: Sequence[ContactInterval]) -> str:
-    """Bars over time, a row for each part that ever bore load; their style tells how the load is known.
-
-    Args:
-        r: The results.
-        contacts: Its contacts.
-    """
+    """Bars over time, a row for each part that ever bore load; their style shows the source of the load."""
     parts = [name for name in r.loads.names if any(one.part == name for one in contacts)]
     bars = [
         Bar(parts.index(one.part), one.from_s, one.to_s, f"{part_wording(one.part).side or 'm'} {one.how}")
@@ -56,12 +51,15 @@ def contact_chart(r: Reconstruction, contacts: Sequence[ContactInterval]) -> str
     ]
     span = (float(r.times_s[0]), float(max(r.times_s[-1], r.times_s[0] + 1e-3)))
     return bar_chart(
-        "When each part bore load", [part_wording(name).full_title.lower() for name in parts], bars, span
+        "Contacts of each part over time",
+        [part_wording(name).full_title.lower() for name in parts],
+        bars,
+        span,
     )
 
 
 def support_cells(r: Reconstruction) -> list[list[Cell]]:
-    """Charts of the forces on other parts than the feet that ever bear load, one row for each kind of part."""
+    """Charts of the forces on parts besides the feet that ever bear load, one row for each kind of part."""
     axes, bears = facing(r), bearing(r.support_wrench)
     kinds: dict[str, dict[str, Curve]] = {}
     for k, name in enumerate(r.support_names):
@@ -80,7 +78,7 @@ def _forces(r: Reconstruction) -> list[str]:
     sides = (("r", "right"), ("l", "left"), ("", "middle"))
     entries = [(f"swatch {side or 'm'}", word) for side, word in sides if side in there]
     return [
-        "<h3>Forces on other parts than the feet, against time</h3>",
+        "<h3>Forces on parts besides the feet, against time</h3>",
         key(*entries, *band_key(False)),
         charts(cells, partial(time_chart, r.times_s), is_long(r)),
     ]

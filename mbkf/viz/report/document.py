@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from mbkf.errors import FileFormatError
-from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import LABELS_FILE
@@ -17,7 +16,7 @@ from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.progression import LABORATORY
 from mbkf.trial.results.summary import progression_summary
 from mbkf.viz.markup import folded, paragraph, section, table
-from mbkf.viz.page import asset
+from mbkf.viz.page import asset, document
 from mbkf.viz.report.contacts import contact_section
 from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
@@ -31,7 +30,7 @@ ANGLES_READ = {
 
 NAVIGATION = (
     ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("reactions", "Reactions"),
-    ("contacts", "Contacts"),    ("settings", "Settings"),
+    ("contacts", "Contacts"), ("settings", "Settings"),
 )  # fmt: skip
 
 
@@ -46,8 +45,8 @@ def report_page(
     Args:
         reconstruction: The results.
         summary: Its summary.json.
-        labels: The JSON that ``mbkf label`` wrote beside the labelled capture, or None.
-        by_hand: Strikes and toe-offs that a person set; None for those that are found.
+        labels: The JSON of ``mbkf label`` for the labelled capture, or None.
+        by_hand: Strikes and toe-offs set by hand; None for the detected ones.
     """
     r = reconstruction
     gait = find_gait(r, by_hand) if r.tracked.any() else None
@@ -57,44 +56,15 @@ def report_page(
         sections += [reaction_section(r, gait), contact_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
-    links = "".join(f'<a href="#{name}">{title}</a>' for name, title in there)
-    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<link rel="icon" href="data:,">\n'
-        f"<title>{escape(r.trial)} · mbkf report</title>\n<style>{asset('report.css')}</style>\n</head>\n<body>\n"
-        f"<nav><b>mbkf</b>{links}</nav>\n<main>\n{_heading(r)}\n{''.join(sections)}\n</main>\n</body>\n</html>\n"
-    )
-
-
-def write_report(
-    reconstruction: Reconstruction,
-    summary: Mapping[str, object],
-    path: str | Path,
-    labels: Mapping[str, object] | None = None,
-) -> None:
-    """Writes :func:`report_page`, whole or not at all.
-
-    Args:
-        reconstruction: The results.
-        summary: The contents of summary.json.
-        path: The file to write.
-        labels: The labeller's report, if the trial was labelled by mbkf.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    text = report_page(reconstruction, summary, labels)
-    with replacing(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+    body = _heading(r) + "".join(sections)
+    return document("en", f"{r.trial} · mbkf report", asset("report.css"), there, body)
 
 
 def read_labels(path: str | Path) -> dict[str, object]:
-    """The JSON that ``mbkf label`` wrote beside a labelled capture.
+    """The JSON that ``mbkf label`` writes beside a labelled capture.
 
     Raises:
-        FileFormatError: The file is missing, no JSON, or something else.
+        FileFormatError: The file is missing, no JSON, or no report of ``mbkf label``.
     """
     source = Path(path)
     try:
@@ -102,12 +72,12 @@ def read_labels(path: str | Path) -> dict[str, object]:
     except (OSError, ValueError) as error:
         raise FileFormatError(source, f"cannot be read ({error}); make it with 'mbkf label'") from error
     if "ghosts_dropped" not in found:
-        raise FileFormatError(source, "is not what 'mbkf label' writes beside a labelled capture")
+        raise FileFormatError(source, "is no report of 'mbkf label'")
     return dict(found)
 
 
 def labels_of(folder: str | Path, trial: str) -> dict[str, object] | None:
-    """How a trial was labelled, or None: a batch's labels.json, or the TRIAL.json of ``mbkf label`` there or beside."""
+    """A trial's label report or None: labels.json of a batch, or TRIAL.json of ``mbkf label`` there or beside."""
     place = Path(folder)
     for path in (place / LABELS_FILE, place / f"{trial}.json", place.absolute().parent / f"{trial}.json"):
         if path.is_file():
@@ -136,8 +106,9 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
     seconds = summary.get("step_seconds_median")
     run = [("filter", r.filter), ("later frames", r.later_frames), ("version", r.version)]
     if speed and isinstance(speed, int | float) and isinstance(seconds, int | float):
-        told = f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time"
-        run.append(("computing time", f"{told}; smoothing not counted" if r.smoothed else told))
+        text = f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time"
+        run.append(("computing time", f"{text}; smoothing not counted" if r.smoothed else text))
+    factors = [(name.replace("_", " "), f"{value:.3f}") for name, value in r.subject.scale_factors.items()]
     chosen = r.settings.get(r.filter, {})
     others = {k: v for k, v in r.settings.items() if k not in ("kinematic", "dynamic", "torque", "filter")}
     return section(
@@ -146,14 +117,7 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
         table(("this run", ""), run, "small"),
         folded(f"Settings of the {r.filter} filter", table(("setting", "value"), _flat(chosen), "small")),
         folded("Other settings", table(("setting", "value"), _flat(others), "small")),
-        folded(
-            "Subject",
-            table(
-                ("scale factor", "value"),
-                [(k.replace("_", " "), f"{v:.3f}") for k, v in r.subject.scale_factors.items()],
-                "small",
-            ),
-        ),
+        folded("Subject", table(("scale factor", "value"), factors, "small")),
         paragraph(
             f"{ANGLES_READ[r.angles_read]}; pelvis: {_pelvis_frame(r)}; world axes: x forward, y left, z up."
         ),
@@ -161,7 +125,7 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
 
 
 def _pelvis_frame(r: Reconstruction) -> str:
-    """The axes in which the pelvis's angles are told, in words."""
+    """The axes of the pelvis's angles, in words."""
     frame = progression_summary(r)
     if r.direction == LABORATORY:
         return "the laboratory's axes"

@@ -1,4 +1,4 @@
-"""The report's spatiotemporal parameters, right against left, and when each foot stood."""
+"""The report's spatiotemporal parameters, right against left, and the stance of each foot over time."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from mbkf.viz.markup import paragraph, section, table
 from mbkf.viz.svg import Bar, bar_chart, number
 from mbkf.viz.wording import SIDE_NAMES
 
+NO_GAIT = (
+    "No gait cycle was found: a cycle needs two strikes of a foot, with its toe-off and the other foot's strike in "
+    "between."
+)
+
 DIGITS = {"steps/min": 1, "m/s": 2, "m": 3, "s": 3, "%": 1}
 
 
 def gait_section(gait: Gait | None, times_s: Array) -> str:
-    """Stance phases and the table, or why there are none."""
+    """Stance phases and the table, or a sentence without gait."""
     if gait is None:
-        return section(
-            "gait",
-            "Gait",
-            paragraph("No gait cycle was found: no foot strikes, leaves the floor and strikes again "
-                      "with the other foot's strike in between."),
-        )  # fmt: skip
+        return section("gait", "Gait", paragraph(NO_GAIT))
     rows = [_row(parameter) for parameter in gait.parameters]
     ground = f"On a treadmill at {gait.belt_m_s:.2f} m/s. " if gait.belt_m_s else ""
     counts = ", ".join(f"{len(gait.of(side))} {name}" for side, name in ((0, "right"), (1, "left")))
     note = (
         f"{ground}Whole cycles: {counts}. Mean ± standard deviation between cycles. Strikes and toe-offs come from the "
-        "feet's loads where these are known, else from their motion. A step belongs to the foot that ends it."
+        "feet's loads if these are known, else from their motion. A step belongs to the foot that ends it."
     )
     heads = ("", "right", "left", "difference")
     return section("gait", "Gait", paragraph(note), stance_chart(gait, times_s), table(heads, rows))
 
 
 def stance_chart(gait: Gait, times_s: Array) -> str:
-    """When each foot stood, as bars over time; a stance that the trial cuts off is pale."""
+    """Stance of each foot as bars over time; a stance that the trial cuts off is pale."""
     first, last = float(times_s[0]), float(max(times_s[-1], times_s[0] + 1e-3))
     bars = [
         Bar(row, start, end, side if whole else f"{side} cut")
@@ -43,11 +43,11 @@ def stance_chart(gait: Gait, times_s: Array) -> str:
         for start, end, whole in _stances(events, first, last)
     ]
     names = [f"{SIDE_NAMES[side]} foot" for side in SIDES]
-    return bar_chart("When each foot stood", names, bars, (first, last))
+    return bar_chart("Stance of each foot over time", names, bars, (first, last))
 
 
 def _stances(events: FootEvents, first: float, last: float) -> list[tuple[float, float, bool]]:
-    """From, to, and whether both ends were seen."""
+    """Start, end, and True if both lie in the trial."""
     found = []
     for strike in events.strikes_s:
         after = events.offs_s[events.offs_s > strike]

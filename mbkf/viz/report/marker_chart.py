@@ -1,4 +1,4 @@
-"""Marker by frame: seen, refused, hidden on purpose, not seen; with each marker's error beside its line."""
+"""Chart of every marker in every frame (seen, refused, hidden on purpose, not seen), with each marker's error."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def marker_errors_mm(r: Reconstruction) -> tuple[Array, Array]:
 
 
 def longest_gap_s(r: Reconstruction) -> Array:
-    """(M,) longest time that a marker was not seen or hidden, s."""
+    """(M,) longest time that a marker was not seen, or hidden, s."""
     longest = np.zeros(len(r.marker_names))
     for m, absent in enumerate((~r.present).T):
         longest[m] = max((end - first for first, end in runs(absent)), default=0) / r.rate_hz
@@ -57,7 +57,7 @@ def marker_chart(r: Reconstruction, ghosts: Array | None = None) -> str:
 
     Args:
         r: The reconstruction.
-        ghosts: (T,) number of points without a marker dropped in every frame, or None where not known.
+        ghosts: (T,) count of points without a marker that were dropped in each frame; None where not known.
     """
     found = states(r)
     rms, largest = marker_errors_mm(r)
@@ -86,7 +86,7 @@ def marker_chart(r: Reconstruction, ghosts: Array | None = None) -> str:
     width = NAME + CHART + 14 + BAR + RIGHT
     return (
         f'<svg class="markers" viewBox="0 0 {width:g} {bottom + 18:g}" role="img" '
-        f'aria-label="What became of every marker in every frame">{"".join(parts)}</svg>'
+        f'aria-label="State of every marker in every frame">{"".join(parts)}</svg>'
     )
 
 

@@ -16,15 +16,19 @@ from mbkf.numerics.runs import spread_indices
 from mbkf.trial.gait.cycles import POINTS, Gait, over_cycle
 from mbkf.trial.gait.facing import facing
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
-from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_told, spread_note
+from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_known, spread_note
 from mbkf.viz.svg import WIDTH, Line, Mark, chart, number
-from mbkf.viz.wording import SIDE_NAMES, Wording, wordings
+from mbkf.viz.wording import SIDE_NAMES, wordings
 
 MOST_SINGLE = 8
-"""Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
+"""Most cycles that are drawn one by one, evenly chosen; the mean is that of all."""
 
 LONG_S, BROAD = 15.0, 1110.0
-"""Curves over a longer time are drawn so broad."""
+"""Curves over a longer time, s, are drawn with this width."""
+
+
+Reader = Callable[..., Array]
+"""Reads a quantity of a result by its coordinate's name, and by the part of its spread."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,7 @@ class JointNames:
 
     Attributes:
         legs: The root and the joints from it to the feet and toes.
-        loaded: Those that carry: the reaction acts on the foot as a whole, so toes have no torque of their own.
+        loaded: Joints with a torque: the reaction acts on the foot as a whole, so toes have none of their own.
         upper: All others.
     """
 
@@ -43,7 +47,7 @@ class JointNames:
 
 
 def joint_names(body: BodyDescription) -> JointNames:
-    """The joints of a body, as they are shown together."""
+    """The joints of a body in their groups."""
     lower = {body.roles.root, *body.roles.legs, *body.roles.toes}
     names = {entry.distal: entry.name.removesuffix("_r").removesuffix("_l") for entry in body.clinical_joints}
     legs = dict.fromkeys(name for segment, name in names.items() if segment in lower)
@@ -57,7 +61,7 @@ class Cell:
     """One chart: a quantity of both sides, or of the midline.
 
     Attributes:
-        title, unit, positive: As written.
+        title, unit, positive: Texts of the chart.
         curves: By side: "r" and "l", or "" alone.
     """
 
@@ -68,7 +72,7 @@ class Cell:
 
 
 def motion_section(r: Reconstruction, gait: Gait | None) -> str:
-    """Angles and torques: over the cycle where there is gait, then against time."""
+    """Angles and torques: over the gait cycle if there is gait, then against time."""
     body = [_unobserved(r), paragraph(spread_note(r)), _ranges(r)]
     if gait is not None:
         body += _curves(r, "over the gait cycle", partial(cycle_chart, r.times_s, gait), gait, broad=False)
@@ -80,18 +84,16 @@ def motion_section(r: Reconstruction, gait: Gait | None) -> str:
 def _curves(
     r: Reconstruction, how: str, draw: Callable[[Cell], str], gait: Gait | None, broad: bool
 ) -> list[str]:
-    names = joint_names(reference_body(r.subject))
-    parts = [
-        f"<h3>Joint angles {how}</h3>",
-        _key(r, gait),
-        charts(angle_cells(r, names.legs), draw, broad),
-        folded("Trunk, head and arms: angles", charts(angle_cells(r, names.upper), draw, broad)),
-        f"<h3>Joint torques {how}</h3>",
-        paragraph(_TORQUE_NOTE),
-        charts(torque_cells(r, names.loaded), draw, broad),
-        folded("Trunk, head and arms: torques", charts(torque_cells(r, names.upper), draw, broad)),
-    ]
-    return parts if names.upper else [part for k, part in enumerate(parts) if k not in (3, 7)]
+    names, parts = joint_names(reference_body(r.subject)), []
+    for what, note, cells, lower in (
+        ("angles", _key(r, gait), angle_cells, names.legs),
+        ("torques", paragraph(_TORQUE_NOTE), torque_cells, names.loaded),
+    ):
+        parts += [f"<h3>Joint {what} {how}</h3>", note, charts(cells(r, lower), draw, broad)]
+        if names.upper:
+            upper = charts(cells(r, names.upper), draw, broad)
+            parts.append(folded(f"Trunk, head and arms: {what}", upper))
+    return parts
 
 
 _TORQUE_NOTE = (
@@ -102,39 +104,31 @@ _TORQUE_NOTE = (
 
 def reaction_section(r: Reconstruction, gait: Gait | None) -> str:
     """Ground reactions of both feet."""
-    weight = r.subject.mass_kg * GRAVITY_M_S2
     body = []
     if gait is not None:
-        cells = reaction_cells(r, 100.0 / weight, "% body weight")
-        body += [
-            "<h3>Over the gait cycle</h3>",
-            charts([cells], partial(cycle_chart, r.times_s, gait), False),
-        ]
-    cells = reaction_cells(r, 1.0, "N")
-    body += ["<h3>Against time</h3>", charts([cells], partial(time_chart, r.times_s), is_long(r))]
+        cells = reaction_cells(r, 100.0 / (r.subject.mass_kg * GRAVITY_M_S2), "% body weight")
+        over_cycles = charts([cells], partial(cycle_chart, r.times_s, gait), False)
+        body += ["<h3>Over the gait cycle</h3>", over_cycles]
+    against = charts([reaction_cells(r, 1.0, "N")], partial(time_chart, r.times_s), is_long(r))
+    body += ["<h3>Against time</h3>", against]
     return section("reactions", "Ground reactions", _key(r, gait), *body)
 
 
 def angle_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
     """Charts of angles, one row for each joint."""
-    told = offsets_told(r)
-
-    def curve(name: str, words: Wording) -> Curve:
-        sd, offset = r.angle_sd(name), r.angle_sd(name, "offset")
-        return Curve(*(words.factor * one for one in (r.angle(name), sd, *([offset] if told else []))))
-
-    return _cells(r, joints, "", curve)
+    return _cells(r, joints, "", lambda name, words: _scaled(r, r.angle, r.angle_sd, name, words.factor))
 
 
 def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
     """Charts of torques per body mass, one row for each joint."""
-    told, mass = offsets_told(r), r.subject.mass_kg
+    per_kg = 1.0 / r.subject.mass_kg
+    return _cells(r, joints, "N m/kg", lambda name, _: _scaled(r, r.moment, r.moment_sd, name, per_kg))
 
-    def curve(name: str, _: Wording) -> Curve:
-        sd, offset = r.moment_sd(name), r.moment_sd(name, "offset")
-        return Curve(*(one / mass for one in (r.moment(name), sd, *([offset] if told else []))))
 
-    return _cells(r, joints, "N m/kg", curve)
+def _scaled(r: Reconstruction, values: Reader, spreads: Reader, name: str, factor: float) -> Curve:
+    """A coordinate's curve with its spread in the unit shown."""
+    offset = [spreads(name, "offset")] if offsets_known(r) else []
+    return Curve(*(factor * one for one in (values(name), spreads(name), *offset)))
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
@@ -146,7 +140,7 @@ def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
         unit: The unit shown.
     """
     sd = np.full_like(r.foot_wrench, np.nan) if r.foot_wrench_sd is None else r.foot_wrench_sd
-    offset = r.foot_wrench_sd_offset if offsets_told(r) else None
+    offset = r.foot_wrench_sd_offset if offsets_known(r) else None
     feet = {
         side: Curve(r.foot_wrench[:, k, :3], sd[:, k, :3], None if offset is None else offset[:, k, :3])
         for k, side in enumerate(SIDES)
@@ -164,7 +158,7 @@ def force_cells(
         forces: (T, 3) world force with its spread by side.
         factor: Factor from N to the unit shown.
         unit: The unit shown.
-        part: What the forces act on, before the charts' titles.
+        part: Part of the body, put before the charts' titles.
     """
     cells = []
     for title, axis, positive in (
@@ -213,12 +207,12 @@ def _is_unobserved(r: Reconstruction, segment: str) -> bool:
 
 
 def charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> str:
-    """Charts, three in a row; broad ones one below the other.
+    """Charts, three in a row, or wide ones below each other.
 
     Args:
         rows: The cells of each row.
         draw: Makes a cell's chart.
-        broad: Whether the charts are as broad as the page.
+        broad: True for charts as wide as the page.
     """
     if not rows:
         return paragraph("Not known: no force plate measured this trial.")
@@ -228,7 +222,7 @@ def charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> 
 
 
 def time_chart(times_s: Array, cell: Cell) -> str:
-    """A cell against time; as broad as the page where the trial is long."""
+    """A cell against time; as wide as the page in a long trial."""
     lines = [
         Line(times_s, one.values, one.sd, side, inner_sd=one.inner_sd) for side, one in cell.curves.items()
     ]
@@ -240,7 +234,7 @@ def time_chart(times_s: Array, cell: Cell) -> str:
 def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
     """A cell over 0–100 % of the cycles of each side: every cycle lightly, their mean with its band.
 
-    The midline is shown over the cycles of the right foot, or of the left where there are none.
+    The midline is shown over the cycles of the right foot, or of the left if the right has no cycle.
 
     Args:
         times_s: (T,) times of the frames, s.
@@ -266,12 +260,12 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
 
 
 def is_long(r: Reconstruction) -> bool:
-    """Whether curves against time are drawn broad."""
+    """True if curves against time are drawn as wide as the page."""
     return float(np.ptp(r.times_s)) > LONG_S
 
 
 def _key(r: Reconstruction, gait: Gait | None) -> str:
-    entries = [("swatch r", "right"), ("swatch l", "left"), *band_key(offsets_told(r))]
+    entries = [("swatch r", "right"), ("swatch l", "left"), *band_key(offsets_known(r))]
     if gait is not None:
         counts = " and ".join(f"{_some(len(gait.of(i)))} {SIDE_NAMES[side]}" for i, side in enumerate(SIDES))
         if len(gait.cycles) > 2:
@@ -288,7 +282,7 @@ def _unobserved(r: Reconstruction) -> str:
     if not r.unobserved_dofs:
         return ""
     segments = sorted({name.rpartition("_")[0].replace("_", " ") for name in r.unobserved_dofs})
-    return paragraph(f"Not shown, because no marker and no sensor observes them: {', '.join(segments)}.")
+    return paragraph(f"Not shown, because neither markers nor sensors observe them: {', '.join(segments)}.")
 
 
 def _ranges(r: Reconstruction) -> str:
@@ -303,7 +297,7 @@ def _ranges(r: Reconstruction) -> str:
     if not rows:
         return ""
     heads = ("", "least angle °", "greatest angle °", "least torque N m/kg", "greatest torque N m/kg")
-    shift = "; in brackets, by how much of it the whole curve could be shifted" if offsets_told(r) else ""
+    shift = "; in brackets, its part that shifts the whole curve" if offsets_known(r) else ""
     return f"<h3>Ranges (± 2 standard deviations{shift})</h3>" + table(heads, rows)
 
 

@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array, JsonTable
+from mbkf.conventions import GRAVITY_M_S2, JsonTable
 from mbkf.io.results import Reconstruction
 from mbkf.viz.markup import grid, key, paragraph, section, table
 from mbkf.viz.report.checks import findings_table
@@ -24,36 +24,36 @@ KEYPOINT_RMS, KEYPOINT_BAD_RMS, KEYPOINT_MAX = 2.0, 2.5, 6.0
 """The same bounds for keypoints, in units of their noise per coordinate: noise alone gives an RMS distance of 1.7."""
 
 FORCE_SHARE, MOMENT_SHARE = 0.05, 0.01
-"""What Hicks et al. accept: peak residual force over peak external force, peak residual moment over that force times
-the height of the centre of mass."""
+"""Bounds of Hicks et al.: peak residual force over peak external force, peak residual moment over that force times the
+height of the centre of mass."""
 
 TRACKED_PERCENT, BAD_TRACKED_PERCENT = 99.9, 95.0
 """Frames in which the body was followed: good above the first, bad below the second."""
 
 LEAST_EXPLAINED = 0.6
-"""Where the protocol knows a smaller share of the capture's markers, its marker set is not understood."""
+"""A smaller share of the capture's markers in the protocol means that the marker set is not understood."""
 
 CENTRE_OF_MASS_SHARE = 0.55
 """Height of a standing person's centre of mass over body height."""
 
 NIS_RANGE = (0.7, 1.4)
-"""Normalised innovation squared per reading: 1 where readings err as they did just before."""
+"""Normalised innovation squared per reading: 1 if readings err as they did just before."""
 
 MOST_NAMED = 8
-"""Ignored markers that are named, of each reason."""
+"""Most ignored markers that are named for each reason."""
 
 MANY = 6
-"""More remarks than this are set in two columns."""
+"""Number of remarks above which they stand in two columns."""
 
 CORRECTING = ("dynamic", "torque")
-"""Filters that impose Newton's law on what they estimate: their residual is one after correction."""
+"""Filters that impose Newton's law on their estimates: their residual is one after correction."""
 
 GOOD, CARE, BAD, NONE = "good", "care", "bad", "none"
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """One number with its verdict: ``kind`` is "good", "care", "bad" or "none" (without a bound)."""
+    """A number with its verdict: ``kind`` is "good", "care", "bad" or "none" (without a bound)."""
 
     title: str
     value: str
@@ -67,11 +67,13 @@ def quality_section(r: Reconstruction, summary: JsonTable, labels: JsonTable | N
     Args:
         r: The reconstruction.
         summary: Its summary.json.
-        labels: The JSON that ``mbkf label`` wrote beside the labelled file, or None.
+        labels: The JSON of ``mbkf label`` for the labelled file, or None.
     """
     ghosts = None if labels is None else labels.get("ghosts_per_frame")
     shown = set(np.unique(states(r)).tolist())
     legend = [(CLASSES[i], LABELS[i]) for i in range(len(CLASSES)) if i == 0 or i in shown]
+    counted = None if ghosts is None or len(ghosts) != r.frames else np.array(ghosts, float)
+    chart_of_markers = ("<h3>Markers</h3>", _labelling(labels), key(*legend), marker_chart(r, counted))
     return section(
         "quality",
         "Quality",
@@ -79,25 +81,14 @@ def quality_section(r: Reconstruction, summary: JsonTable, labels: JsonTable | N
         '<div class="tiles">' + "".join(_tile(v) for v in verdicts(r, summary)) + "</div>",
         f'<div class="beside"><div>{_flags(r)}</div>{_truth(summary)}</div>',
         grid(_curves(r), 3),
-        *(
-            (
-                "<h3>Markers</h3>",
-                _labelling(labels),
-                key(*legend),
-                marker_chart(
-                    r, None if ghosts is None or len(ghosts) != r.frames else np.array(ghosts, float)
-                ),
-            )
-            if r.marker_names
-            else ()
-        ),
+        *(chart_of_markers if r.marker_names else ()),
     )
 
 
 def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     """The main quality measures, each with its verdict.
 
-    Where the body does not fit the markers or was not followed, its forces mean nothing: nothing else is good then.
+    If the body does not fit the markers or was not tracked, its forces have no meaning: no other verdict is good then.
     """
     gap = float(longest_gap_s(r).max(initial=0.0))
     missing = summary.get("missing_fraction") or 0.0
@@ -109,51 +100,41 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
         fit = [_doubted(one) for one in fit]
     if not r.marker_names:
         return [*fit[1:], *others]
-    return [
-        fit[0],
-        *others,
-        Verdict(
-            "Markers missing", f"{100 * missing:.1f} %", NONE, f"longest gap of one marker {gap:.2f} s"
-        ),
-        *fit[1:],
-    ]  # fmt: skip
+    longest = f"longest gap of one marker {gap:.2f} s"
+    return [fit[0], *others, Verdict("Markers missing", f"{100 * missing:.1f} %", NONE, longest), *fit[1:]]
 
 
 def _tracked(r: Reconstruction, percent: float) -> Verdict:
-    remark = (
-        f"all loads known in {int(r.valid.sum())} of {r.frames} frames, measured in {int(r.measured.sum())}"
-    )
-    return Verdict(
-        "Frames tracked",
-        f"{percent:.1f} %",
-        GOOD if percent > TRACKED_PERCENT else CARE if percent >= BAD_TRACKED_PERCENT else BAD,
-        remark,
-    )
+    known, measured = int(r.valid.sum()), int(r.measured.sum())
+    remark = f"all loads known in {known} of {r.frames} frames, measured in {measured}"
+    kind = GOOD if percent > TRACKED_PERCENT else CARE if percent >= BAD_TRACKED_PERCENT else BAD
+    return Verdict("Frames tracked", f"{percent:.1f} %", kind, remark)
 
 
 def _ignored(summary: JsonTable) -> list[Verdict]:
-    """Markers of the capture that were not used, where the summary lists them and there are any."""
+    """Markers of the capture that were not used, if there are any."""
     ignored = summary.get("markers_ignored")
     if not ignored:
         return []
     explained = summary.get("markers_explained", 1.0)
     kind = BAD if explained < LEAST_EXPLAINED else CARE if explained < 1.0 else NONE
-    told = []
+    listed = []
     for reason in dict.fromkeys(ignored.values()):
         names = [name for name in ignored if ignored[name] == reason]
         more = " …" if len(names) > MOST_NAMED else ""
-        told.append(f"{', '.join(names[:MOST_NAMED])}{more} ({reason})")
-    remark = f"the protocol knows {100 * explained:.0f} % of the capture's; ignored: {'; '.join(told)}"
+        listed.append(f"{', '.join(names[:MOST_NAMED])}{more} ({reason})")
+    remark = (
+        f"the protocol knows {100 * explained:.0f} % of the capture's markers; ignored: {'; '.join(listed)}"
+    )
     return [Verdict("Markers ignored", str(len(ignored)), kind, remark)]
 
 
 def _doubted(verdict: Verdict) -> Verdict:
-    """A good number of a body that is not the one in the capture."""
+    """The verdict without a tick: the number belongs to a body that is not the one in the capture."""
     if verdict.kind != GOOD:
         return verdict
-    return replace(
-        verdict, kind=CARE, remark=f"{verdict.remark}; tells nothing while markers or tracking are bad"
-    )
+    remark = f"{verdict.remark}; has no meaning while markers or tracking are bad"
+    return replace(verdict, kind=CARE, remark=remark)
 
 
 def _markers(r: Reconstruction, summary: JsonTable) -> Verdict:
@@ -169,7 +150,7 @@ def _markers(r: Reconstruction, summary: JsonTable) -> Verdict:
 
 
 def _keypoint_noise_mm(r: Reconstruction) -> float:
-    """RMS of the stated noise per coordinate where the markers are keypoints, 0 where they are not."""
+    """RMS of the stated noise per coordinate of keypoints; 0 for other markers."""
     used = [m for m in r.subject.markers if m.name in r.marker_names]
     if not any(marker.correlated_m for marker in used):
         return 0.0
@@ -179,7 +160,7 @@ def _keypoint_noise_mm(r: Reconstruction) -> float:
 def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     force, moment = summary.get("residual_force_rms_n"), summary.get("residual_moment_rms_nm")
     if force is None or moment is None:
-        remark = "needs frames in which plates measure every contact"
+        remark = "not known without frames in which plates measure every contact"
         return [Verdict(_residual(r, what), "–", NONE, remark) for what in ("force", "moment")]
     external = float(np.nanmax(np.linalg.norm(r.foot_wrench[r.measured, :, :3].sum(axis=1), axis=1)))
     height = r.subject.height_m or 1.75
@@ -189,18 +170,16 @@ def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
         ("moment", moment, r.residual_moment_nm, MOMENT_SHARE * external * CENTRE_OF_MASS_SHARE * height, "N m"),
     ):  # fmt: skip
         peak = float(np.nanmax(np.linalg.norm(vectors[r.measured], axis=1)))
-        remark = (
-            f"RMS at the pelvis; peak {peak:.1f} {unit}. Accepted practice: peak below {allowed:.0f} {unit}"
-        )
+        remark = f"RMS at the pelvis; peak {peak:.1f} {unit}, in accepted practice below {allowed:.0f} {unit}"
         if r.filter in CORRECTING:
-            remark += "; the filter makes it small whatever is wrong: see the checks above"
+            remark += "; the filter makes it small in any case: see the checks above"
         kind = GOOD if peak <= allowed else CARE
         found.append(Verdict(_residual(r, what), f"{rms:.1f} {unit}", kind, remark))
     return found
 
 
 def _residual(r: Reconstruction, what: str) -> str:
-    """Title of a residual: whether a filter that makes Newton's law hold has corrected it."""
+    """Title of a residual; a filter that imposes Newton's law has corrected it."""
     return f"Residual {what}" + (" after correction" if r.filter in CORRECTING else "")
 
 
@@ -211,20 +190,17 @@ def _nis(summary: JsonTable) -> Verdict:
         return Verdict(title, "–", NONE, "not known")
     kinds = [f"{name.replace('_', ' ')} {nis:.2f}" for name, nis in (summary.get("nis") or {}).items()]
     remark = "per reading" + (f": {', '.join(kinds)}" if kinds else "")
+    kind, meaning = GOOD, "1 in a coherent trial"
     if value > NIS_RANGE[1]:
-        return Verdict(
-            title, f"{value:.2f}", CARE, f"{remark}; above 1: readings err more than they did before"
-        )
-    if value < NIS_RANGE[0]:
-        return Verdict(
-            title, f"{value:.2f}", NONE, f"{remark}; below 1: readings err less than any expected of them"
-        )
-    return Verdict(title, f"{value:.2f}", GOOD, f"{remark}; 1 where the trial is coherent")
+        kind, meaning = CARE, "above 1: readings err more than just before"
+    elif value < NIS_RANGE[0]:
+        kind, meaning = NONE, "below 1: readings err less than expected"
+    return Verdict(title, f"{value:.2f}", kind, f"{remark}; {meaning}")
 
 
 def _tile(v: Verdict) -> str:
     sign = {GOOD: "✓", CARE: "!", BAD: "✗", NONE: ""}[v.kind]
-    title = {GOOD: "as it should be", CARE: "look closer", BAD: "not usable as it is", NONE: ""}[v.kind]
+    title = {GOOD: "as it should be", CARE: "check it", BAD: "not usable as it is", NONE: ""}[v.kind]
     mark = f'<i title="{title}">{sign}</i>' if sign else ""
     return (
         f'<div class="tile {v.kind}"><span>{escape(v.title)}{mark}</span><b>{escape(v.value)}</b>'
@@ -270,17 +246,11 @@ def _curves(r: Reconstruction) -> list[str]:
     error_curve = chart("Marker error, RMS over markers", "mm", [Line(t, rms)], span, "s")
     innovation = chart("Innovation squared per reading", "", [Line(t, per_reading)], span, "s", level=1.0)
     found = [error_curve, innovation] if r.marker_names else [innovation]
-    force = _norm_where(r.residual_force_n, r)
+    force = np.where(r.measured, np.linalg.norm(r.residual_force_n, axis=1), np.nan)
     if np.isfinite(force).any():
-        share = f"body weight is {number(weight, 0)} N"
-        found.insert(
-            -1, chart(f"{_residual(r, 'force')}, at the pelvis", "N", [Line(t, force)], span, "s", note=share)
-        )
+        title, note = f"{_residual(r, 'force')}, at the pelvis", f"body weight is {number(weight, 0)} N"
+        found.insert(-1, chart(title, "N", [Line(t, force)], span, "s", note=note))
     return found
-
-
-def _norm_where(vectors: Array, r: Reconstruction) -> Array:
-    return np.where(r.measured, np.linalg.norm(vectors, axis=1), np.nan)
 
 
 def _labelling(labels: JsonTable | None) -> str:

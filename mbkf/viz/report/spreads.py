@@ -1,4 +1,4 @@
-"""How sure the report's curves are: what varies within the trial, and by how much a whole curve could be shifted."""
+"""The two parts of a curve's standard deviation in the report: variation within the trial, and shift of the curve."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from mbkf.io.results import Reconstruction, varying_sd
 from mbkf.trial.gait.cycles import Cycle, over_cycle
 
 SHIFTS = (
-    "How sure a number is has two parts. A curve could be shifted as a whole, because the person's body is not known "
-    "exactly: the shift repeats whenever the posture is the same, in every cycle. And it varies within the trial, "
-    "because markers and skin do. Compare cycles of one session by what varies; compare sessions, persons or norms by "
-    "both together."
+    "A standard deviation has two parts. The whole curve may be shifted, because the person's body is not known "
+    "exactly: the shift is the same in every cycle, for the same posture. And the curve varies within the trial, "
+    "because markers and skin do. Compare cycles of one session by the variation; compare sessions, persons or norms "
+    "by both parts together."
 )
 NO_SHIFTS = (
-    "Bands tell what varies within the trial. By how much whole curves could be shifted is not told, because the "
-    "subject file does not say how well the body is known; scale the person again to have it told."
+    "Bands show the variation within the trial only. The shift of whole curves is not known, because the subject file "
+    "does not state the uncertainty of the body. Scale the person again to add it."
 )
 
 
@@ -29,7 +29,7 @@ class Curve(NamedTuple):
     Attributes:
         values: (T,) values.
         sd: (T,) standard deviations.
-        offset: (T,) the part of them that could shift the curve as a whole; None where that is not told.
+        offset: (T,) the part of them that shifts the whole curve; None where it is not known.
     """
 
     values: Array
@@ -38,27 +38,27 @@ class Curve(NamedTuple):
 
     @property
     def inner_sd(self) -> Array | None:
-        """(T,) the part that varies within the trial, None where the offset is not told."""
+        """(T,) the part that varies within the trial; None where the offset is not known."""
         return None if self.offset is None else varying_sd(self.sd, self.offset)
 
 
-def offsets_told(r: Reconstruction) -> bool:
-    """Whether the results tell by how much whole curves could be shifted: the subject file has a covariance."""
+def offsets_known(r: Reconstruction) -> bool:
+    """True if the results state the shift of whole curves: the subject file has a covariance."""
     return r.angles_sd_offset is not None and bool(np.nan_to_num(r.angles_sd_offset).any())
 
 
 def spread_note(r: Reconstruction) -> str:
-    """What the bands mean, in words."""
-    return SHIFTS if offsets_told(r) else NO_SHIFTS
+    """The meaning of the bands, in words."""
+    return SHIFTS if offsets_known(r) else NO_SHIFTS
 
 
-def band_key(told: bool) -> list[tuple[str, str]]:
-    """Entries of a legend for the bands: of both parts where the offset is told."""
-    if not told:
+def band_key(both: bool) -> list[tuple[str, str]]:
+    """Entries of a legend for the bands, of one part or of both."""
+    if not both:
         return [("swatch band", "± 2 standard deviations")]
     return [
-        ("swatch inner", "varies within the trial by this"),
-        ("swatch outer", "with what it could be shifted by as a whole (each ± 2 standard deviations)"),
+        ("swatch inner", "variation within the trial"),
+        ("swatch outer", "with the possible shift of the whole curve (each ± 2 standard deviations)"),
     ]
 
 
@@ -67,7 +67,7 @@ def cycle_sd(times_s: Array, sd: Array | None, cycles: Sequence[Cycle]) -> Array
 
     Args:
         times_s: (T,) times of the frames, s.
-        sd: (T,) standard deviations; None where they are not told.
+        sd: (T,) standard deviations; None where they are not known.
         cycles: The cycles.
     """
     if sd is None:

@@ -1,14 +1,14 @@
-"""Rows of numbers that pictures are drawn from, on the live page and in playback, and the quantities to plot.
+"""Rows of numbers for the drawing, on the live page and in playback, and the quantities to plot.
 
-A row is one frame: the poses of the segments, the markers, the reactions and every curve, one after another as
-32-bit numbers; NaN where something is not known. The page receives the offset of each part once.
+A row is one frame: poses of the segments, markers, reactions and every curve, one after another as 32-bit numbers; NaN
+stands for unknown. The page receives the offset of each part once.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,10 +27,10 @@ RESOLUTION = {
     "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02, "source": 1.0,
 }  # fmt: skip
 RESOLUTION |= {name: one.plot.resolution for name, one in PLOTTED.items() if one.plot}
-"""Resolution of a part's numbers on a screen; recordings are rounded to it."""
+"""Visible resolution of a part's numbers; recordings are rounded to it."""
 
 FORCE_AXES = (("vertical", "Vertical", "", 2), ("x", "", " along x", 0), ("y", "", " along y", 1))
-"""Components of a force: name, words before and after what it is, world axis."""
+"""Components of a force: name, words before and after its kind, world axis."""
 
 STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
 """The first numbers of a row."""
@@ -42,14 +42,14 @@ class Quantity:
 
     Attributes:
         id: Name that stays the same from run to run, e.g. "angle:knee_angle_r".
-        group: Heading it is listed under.
-        title: What it is called, with its side.
+        group: Heading of its list.
+        title: Its name, with the side.
         side: "r", "l" or "".
-        unit: As shown.
-        positive: What a positive value means, "" where that is plain.
-        factor: From the row's number to the unit.
-        column: Where it stands in the row.
-        sd_column: Where its standard deviation stands, -1 where it has none.
+        unit: Unit shown.
+        positive: Meaning of a positive value; "" where that is plain.
+        factor: Factor from the row's number to the unit.
+        column: Its column in the row.
+        sd_column: Column of its standard deviation; -1 without.
     """
 
     id: str
@@ -64,7 +64,7 @@ class Quantity:
 
 
 class Layout:
-    """Where each part of a row stands.
+    """The place of each part in a row.
 
     Attributes:
         parts: First column and width of each part, by name: status, segments (position, quaternion x y z w each),
@@ -89,7 +89,7 @@ class Layout:
             segments: Number of segments.
             markers: Number of markers.
             coordinates: Number of clinical coordinates.
-            unlabelled: Number of points without names, at most.
+            unlabelled: Greatest number of points without names.
             supports: Parts that bear load besides the feet.
         """
         self.loads = (*FEET, *supports)
@@ -159,13 +159,13 @@ def marker_states(measured_m: Array, hidden: BoolArray, refused: BoolArray) -> A
 def quantities(
     layout: Layout, coordinate_names: tuple[str, ...], joints: Iterable[ClinicalJoint], streamed: bool
 ) -> list[Quantity]:
-    """Everything that can be plotted, in the order of the list that people choose from.
+    """All quantities that can be plotted, in the order of the page's list.
 
     Args:
         layout: Of the rows.
         coordinate_names: (A,) clinical coordinates.
         joints: The body's clinical joints.
-        streamed: Whether there are latency, rate and lost frames to show.
+        streamed: True with latency, rate and lost frames.
     """
     words = wordings(joints)
     found = []
@@ -240,8 +240,3 @@ def _declared(layout: Layout, name: str, coordinate_names: tuple[str, ...]) -> I
 
 GROUPS = ("Angles", "Torques", "Ground reactions", "Other loads", "Residuals at the pelvis", "Stream")
 """Headings of the list of quantities, in order."""
-
-
-def as_plain(found: list[Quantity]) -> list[dict[str, object]]:
-    """Quantities as JSON can hold them."""
-    return [asdict(quantity) for quantity in found]

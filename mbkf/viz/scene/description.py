@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
@@ -9,7 +11,6 @@ from mbkf.model.body import Body
 from mbkf.model.body_shapes import as_plain as plain_shapes
 from mbkf.model.body_shapes import segment_shapes
 from mbkf.viz.scene.channels import STATUS, Layout, quantities
-from mbkf.viz.scene.channels import as_plain as plain_quantities
 from mbkf.viz.wording import part_wording
 
 
@@ -25,15 +26,16 @@ def scene_description(
     """The page's first message, as JSON can hold it.
 
     Args:
-        title: What is shown: trial or subject.
+        title: Name of the trial or subject.
         model: The body.
         marker_names: (M,) markers.
         coordinate_names: (A,) clinical coordinates.
         plate_corners_m: (K, 4, 3) corners of the plates; a plate with NaN is not drawn.
         layout: Of the rows that follow.
-        streamed: Whether they come from a stream.
+        streamed: True for rows of a stream.
     """
     drawn = plate_corners_m[np.isfinite(plate_corners_m).all(axis=(1, 2))]
+    plotted = quantities(layout, coordinate_names, model.description.clinical_joints, streamed)
     return {
         "title": title,
         "weight_n": round(float(model.mass_kg * GRAVITY_M_S2), 1),
@@ -44,7 +46,5 @@ def scene_description(
         "status": list(STATUS),
         "parts": {name: list(place) for name, place in layout.parts.items()},
         "width": layout.width,
-        "quantities": plain_quantities(
-            quantities(layout, coordinate_names, model.description.clinical_joints, streamed)
-        ),
+        "quantities": [asdict(one) for one in plotted],
     }

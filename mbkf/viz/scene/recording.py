@@ -13,6 +13,7 @@ from mbkf.io.contacts import bearing
 from mbkf.io.results import PLOTTED, Reconstruction
 from mbkf.model.human import HumanModel
 from mbkf.model.segment_poses import segment_poses
+from mbkf.viz.page import page
 from mbkf.viz.scene.channels import Layout, marker_states
 from mbkf.viz.scene.description import scene_description
 
@@ -21,6 +22,15 @@ MOST_HZ = 100.0
 
 MISSING = 65535
 """Stands for NaN in packed rows."""
+
+
+def playback_page(r: Reconstruction) -> str:
+    """The page that plays a reconstruction: 3-D scene, plots, play, pause, speed, slider; it needs no server.
+
+    Raises:
+        InvalidInput: The result holds no frames.
+    """
+    return page(recording(r))
 
 
 def recording(r: Reconstruction) -> dict[str, object]:
@@ -45,7 +55,7 @@ def recorded_scene(r: Reconstruction) -> tuple[dict[str, object], Array, Array]:
         InvalidInput: The result holds no frames.
     """
     if not r.frames:
-        raise InvalidInput(f"the result of '{r.trial}' holds no frames, so there is nothing to play")
+        raise InvalidInput(f"the result of '{r.trial}' holds no frames to play")
     model = HumanModel.of(r.subject)
     supports = tuple(
         name for k, name in enumerate(r.support_names) if bearing(r.support_wrench[:, [k]]).any()

@@ -1,4 +1,4 @@
-"""Charts of a session's cycles: every cycle thin, the mean bold with its band, the norm behind; and of two sessions."""
+"""Charts of a session's cycles (single ones thin, the mean bold, the norm behind), and of two sessions' means."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import SIDES
-from mbkf.io.norms import Band, Norms
-from mbkf.io.session import TrialKind
+from mbkf.io.norms import Band
 from mbkf.model.description import BodyDescription
 from mbkf.numerics.runs import spread_indices
 from mbkf.study.session.chosen import Chosen, chosen_curves
@@ -20,18 +19,14 @@ from mbkf.viz.svg import Line, Mark, chart
 from mbkf.viz.wording import wordings
 
 MOST_SINGLE = 12
-"""Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
+"""Most cycles that are drawn one by one, evenly chosen; the mean is that of all."""
+
+PER_CENT = (0.0, 100.0)
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A quantity as it is titled.
-
-    Attributes:
-        key: The quantity.
-        title: E.g. "Knee flexion".
-        positive: What a positive value means.
-    """
+    """A quantity with its title, e.g. "Knee flexion", and the meaning of a positive value."""
 
     key: Key
     title: str
@@ -58,19 +53,14 @@ def joint_rows(
         row = []
         for angle in entry.angles:
             own, name = known[angle.name], angle.name.removesuffix("_r")
-            told = terms.positive(name, own.positive)
-            row.append(Shown(Key(quantity, name), terms.coordinate(name, own.title), told))
+            title, positive = terms.coordinate(name, own.title), terms.positive(name, own.positive)
+            row.append(Shown(Key(quantity, name), title, positive))
         rows.append(row)
     return rows
 
 
 def power_rows(joints: Sequence[str], terms: Terms) -> list[list[Shown]]:
-    """The powers of whole joints, three in a row.
-
-    Args:
-        joints: Names without sides.
-        terms: The report's words.
-    """
+    """The powers of whole joints, named without their sides, three in a row."""
     shown = [Shown(Key(POWER, joint), terms.joint(joint), "") for joint in joints]
     return [shown[k : k + 3] for k in range(0, len(shown), 3)]
 
@@ -81,7 +71,7 @@ def reaction_rows(terms: Terms) -> list[list[Shown]]:
 
 
 def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band | None, terms: Terms) -> str:
-    """A quantity over both sides' cycles; an empty text where neither knows it.
+    """A quantity over both sides' cycles; an empty text if neither side has it.
 
     Args:
         sides: Cycles of right and left.
@@ -89,41 +79,25 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
         norm: The laboratory's reference; None without.
         terms: The report's words.
     """
-    thin, bold, marks, unit, estimated = [], [], [], "", False
+    thin, bold, marks, unit = [], [], [], ""
     for side in sides:
-        if shown.key not in side.curves:
-            continue
-        chosen = chosen_curves(side, shown.key)
-        if chosen.mean is None:
+        chosen = chosen_curves(side, shown.key) if shown.key in side.curves else None
+        if chosen is None or chosen.mean is None:
             continue
         letter, unit = SIDES[side.side], side.curves[shown.key].unit
-        estimated = estimated or chosen.estimated
         thin += _single(chosen, letter)
-        band = None if np.isnan(chosen.mean.sd).all() else 0.5 * chosen.mean.sd
-        bold.append(Line(PERCENT, chosen.mean.mean, band, letter, dashed=chosen.estimated))
+        bold.append(_mean_line(chosen, letter))
         marks.append(Mark(chosen.off_percent, letter))
     if not bold:
         return ""
-    behind = [] if norm is None or norm.unit != unit else [_norm_line(norm)]
+    if norm is not None and norm.unit == unit:
+        thin.insert(0, Line(PERCENT, norm.mean, 0.5 * norm.sd, "n", thin=True))
     note = f"+ {shown.positive}" if shown.positive else ""
-    return chart(
-        shown.title, terms.unit(unit), [*behind, *thin, *bold], (0.0, 100.0), "%", marks=marks, note=note
-    )
-
-
-def norm_of(norms: Norms | None, kind: TrialKind, key: Key) -> Band | None:
-    """The reference of a curve; None without.
-
-    Args:
-        norms: Those of the report.
-        kind: Of the movement.
-        key: The curve.
-    """
-    return None if norms is None else norms.curves.get((kind.value, key.quantity, key.name))
+    return chart(shown.title, terms.unit(unit), [*thin, *bold], PER_CENT, "%", marks=marks, note=note)
 
 
 def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms: Terms) -> list[str]:
-    """A quantity in two sessions: right, left, and the changes of both with their intervals; nothing where not known.
+    """A quantity in two sessions: right, left, and the changes of both with their intervals; empty if unknown.
 
     Args:
         pairs: The curves of a comparison.
@@ -133,29 +107,28 @@ def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms:
     known = {side: pairs[(shown.key, side)] for side in range(2) if (shown.key, side) in pairs}
     if not known:
         return []
-    charts = []
-    for side in range(2):
-        pair = known.get(side)
-        charts.append("" if pair is None else _pair_chart(pair, shown, terms))
-    unit = next(iter(known.values())).unit
+    charts = [_pair_chart(known[side], shown, terms) if side in known else "" for side in range(2)]
     lines = [
         Line(PERCENT, pair.difference.difference, 0.5 * pair.difference.half_width, SIDES[side])
         for side, pair in known.items()
     ]
-    title = f"{shown.title}: {terms.say('change')}"
-    charts.append(chart(title, terms.unit(unit), lines, (0.0, 100.0), "%", level=0.0))
-    return charts
+    title, unit = f"{shown.title}: {terms.say('change')}", next(iter(known.values())).unit
+    return [*charts, chart(title, terms.unit(unit), lines, PER_CENT, "%", level=0.0)]
 
 
 def _pair_chart(pair: CurvePair, shown: Shown, terms: Terms) -> str:
-    lines, marks = [], []
-    for chosen, style in ((pair.before, "b"), (pair.after, SIDES[pair.side])):
-        assert chosen.mean is not None
-        band = None if np.isnan(chosen.mean.sd).all() else 0.5 * chosen.mean.sd
-        lines.append(Line(PERCENT, chosen.mean.mean, band, style, dashed=chosen.estimated))
-        marks.append(Mark(chosen.off_percent, style))
+    both = ((pair.before, "b"), (pair.after, SIDES[pair.side]))
+    lines = [_mean_line(chosen, style) for chosen, style in both]
+    marks = [Mark(chosen.off_percent, style) for chosen, style in both]
     title = f"{shown.title}, {terms.say('left' if pair.side else 'right')}"
-    return chart(title, terms.unit(pair.unit), lines, (0.0, 100.0), "%", marks=marks)
+    return chart(title, terms.unit(pair.unit), lines, PER_CENT, "%", marks=marks)
+
+
+def _mean_line(chosen: Chosen, style: str) -> Line:
+    """The mean of the chosen cycles with a band of one standard deviation."""
+    assert chosen.mean is not None
+    band = None if np.isnan(chosen.mean.sd).all() else 0.5 * chosen.mean.sd
+    return Line(PERCENT, chosen.mean.mean, band, style, dashed=chosen.estimated)
 
 
 def _single(chosen: Chosen, letter: str) -> list[Line]:
@@ -169,7 +142,3 @@ def _single(chosen: Chosen, letter: str) -> list[Line]:
         for one in chosen.others[:MOST_SINGLE]
     ]
     return lines
-
-
-def _norm_line(norm: Band) -> Line:
-    return Line(PERCENT, norm.mean, 0.5 * norm.sd, "n", thin=True)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from html import escape
-from pathlib import Path
 
-from mbkf.io.atomic import replacing
 from mbkf.io.norms import Norms
 from mbkf.model.human import reference_body
 from mbkf.study.session.comparison import Comparison, by_curve, compare, measure_pairs
@@ -15,12 +13,11 @@ from mbkf.study.session.records import MovementGroup, Session
 from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
-from mbkf.viz.page import asset
+from mbkf.viz.page import asset, document
 from mbkf.viz.report.motion import JointNames, joint_names
 from mbkf.viz.session.charts import (
     Shown,
     joint_rows,
-    norm_of,
     pair_charts,
     power_rows,
     reaction_rows,
@@ -28,8 +25,6 @@ from mbkf.viz.session.charts import (
 )
 from mbkf.viz.session.tables import changes_table, measures_table, trials_table
 from mbkf.viz.session.terms import Terms
-
-POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
 def session_page(
@@ -39,7 +34,7 @@ def session_page(
 
     Args:
         session: The session.
-        before: An earlier one that it is compared with; None without.
+        before: An earlier session to compare with; None without.
         norms: The laboratory's reference bands; None without.
         language: Code of the report's language.
 
@@ -61,26 +56,10 @@ def session_page(
     if before is not None:
         parts.append(("change", terms.say("before_after"), _changes(before, session, names, terms)))
     parts.append(("numbers", terms.say("numbers"), _numbers(session, terms)))
-    links = "".join(f'<a href="#{name}">{escape(title)}</a>' for name, title, _ in parts)
-    body = "".join(section(name, title, text) for name, title, text in parts)
-    return (
-        f'<!DOCTYPE html>\n<html lang="{language}">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<link rel="icon" href="data:,">\n'
-        f"<title>{escape(session.name)} · {escape(terms.say('title'))}</title>\n"
-        f"<style>{asset('report.css')}\n{asset('session_report.css')}</style>\n</head>\n<body>\n"
-        f"<nav><b>mbkf</b>{links}</nav>\n<main>\n{_heading(session, terms)}\n{body}\n</main>\n</body>\n</html>\n"
-    )
-
-
-def write_session_report(text: str, path: str | Path) -> None:
-    """Writes a page of :func:`session_page`, whole or not at all.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    with replacing(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+    body = _heading(session, terms) + "".join(section(name, title, text) for name, title, text in parts)
+    style = asset("report.css") + asset("session_report.css")
+    links = [(name, title) for name, title, _ in parts]
+    return document(language, f"{session.name} · {terms.say('title')}", style, links, body)
 
 
 def _heading(session: Session, terms: Terms) -> str:
@@ -92,8 +71,8 @@ def _heading(session: Session, terms: Terms) -> str:
         facts.append(terms.say(session.sex))
     if session.age is not None:
         facts.append(terms.say("years", f"{session.age:g}"))
-    told = " · ".join(escape(fact) for fact in facts)
-    return f"<h1>{escape(session.name)}</h1><p class='facts'>{escape(terms.say('title'))} · {told}</p>"
+    line = " · ".join(escape(fact) for fact in (terms.say("title"), *facts))
+    return f"<h1>{escape(session.name)}</h1><p class='facts'>{line}</p>"
 
 
 def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms | None, terms: Terms) -> str:
@@ -101,19 +80,20 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
     body = reference_body(session.subject)
     counts = [len(side.cycles) for side in gait.sides]
 
-    def draw(rows: list[list[Shown]]) -> str:
-        return _charts(
-            rows, lambda one: session_chart(gait.sides, one, norm_of(norms, gait.kind, one.key), terms), terms
-        )
+    known = {} if norms is None else norms.curves
 
-    def legs(quantity: str, joints: Sequence[str]) -> str:
+    def draw(rows: list[list[Shown]]) -> str:
+        def one_chart(one: Shown) -> str:
+            band = known.get((gait.kind.value, one.key.quantity, one.key.name))
+            return session_chart(gait.sides, one, band, terms)
+
+        return _charts(rows, one_chart, terms)
+
+    def coordinates(quantity: str, joints: Sequence[str]) -> str:
         return draw(joint_rows(body, joints, quantity, terms))
 
     upper = [
-        folded(
-            f"{terms.say('upper')}: {terms.say(title).lower()}",
-            draw(joint_rows(body, names.upper, kind, terms)),
-        )
+        folded(f"{terms.say('upper')}: {terms.say(title).lower()}", coordinates(kind, names.upper))
         for title, kind in (("angles", "angle"), ("torques", "torque"))
         if names.upper
     ]
@@ -127,10 +107,10 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f'<h3 class="sheet">{escape(terms.say("angles"))}</h3>',
             _key(gait, norms, terms),
             paragraph(terms.say("midline_note")),
-            legs("angle", names.legs),
+            coordinates("angle", names.legs),
             f'<h3 class="sheet">{escape(terms.say("torques"))}</h3>',
             paragraph(terms.say("torque_note")),
-            legs("torque", names.loaded),
+            coordinates("torque", names.loaded),
             f"<h3>{escape(terms.say('powers'))}</h3>",
             paragraph(terms.say("power_note")),
             draw(power_rows(joints, terms)),
@@ -153,8 +133,7 @@ def _changes(before: Session, after: Session, names: JointNames, terms: Terms) -
         )
         if old and new
     ]
-    told = paragraph(terms.say("compared", before.name, after.name))
-    return told + "".join([*found, *others])
+    return "".join([paragraph(terms.say("compared", before.name, after.name)), *found, *others])
 
 
 def _change(comparison: Comparison, after: Session, names: JointNames, terms: Terms) -> str:
@@ -216,9 +195,5 @@ def _numbers(session: Session, terms: Terms) -> str:
     shown = [one for row in joint_rows(body, (*names.legs, *names.upper), "angle", terms) for one in row]
     signs = table((terms.say("angles"), "+"), [(one.title, one.positive) for one in shown], "small")
     filters = "; ".join(dict.fromkeys(trial.filter for trial in session.trials))
-    told = (
-        terms.say("cycles_text"),
-        terms.say("interval_text"),
-        terms.say("made_with", __version__, filters),
-    )
-    return "".join(paragraph(text) for text in told) + folded(terms.say("signs"), signs)
+    texts = terms.say("cycles_text"), terms.say("interval_text"), terms.say("made_with", __version__, filters)
+    return "".join(paragraph(text) for text in texts) + folded(terms.say("signs"), signs)

@@ -26,11 +26,11 @@ class Terms:
         return words(self.language, "measures").get(name, name)
 
     def unit(self, name: str) -> str:
-        """A unit as it is shown, e.g. "°" for "deg"."""
+        """The sign of a unit, e.g. "°" for "deg"."""
         return words(self.language, "units").get(name, name)
 
     def joint(self, name: str) -> str:
-        """The name of a joint, e.g. "knee"; a body's own ones keep theirs."""
+        """The name of a joint, e.g. "knee"; joints of other bodies keep their names."""
         return words(self.language, "joints").get(name, name.replace("_", " ").capitalize())
 
     def coordinate(self, name: str, otherwise: str) -> str:
@@ -38,5 +38,5 @@ class Terms:
         return words(self.language, "coordinates").get(name, otherwise)
 
     def positive(self, name: str, otherwise: str) -> str:
-        """What is positive, as the side sees it, or the body's own words."""
+        """The meaning of a positive value, or the body's own words."""
         return words(self.language, "positive").get(name, otherwise)

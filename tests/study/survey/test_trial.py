@@ -38,7 +38,11 @@ def test_no_marker_gaps_unknown_names_and_no_plate_are_told(tmp_path):
     some[: len(some) // 2] = np.nan
     strange = tuple(f"Q{k}" for k in range(len(markers.names)))
     cases = {
-        "none": (replace(markers, positions_m=np.full_like(some, np.nan)), made.plates, "no marker is seen"),
+        "none": (
+            replace(markers, positions_m=np.full_like(some, np.nan)),
+            made.plates,
+            "no markers are visible",
+        ),
         "half": (replace(markers, positions_m=some), made.plates, "51 % of the marker samples are missing"),
         "names": (replace(markers, names=strange), made.plates, "marker set is not known"),
         "plates": (markers, (), "no force plate"),

@@ -96,7 +96,7 @@ def test_only_who_has_the_token_may_speak(page_of, tmp_path):
 
 
 def test_a_name_that_is_no_marker_set_s_is_refused_at_once(tmp_path):
-    with pytest.raises(InvalidInput, match=r"end in \.toml"):
+    with pytest.raises(InvalidInput, match=r"ends in \.toml"):
         EditPage(PROTOCOL, stand_beside(CAPTURE, PROTOCOL), tmp_path / "mine.txt")
 
 

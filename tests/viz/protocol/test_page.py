@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.io.atomic import write_text
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.trial.protocol.standing import Standing, neutral_on_floor, stand_beside
 from mbkf.viz.protocol.colours import segment_colours
-from mbkf.viz.protocol.page import UNKNOWN, set_data, show_page, write_show_page
+from mbkf.viz.protocol.page import UNKNOWN, set_data, show_page
 from tests.captures import made_capture
 from tests.viz.browsing import until
 
@@ -69,7 +70,7 @@ def test_the_page_is_whole():
 @pytest.mark.slow
 @pytest.mark.parametrize("width", [1300, 800])
 def test_a_browser_shows_every_marker_in_the_colour_of_its_segment(opened, tmp_path, width):
-    write_show_page(DOUBTFUL, tmp_path / "set.html")
+    write_text(tmp_path / "set.html", show_page(DOUBTFUL))
     colours = segment_colours(segment.name for segment in DOUBTFUL.body.segments)
     with opened((tmp_path / "set.html").as_uri()) as page:
         page.set_viewport_size({"width": width, "height": 850})
@@ -102,7 +103,7 @@ def test_a_browser_shows_every_marker_in_the_colour_of_its_segment(opened, tmp_p
 
 @pytest.mark.slow
 def test_markers_are_chosen_by_mouse_and_keyboard_and_seen_from_all_sides(opened, tmp_path):
-    write_show_page(PROTOCOL, tmp_path / "set.html")
+    write_text(tmp_path / "set.html", show_page(PROTOCOL))
     with opened((tmp_path / "set.html").as_uri()) as page:
         page.set_viewport_size({"width": 1300, "height": 850})
         until(page, "Boolean(window.mbkf && mbkf.labels.seen !== '')")

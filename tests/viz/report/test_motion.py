@@ -44,7 +44,7 @@ def test_every_angle_of_every_joint_is_shown():
 def test_joints_that_nothing_observes_are_named_not_shown():
     r = replace(walk(), unobserved_dofs=("head_x", "head_y", "head_z"))
     assert angle_cells(r, ("head",)) == []
-    assert "no marker and no sensor observes them: head." in motion_section(r, None)
+    assert "neither markers nor sensors observe them: head." in motion_section(r, None)
 
 
 def test_cycles_are_drawn_with_their_toe_off():

@@ -8,7 +8,7 @@ import pytest
 
 from mbkf.trial.gait.cycles import find_gait
 from mbkf.viz.report.motion import angle_cells, motion_section, reaction_cells, time_chart, torque_cells
-from mbkf.viz.report.spreads import Curve, cycle_sd, offsets_told, spread_note
+from mbkf.viz.report.spreads import Curve, cycle_sd, offsets_known, spread_note
 from tests.motions import assert_near
 from tests.recordings import walk
 
@@ -55,7 +55,7 @@ def test_ranges_tell_the_offset_in_brackets():
     r = shifted_walk()
     assert "± 2.3 (1.8)" in motion_section(r, None)
     assert "in brackets" in motion_section(r, None) and "in brackets" not in motion_section(walk(), None)
-    assert offsets_told(r) and not offsets_told(walk())
+    assert offsets_known(r) and not offsets_known(walk())
 
 
 def test_the_spread_of_a_cycle_is_the_root_mean_square_over_all():

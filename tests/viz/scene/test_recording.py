@@ -1,6 +1,8 @@
 """A recording: rows that show what the result holds, packed without visible loss."""
 
 import base64
+import json
+import re
 import zlib
 from dataclasses import replace
 
@@ -12,7 +14,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 
 from mbkf.errors import InvalidInput
 from mbkf.viz.scene.channels import REFUSED, SEEN, UNSEEN
-from mbkf.viz.scene.recording import MISSING, pack, recorded_scene, recording
+from mbkf.viz.scene.recording import MISSING, pack, playback_page, recorded_scene, recording
 from tests.recordings import LOST, RAIL, SEAT, broken_walk, leaning_walk, walk
 
 VALUES = st.one_of(st.just(np.nan), st.floats(-1e3, 1e3))
@@ -150,3 +152,12 @@ def test_nothing_to_play_is_said():
     }
     with pytest.raises(InvalidInput, match="no frames"):
         recorded_scene(replace(r, **none))
+
+
+def test_the_page_holds_the_rows_and_is_small():
+    text = playback_page(walk())
+    (held,) = re.findall(r'id="recording">(.*?)</script>', text)
+    data = json.loads(held)
+    assert data["scene"]["title"] == "walk <1>"
+    assert data == recording(walk())
+    assert len(text) < 2_000_000

@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.io.norms import Band
-from mbkf.io.session import TrialKind
 from mbkf.model.human import reference_body
 from mbkf.study.session.comparison import by_curve, compare
 from mbkf.study.session.cycles import Key
 from mbkf.study.session.gather import session_of
 from mbkf.study.session.norms import norms_of
-from mbkf.viz.session.charts import Shown, joint_rows, norm_of, pair_charts, session_chart
+from mbkf.viz.session.charts import Shown, joint_rows, pair_charts, session_chart
 from mbkf.viz.session.terms import Terms
 from tests.study.session.sessions import estimated, session, walks
 
@@ -51,8 +50,8 @@ def test_only_estimated_cycles_are_dashed():
 
 def test_norms_stand_behind_where_units_agree():
     norms = norms_of([session(), session(1, 6)], "ours")
-    band = norm_of(norms, TrialKind.WALK, KNEE.key)
-    assert norm_of(None, TrialKind.WALK, KNEE.key) is None is norm_of(norms, TrialKind.RUN, KNEE.key)
+    band = norms.curves["walk", KNEE.key.quantity, KNEE.key.name]
+    assert ("run", KNEE.key.quantity, KNEE.key.name) not in norms.curves
     assert 'class="band n"' in session_chart(session().gaits[0].sides, KNEE, band, ENGLISH)
     other = Band("N m", 2, band.mean, band.sd)
     assert 'class="band n"' not in session_chart(session().gaits[0].sides, KNEE, other, ENGLISH)

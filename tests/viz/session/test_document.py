@@ -9,7 +9,7 @@ from mbkf.errors import InvalidInput
 from mbkf.study.session.gather import session_of
 from mbkf.study.session.norms import norms_of
 from mbkf.viz.language import languages
-from mbkf.viz.session.document import session_page, write_session_report
+from mbkf.viz.session.document import session_page
 from tests.recordings import recorded
 from tests.study.session.sessions import estimated, session, walks
 
@@ -51,8 +51,3 @@ def test_what_is_not_known_is_said():
     assert "not in the mean" in mixed and "not in the mean" not in session_page(session())
     alone = session_page(session_of([estimated(r) for r in walks()], "x"))
     assert "only estimated cycles" in alone
-
-
-def test_written_whole(tmp_path):
-    write_session_report("text", tmp_path / "r.html")
-    assert (tmp_path / "r.html").read_text() == "text"

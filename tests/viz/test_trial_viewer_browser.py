@@ -18,8 +18,8 @@ from tests.viz.browsing import PATIENCE_S, until
 
 pytestmark = pytest.mark.slow
 
-LOADED = "Boolean(window.mbkf && mbkf.view.seenPelvis && look.strip)"
-"""True once the page can be used; before that ``look`` is the element of this id."""
+LOADED = "Boolean(window.mbkf && mbkf.view.seenPelvis && viewer.strip)"
+"""True once the page can be used; before that ``viewer`` is the element of this id."""
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,9 @@ def page(opened, server):
         page.set_viewport_size({"width": 1280, "height": 720})
         page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P1&trial=walk1")
         until(page, LOADED)
-        page.evaluate("look.events.mergeMs = 60000")  # keys pressed by a slow machine follow each other, too
+        page.evaluate(
+            "viewer.events.mergeMs = 60000"
+        )  # keys pressed by a slow machine follow each other, too
         yield page
         server.workspace.note_events("P1", "walk1", None)
 
@@ -60,7 +62,7 @@ def starts(server):
 def saved(page):
     until(
         page,
-        "look.strip.said.textContent.startsWith('Saved') && !look.saving.waiting && !look.saving.busy",
+        "viewer.strip.said.textContent.startsWith('Saved') && !viewer.saving.waiting && !viewer.saving.busy",
     )
 
 
@@ -75,10 +77,10 @@ def test_an_event_moved_with_the_keyboard_changes_the_session_file_and_the_curve
     before = dict(starts(server))
     at = chosen(page, "right", "strike")
     assert at == before["right"] and by_hand(server) is None
-    frame = page.evaluate("look.strip.frame")
+    frame = page.evaluate("viewer.strip.frame")
     assert (
         page.evaluate(
-            "Math.abs(mbkf.recording.times[mbkf.frame] - look.events.get(look.strip.chosen).time_s)"
+            "Math.abs(mbkf.recording.times[mbkf.frame] - viewer.events.get(viewer.strip.chosen).time_s)"
         )
         < 0.01
     )
@@ -101,7 +103,7 @@ def test_events_are_deleted_added_and_taken_back(page, server):
     count = page.locator(".event").count()
     chosen(page, "left", "strike")
     page.keyboard.press("ArrowDown")
-    assert page.evaluate("look.events.get(look.strip.chosen).kind") == "off", "the next one of that foot"
+    assert page.evaluate("viewer.events.get(viewer.strip.chosen).kind") == "off", "the next one of that foot"
     page.keyboard.press("Delete")
     assert page.locator(".event").count() == count - 1
     assert page.evaluate("document.activeElement.classList.contains('event')"), "the focus is not lost"
@@ -116,7 +118,7 @@ def test_events_are_deleted_added_and_taken_back(page, server):
     assert page.locator(".event.found").count() == count
     page.get_by_role("button", name="Redo").click()
     assert page.locator(".event").count() == count - 1
-    page.get_by_role("button", name="Back to the found ones").click()
+    page.get_by_role("button", name="Back to the detected events").click()
     assert page.locator(".event.found").count() == count
 
 
@@ -130,9 +132,9 @@ def test_an_event_is_dragged_and_one_comes_with_a_double_click(page, server):
     page.mouse.move(x + 40, y, steps=4)
     page.mouse.up()
     width = page.locator(".right .inner").bounding_box()["width"]
-    span = np.ptp(page.evaluate("look.events.span"))
+    span = np.ptp(page.evaluate("viewer.events.span"))
     now = float(page.locator(".right .event.strike").first.get_attribute("aria-valuenow"))
-    assert now == pytest.approx(at + 40 * span / width, abs=page.evaluate("look.strip.frame"))
+    assert now == pytest.approx(at + 40 * span / width, abs=page.evaluate("viewer.strip.frame"))
     count = page.locator(".left .event.off").count()
     lane = page.locator("#strip .track.left").bounding_box()
     page.mouse.dblclick(lane["x"] + 0.68 * lane["width"], lane["y"] + 0.8 * lane["height"])
@@ -141,21 +143,21 @@ def test_an_event_is_dragged_and_one_comes_with_a_double_click(page, server):
 
 
 def test_another_trial_lies_beside_and_its_curves_are_drawn(page):
-    assert page.evaluate("look.ghost") is None
-    page.get_by_label("Beside it").select_option("walk2")
-    until(page, "Boolean(look.ghost && look.ghost.body.visible)")
+    assert page.evaluate("viewer.ghost") is None
+    page.get_by_label("Other trial").select_option("walk2")
+    until(page, "Boolean(viewer.ghost && viewer.ghost.body.visible)")
     page.locator("#scrub").fill("150")
-    same = "[0, 1, 2].every((k) => Math.abs(look.ghost.body.localToWorld(look.ghost.segments[0].position.clone())"
+    same = "[0, 1, 2].every((k) => Math.abs(viewer.ghost.body.localToWorld(viewer.ghost.segments[0].position.clone())"
     same += ".getComponent(k) - mbkf.view.viewer.scene.localToWorld(mbkf.view.segments[0].position.clone())"
     same += ".getComponent(k)) < 0.05)"
     until(page, same)  # the same walk, laid over itself, is where it is
     knee = "mbkf.panel.other(mbkf.panel.quantities.get('angle:knee_angle_r'))"
     own = "mbkf.recording.series(mbkf.panel.quantities.get('angle:knee_angle_r'))"
     assert page.evaluate(f"Math.abs({knee}.values[60] - {own}.values[60]) < 1")
-    page.get_by_label("How the trials are laid over each other").select_option("time")
-    assert page.evaluate("look.ghost.strikes") is None
-    page.get_by_label("Beside it").select_option("")
-    until(page, "look.ghost === null")
+    page.get_by_label("Alignment of the trials").select_option("time")
+    assert page.evaluate("viewer.ghost.strikes") is None
+    page.get_by_label("Other trial").select_option("")
+    until(page, "viewer.ghost === null")
 
 
 def turned(r, turn, shift):
@@ -173,20 +175,21 @@ def test_a_walk_in_another_direction_is_laid_over_by_its_cycles(opened, server):
         place = server.workspace.out / "P2" / name
         place.mkdir(parents=True)
         write_result_files(r, summarise(r), place)
-    at = "mbkf.view.viewer.scene.worldToLocal(look.ghost.body.localToWorld(look.ghost.segments[S].position.clone()))"
-    fresh = "look.ghost.body.updateWorldMatrix(true, true)"
+    at = "mbkf.view.viewer.scene.worldToLocal(viewer.ghost.body.localToWorld("
+    at += "viewer.ghost.segments[S].position.clone()))"
+    fresh = "viewer.ghost.body.updateWorldMatrix(true, true)"
     with opened(server.url) as page:
         page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P2&trial=walk1")
         until(page, LOADED)
-        page.get_by_label("Beside it").select_option("walk2")
-        until(page, "Boolean(look.ghost && look.ghost.body.visible)")
+        page.get_by_label("Other trial").select_option("walk2")
+        until(page, "Boolean(viewer.ghost && viewer.ghost.body.visible)")
         page.locator("#scrub").fill("60")
         page.evaluate(fresh)
         for segment in range(page.evaluate("mbkf.view.segments.length")):
             there = page.evaluate(at.replace("S]", f"{segment}]") + ".toArray()")
             here = page.evaluate(f"mbkf.view.segments[{segment}].position.toArray()")
             np.testing.assert_allclose(there, here, atol=0.02)
-        page.get_by_label("How the trials are laid over each other").select_option("time")
+        page.get_by_label("Alignment of the trials").select_option("time")
         page.evaluate(fresh)
         there = page.evaluate(at.replace("S]", "0]") + ".toArray()")
         np.testing.assert_allclose(there, turned(walk(), 2.5, [1.0, -2.0]).q[60, :3], atol=0.02)
@@ -194,7 +197,7 @@ def test_a_walk_in_another_direction_is_laid_over_by_its_cycles(opened, server):
 
 def test_measured_and_estimated_loads_look_different(page):
     page.locator("#scrub").fill("80")
-    seen = "look.pressure.marks.map(({ measured, estimated }) => [measured.visible, estimated.visible])"
+    seen = "viewer.pressure.marks.map(({ measured, estimated }) => [measured.visible, estimated.visible])"
     right = page.evaluate(seen)[0]
     assert right == [True, False]
     page.get_by_label("Pressure, measured").uncheck()

@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from mbkf.app import live_routes as module
-from mbkf.app.live_routes import frame_page
+from mbkf.app import routes as module
+from mbkf.app.pages import live_frame_page
 from mbkf.stream.lsl.discovery import FoundStream
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.trial.live.log import FRAMES_FILE
@@ -61,7 +61,7 @@ def test_a_run_is_framed_at_its_own_address_alone_and_stopped(server, cookie, re
     now = once(server, cookie, lambda run: run["port"] is not None)
     answer, text = asked(server, "/live/page", Cookie=cookie)
     assert answer.status == 200 and answer.headers["X-Frame-Options"] == "SAMEORIGIN"
-    assert text.decode() == frame_page(now["port"])
+    assert text.decode() == live_frame_page(now["port"])
     log = server.workspace.place("P1") / now["name"] / LOG_FOLDER / FRAMES_FILE
     once(server, cookie, lambda run: log.is_file() and log.stat().st_size > SOME_FRAMES)
     assert plain(server, cookie, "/live?session=P1&do=stop", "POST")[1]["run"]["state"] in {"ending", "ended"}
@@ -81,7 +81,7 @@ def test_a_run_that_is_killed_says_so_and_its_frames_are_kept(server, cookie, re
     server.live._process.kill()
     failed = once(server, cookie, lambda run: not run["goes_on"])
     assert failed["state"] == "failed"
-    assert failed["reason"].endswith("Hz; what it had recorded until then is kept")
+    assert failed["reason"].endswith("Hz; the frames recorded until then are kept")
     assert asked(server, f"/trial/look?session=P1&trial={begun['name']}", Cookie=cookie)[0].status == 200
     (row,) = [
         trial
@@ -92,7 +92,7 @@ def test_a_run_that_is_killed_says_so_and_its_frames_are_kept(server, cookie, re
 
 
 def test_the_frame_may_hold_the_live_page_and_nothing_else():
-    text = frame_page(51234)
+    text = live_frame_page(51234)
     assert "default-src 'none'" in text and 'frame-src http://127.0.0.1:51234"' in text
     assert text.count("http:") == 2 and "{{" not in text and "<script" not in text
 

@@ -1,9 +1,9 @@
-// A trial looked at: the player with its curves, the strip of events, where loads press, and another trial beside it.
+// The trial viewer: the player with its curves, the strip of events, where loads press, and another trial beside it.
 "use strict";
 
-class Look {
-  constructor(player, page, told) {
-    Object.assign(this, { player, told, ghost: null, asked: 0 });
+class TrialViewer {
+  constructor(player, page, trial) {
+    Object.assign(this, { player, trial, ghost: null, asked: 0 });
     const { scene, found, events, frame_s, span_s } = page;
     document.documentElement.lang = language;
     this.events = new FootEvents(found, events, span_s);
@@ -12,7 +12,7 @@ class Look {
     const contacts = FEET.map((_, load) => this.inTime(contactsOf(player.recording, scene.parts, load)));
     this.strip = new Strip(document.getElementById("strip"), player.slider, this.events, contacts, frame_s,
       () => player.recording.times[player.frame], (time) => player.seek(time));
-    const address = "events?" + new URLSearchParams({ session: told.session, trial: told.trial });
+    const address = "events?" + new URLSearchParams({ session: trial.session, trial: trial.trial });
     this.saving = new Saving(address, (text, bad) => this.strip.say(text, bad));
     this.events.onChange = () => this.changed();
     this.others();
@@ -48,7 +48,7 @@ class Look {
   }
 
   others() {
-    const { others } = this.told;
+    const { others } = this.trial;
     this.chosen = element("select", { id: "ghost", onchange: () => this.lay() }, element("option", { value: "", textContent: word(others.length ? "no_ghost" : "no_others") }),
       ...others.map((name) => element("option", { value: name, textContent: name })));
     this.chosen.disabled = !others.length;
@@ -68,7 +68,7 @@ class Look {
     this.mode.disabled = !name;
     if (name) {
       try {
-        const answer = await fetch("recording?" + new URLSearchParams({ session: this.told.session, trial: name })), said = await answer.json();
+        const answer = await fetch("recording?" + new URLSearchParams({ session: this.trial.session, trial: name })), said = await answer.json();
         if (!answer.ok) throw new Error(said.trouble);
         const ghost = await Ghost.of(this.player.view, this.player.recording, said);
         if (asked !== this.asked) return ghost.remove();
@@ -88,5 +88,5 @@ class Look {
 
 started.then(() => {
   const read = (id) => JSON.parse(document.getElementById(id).textContent);
-  window.look = new Look(window.mbkf, read("recording"), read("look"));
+  window.viewer = new TrialViewer(window.mbkf, read("recording"), read("viewer"));
 }).catch(trouble);

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from mbkf.app.look_routes import MOST_EVENTS, cycles_in, events_said
+from mbkf.app.foot_events import MOST_EVENTS, cycles_in, events_of
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, read_session
@@ -88,10 +88,10 @@ def test_events_and_other_notes_leave_each_other_alone(server, cookie, run):
     workspace.note_events("P1", "walk1", (event,))
     workspace.note("P1", SessionNotes(name="A", trials={"static": TrialNotes(TrialKind.STATIC)}))
     workspace.note_events("P1", "other", ())
-    notes = workspace.look("P1").notes
+    notes = workspace.survey("P1").notes
     assert notes.name == "A" and notes.trial("walk1").events == (event,) and notes.trial("other").events == ()
     workspace.note("P1", SessionNotes(trials={"walk1": TrialNotes(TrialKind.WALK, events=())}))
-    kept = workspace.look("P1").notes.trial("walk1")
+    kept = workspace.survey("P1").notes.trial("walk1")
     assert kept == TrialNotes(TrialKind.WALK, events=(event,)), "a page that knows older events loses none"
     for trial in ("walk1", "other"):
         workspace.note_events("P1", trial, None)
@@ -123,8 +123,8 @@ def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run
     ("address", "body", "told"),
     [
         (EVENTS, "no json", "no JSON"),
-        (EVENTS, "[]", "nothing of events"),
-        (EVENTS, "{}", "nothing of events"),
+        (EVENTS, "[]", "sent no events"),
+        (EVENTS, "{}", "sent no events"),
         (EVENTS, '{"events": 3}', "event must be a list"),
         (EVENTS, '{"events": [{"side": "right", "kind": "strike"}]}', "needs side, kind and time_s"),
         (EVENTS, '{"events": [{"side": "middle", "kind": "off", "time_s": 1}]}', "side must be"),
@@ -142,11 +142,11 @@ def test_what_cannot_be_is_told_and_changes_nothing(server, cookie, run, address
     assert (file.read_bytes() if file.exists() else None) == before
 
 
-def test_events_said_are_events():
+def test_events_of_a_request_are_events():
     one = {"side": "left", "kind": "off", "time_s": 1.5}
-    assert events_said({"events": [one]}) == (FootEvent("left", EventKind.OFF, 1.5),)
-    assert events_said({"events": None}) is None and events_said({"events": []}) == ()
+    assert events_of({"events": [one]}) == (FootEvent("left", EventKind.OFF, 1.5),)
+    assert events_of({"events": None}) is None and events_of({"events": []}) == ()
     with pytest.raises(InvalidInput, match="more than"):
-        events_said({"events": [one] * (MOST_EVENTS + 1)})
+        events_of({"events": [one] * (MOST_EVENTS + 1)})
     with pytest.raises(FileFormatError):
-        events_said({"events": [{**one, "kind": "hop"}]})
+        events_of({"events": [{**one, "kind": "hop"}]})

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from mbkf.app import export_routes as module
-from mbkf.app.export_routes import exported
+from mbkf.app import exports as module
+from mbkf.app.exports import export
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.stream.run.report import LIVE_FILE
@@ -63,7 +63,7 @@ def test_films_are_made_one_at_a_time(recording, tmp_path, monkeypatch):
         path.write_bytes(kind.encode())
 
     monkeypatch.setattr(module, "write_film", film)
-    assert exported(recording, "mp4", tmp_path).read_bytes() == b"mp4"
+    assert export(recording, "mp4") == b"mp4"
     assert not module._FILMING.locked()
 
 
@@ -79,4 +79,4 @@ def test_a_film_that_cannot_be_made_says_why(server, cookie, recording, monkeypa
 
 def test_an_unknown_format_is_refused_before_anything_is_read(tmp_path):
     with pytest.raises(UnknownName, match="urdf"):
-        exported(tmp_path / "nothing", "urdf", tmp_path)
+        export(tmp_path / "nothing", "urdf")

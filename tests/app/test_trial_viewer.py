@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from mbkf.app.look_page import SCRIPTS, look_data, look_page
+from mbkf.app.trial_viewer import SCRIPTS, viewer_data, viewer_page
 from mbkf.io.results_folder import write_result_files
 from mbkf.io.session import EventKind, FootEvent
 from mbkf.trial.gait.events import foot_events, plain_found
@@ -14,7 +14,7 @@ from mbkf.viz.language import words
 from mbkf.viz.page import asset
 from tests.recordings import walk
 
-OWN = "\n".join(asset(name) for name in SCRIPTS if name.startswith("look"))
+OWN = "\n".join(asset(name) for name in SCRIPTS if "viewer" in name)
 
 
 @pytest.fixture(scope="module")
@@ -26,21 +26,21 @@ def folder(tmp_path_factory):
 
 def test_the_data_are_the_result_s_and_tell_found_from_set(folder):
     event = FootEvent("left", EventKind.OFF, 1.25)
-    data = look_data(folder, (event,))
+    data = viewer_data(folder, (event,))
     found = [FootEvent(one["side"], EventKind(one["kind"]), one["time_s"]) for one in data["found"]]
     assert tuple(found) == plain_found(foot_events(walk()))
     assert data["events"] == [{"side": "left", "kind": "off", "time_s": 1.25}]
     assert data["frame_s"] == 1.0 / walk().rate_hz
     assert data["span_s"] == [walk().times_s[0], walk().times_s[-1]]
-    assert look_data(folder)["events"] is None
+    assert viewer_data(folder)["events"] is None
 
 
 def test_the_page_is_one_text_that_loads_nothing(folder):
     name = "</script><b>x"
-    page = look_page("P1", name, ["<i>other"], look_data(folder))
+    page = viewer_page("P1", name, ["<i>other"], viewer_data(folder))
     assert "{{" not in page.split("<script>")[0] and name not in page and "<i>other" not in page
     assert re.findall(r"<(?:script|img|iframe|link)[^>]*\b(?:src|href)=[\"'](?!data:)", page) == []
-    (told,) = re.findall(r'id="look">(.*?)</script>', page)
+    (told,) = re.findall(r'id="viewer">(.*?)</script>', page)
     assert json.loads(told) == {"session": "P1", "trial": name, "others": ["<i>other"]}
 
 
@@ -50,7 +50,7 @@ def test_texts_become_no_markup():
 
 def test_every_word_is_used_and_every_used_one_known():
     text = "\n".join(asset(name) for name in SCRIPTS if name != "app_words.js")
-    known, asked = set(words("en", "look")), set(re.findall(r"(?:word|phrase|button)\(\s*\"(\w+)\"", text))
+    known, asked = set(words("en", "viewer")), set(re.findall(r"(?:word|phrase|button)\(\s*\"(\w+)\"", text))
     made = {f"{side}_{kind}" for side in ("right", "left") for kind in ("strike", "off")}
     made |= {f"{what}_{how}" for what in ("contact", "pressure") for how in ("measured", "estimated")}
     made |= {f"from_{view}" for view in ("oblique", "front", "right", "left", "back", "top")} | {
@@ -67,7 +67,7 @@ def test_the_player_s_own_english_is_that_of_the_language_file():
     """The words of pages that carry no language files, e.g. of a playback that was written to a file."""
     text, english = (
         "\n".join(asset(name) for name in ("page.js", "panel.js", "player.js")),
-        words("en", "look"),
+        words("en", "viewer"),
     )
     told = re.findall(r"phrase\(\"(\w+)\", \"([^\"]+)\"", text)
     assert len(told) > 15 and [(name, english[name]) for name, _ in told] == told

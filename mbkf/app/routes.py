@@ -1,0 +1,155 @@
+"""All addresses of the page's server, and their replies."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import asdict
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from mbkf.app import answers, reports
+from mbkf.app.exports import export, session_curves
+from mbkf.app.foot_events import events_of, set_events
+from mbkf.app.live_command import live_offer, live_options, recording_folder
+from mbkf.app.live_run import LiveRun
+from mbkf.app.marker_sets import MarkerSets
+from mbkf.app.pages import live_frame_page, start_page, trial_report
+from mbkf.app.replies import BAD_REQUEST, Query, action, data, download, page, plain, sentence
+from mbkf.app.runs import Runs
+from mbkf.app.trial_viewer import viewer_data, viewer_page
+from mbkf.app.workspace import Workspace
+from mbkf.errors import InvalidInput
+from mbkf.stream.lsl.discovery import marker_streams
+from mbkf.viz.language import ENGLISH
+
+
+def routes(workspace: Workspace, runs: Runs, live: LiveRun) -> list[BaseRoute]:
+    """All routes.
+
+    Args:
+        workspace: The sessions.
+        runs: Their runs.
+        live: The live run.
+    """
+    return [
+        page("/", lambda _: start_page()),
+        *_session_routes(workspace, runs),
+        *_trial_routes(workspace, runs),
+        *_report_routes(workspace),
+        *_marker_set_routes(workspace),
+        *_live_routes(workspace, live),
+    ]
+
+
+def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
+    def state(query: Query, body: bytes) -> object:
+        answers.write_notes(workspace, query["session"], plain(body))
+        return answers.session(workspace, runs, query["session"])
+
+    def run(query: Query, _body: bytes) -> object:
+        name = query["session"]
+        workspace.folder(name)
+        (runs.cancel if query["do"] == "cancel" else runs.start)(name)
+        return {"run": answers.run_state(runs.state(name))}
+
+    async def put(request: Request) -> Response:
+        name = request.query_params.get("file", "")
+        try:
+            with workspace.putting(name) as file:
+                async for chunk in request.stream():
+                    file.write(chunk)
+        except InvalidInput as error:
+            return JSONResponse({"trouble": sentence(error)}, status_code=BAD_REQUEST)
+        return JSONResponse({"put": name})
+
+    return [
+        data("/sessions", lambda _: answers.sessions(workspace, runs)),
+        data("/session", lambda query: answers.session(workspace, runs, query["session"])),
+        action("/session", state),
+        action("/run", run),
+        Route("/put", put, methods=["POST"]),
+    ]
+
+
+def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
+    def shown(query: Query) -> dict[str, object]:
+        session, trial = query["session"], query["trial"]
+        return viewer_data(workspace.result(session, trial), workspace.events(session, trial))
+
+    def viewer(query: Query) -> str:
+        session, trial = query["session"], query["trial"]
+        others = [name for name in workspace.with_results(session) if name != trial]
+        return viewer_page(session, trial, others, shown(query))
+
+    def report(query: Query) -> str:
+        session, trial = query["session"], query["trial"]
+        return trial_report(workspace.result(session, trial), workspace.events(session, trial))
+
+    def events(query: Query, body: bytes) -> object:
+        return set_events(workspace, runs, query["session"], query["trial"], events_of(plain(body)))
+
+    def exported(query: Query) -> tuple[str, bytes]:
+        content = export(workspace.result(query["session"], query["trial"]), query["to"])
+        return f"{query['trial']}.{query['to']}", content
+
+    return [
+        page("/trial/look", viewer),
+        page("/trial/report", report),
+        data("/trial/recording", shown),
+        action("/trial/events", events),
+        download("/trial/export", exported),
+    ]
+
+
+def _report_routes(workspace: Workspace) -> list[BaseRoute]:
+    def report(query: Query) -> str:
+        language = query["language"] or ENGLISH
+        return reports.report_of(workspace, query["session"], query["before"], query["norms"], language)
+
+    def curves(query: Query) -> tuple[str, bytes]:
+        kind = "parquet" if query["as"] == "parquet" else "csv"
+        return f"curves.{kind}", session_curves(reports.read_whole(workspace, query["session"]), kind)
+
+    return [
+        page("/report", report),
+        data("/report/choices", lambda query: reports.choices(workspace, query["session"])),
+        download("/report/curves", curves),
+        action("/norms", lambda _query, _body: reports.build(workspace)),
+    ]
+
+
+def _marker_set_routes(workspace: Workspace) -> list[BaseRoute]:
+    sets = MarkerSets(workspace)
+
+    def say(query: Query, body: bytes) -> object:
+        return json.loads(sets.say(query["session"], body.decode("utf-8", errors="replace")))
+
+    return [page("/marker_set", lambda query: sets.open(query["session"])), action("/marker_set/say", say)]
+
+
+def _live_routes(workspace: Workspace, live: LiveRun) -> list[BaseRoute]:
+    def change(query: Query, body: bytes) -> object:
+        if query["do"] == "stop":
+            live.stop()
+        else:
+            options = live_options(workspace, query["session"], plain(body))
+            folder = recording_folder(workspace, query["session"], time.strftime("%Y-%m-%d-%H%M%S"))
+            live.start(query["session"], options, folder)
+        return answers.live_state(live)
+
+    def frame(_query: Query) -> str:
+        now = live.state()
+        if now is None or not now.goes_on or now.port is None:
+            raise InvalidInput("No live run has a page now.")
+        return live_frame_page(now.port)
+
+    return [
+        data("/live", lambda query: {**live_offer(workspace, query["session"]), **answers.live_state(live)}),
+        action("/live", change),
+        data("/live/state", lambda _: answers.live_state(live)),
+        data("/live/streams", lambda _: {"streams": [asdict(one) for one in marker_streams()]}),
+        page("/live/page", frame),
+    ]

@@ -1,0 +1,64 @@
+"""The trial viewer: a page with a trial in 3-D, its curves, strikes and toe-offs, and another trial beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.session import FootEvent, plain_events
+from mbkf.trial.gait.events import foot_events, plain_found
+from mbkf.viz.page import asset, embedded, embedded_words, fill, scripts, viewer_script
+from mbkf.viz.scene.recording import recording
+
+SCRIPTS = (
+    "element.js", "colours.js", "app_words.js", "scene.js", "plot.js", "panel.js", "player.js", "page.js",
+    "viewer_marks.js", "viewer_ghost.js", "viewer_events.js", "viewer_save.js", "viewer_strip.js", "trial_viewer.js",
+)  # fmt: skip
+"""The page's scripts, in the order they are needed."""
+
+
+def viewer_data(folder: Path, events: Iterable[FootEvent] | None = None) -> dict[str, object]:
+    """The drawing of a trial, as JSON can hold it.
+
+    Args:
+        folder: The trial's results.
+        events: Strikes and toe-offs set by hand; None without.
+
+    Returns:
+        ``scene`` and ``rows`` (:func:`mbkf.viz.scene.recording.recording`), ``found``: the detected events,
+        ``events``: those by hand or None, ``frame_s``: seconds from one frame of the capture to the next, and
+        ``span_s``: times of its first and last frame.
+
+    Raises:
+        FileFormatError: The result is damaged.
+        InvalidInput: The result holds no frames.
+    """
+    r = read_reconstruction(folder)
+    found = plain_found(foot_events(r)) if r.tracked.any() else ()
+    return {
+        **recording(r),
+        "found": plain_events(found),
+        "events": None if events is None else plain_events(events),
+        "frame_s": 1.0 / r.rate_hz,
+        "span_s": [float(r.times_s[0]), float(r.times_s[-1])],
+    }
+
+
+def viewer_page(session: str, trial: str, others: Sequence[str], shown: dict[str, object]) -> str:
+    """The page.
+
+    Args:
+        session: The trial's session.
+        trial: Its name.
+        others: Names of the session's other trials with results.
+        shown: Of :func:`viewer_data`.
+    """
+    names = {"session": session, "trial": trial, "others": list(others)}
+    return fill(
+        "trial_viewer.html",
+        style=asset("page.css") + asset("trial_viewer.css"),
+        data=embedded("recording", shown) + embedded("viewer", names) + embedded_words("viewer"),
+        meshcat=viewer_script(),
+        scripts=scripts(SCRIPTS),
+    )
