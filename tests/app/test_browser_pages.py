@@ -56,7 +56,7 @@ def test_names_do_not_act_in_any_page(shown):
 
 def test_every_page_is_accessible(shown):
     if find_spec("axe_playwright_python") is None:
-        message = "axe-core is not installed: pip install mbkf[test]"
+        message = "axe-core is not installed: pip install '.[test]'"
         (pytest.fail if os.environ.get("CI") else pytest.skip)(message)
     found = {name: [one for frame in frames for one in findings(frame)] for name, frames in every_page(shown)}
     assert found == {name: [] for name in found}

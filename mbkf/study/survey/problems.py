@@ -18,8 +18,8 @@ TEXTS: Mapping[str, tuple[str, str]] = {
     "axes": ("{0}", "check the trial in 3-D"),
     "no_plate": ("no force plate", "torques are estimated, with wide intervals"),
     "mass": (
-        "the stated mass is {0} kg, the plates weigh {1} kg",
-        "use the mass that the plates weigh, or check the plates",
+        "the stated mass is {0} kg, by the plates it is {1} kg",
+        "use the mass by the plates, or check the plates",
     ),
     "no_trial": ("no usable trial", "add captures with markers"),
     "no_static": ("no standing trial", "the body is scaled from moving trials, with more uncertainty"),

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("opensim", reason="OpenSim is not installed; pip install 'mbkf[peers]'")
-pytest.importorskip("biorbd", reason="biorbd is not installed; pip install 'mbkf[peers]'")
+pytest.importorskip("opensim", reason="OpenSim is not installed; pip install '.[peers]'")
+pytest.importorskip("biorbd", reason="biorbd is not installed; pip install '.[peers]'")
 
 from benchmarks.dynamic.captures import SOURCES
 from benchmarks.peers import biorbd_tool, opensim_model

@@ -40,7 +40,7 @@ def test_what_is_stated_counts(folder):
     )
     assert session.kind(session.trials[2]) == TrialKind.RUN
     told = [problem.what for problem in session.problems]
-    assert told == ["the stated mass is 50.0 kg, the plates weigh 70.0 kg", "no standing trial"]
+    assert told == ["the stated mass is 50.0 kg, by the plates it is 70.0 kg", "no standing trial"]
 
 
 def test_what_is_stated_above_a_session_counts(folder):

@@ -22,7 +22,7 @@ def test_a_browser_on_the_path_comes_first(tmp_path, monkeypatch):
 
 
 def test_without_a_browser_one_sentence_says_what_to_install(tmp_path, monkeypatch):
-    pytest.importorskip("playwright", reason="playwright is not installed: pip install 'mbkf[film]'")
+    pytest.importorskip("playwright", reason="playwright is not installed: pip install '.[film]'")
     monkeypatch.setattr(module, "ways_to_start", lambda: [{"executable_path": str(tmp_path / "none")}])
     wanted = r"Chromium, Chrome or Edge.*playwright install"
     with pytest.raises(InvalidInput, match=wanted) as told, shown_page("", 10, 10):

@@ -39,7 +39,7 @@ def test_a_gif_has_its_pictures_pace_and_no_end(tmp_path):
 
 
 def test_an_mp4_has_its_pictures_and_pace(tmp_path):
-    av = pytest.importorskip("av", reason="PyAV is not installed: pip install 'mbkf[film]'")
+    av = pytest.importorskip("av", reason="PyAV is not installed: pip install '.[film]'")
     write_mp4(pictures(), RATE, tmp_path / "film")
     with av.open(str(tmp_path / "film")) as film:
         stream = film.streams.video[0]

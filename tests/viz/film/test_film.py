@@ -64,7 +64,7 @@ def test_time_goes_on(pictures):
 
 @pytest.mark.slow
 def test_an_mp4_is_made_by_the_command(filming, tmp_path, capsys, monkeypatch):
-    av = pytest.importorskip("av", reason="PyAV is not installed: pip install 'mbkf[film]'")
+    av = pytest.importorskip("av", reason="PyAV is not installed: pip install '.[film]'")
     write, _ = FILMS["mp4"]
     monkeypatch.setitem(FILMS, "mp4", (write, SMALL))
     result = write_reconstruction(walk(), {}, tmp_path / "result")
@@ -78,7 +78,7 @@ def test_an_mp4_is_made_by_the_command(filming, tmp_path, capsys, monkeypatch):
 @pytest.mark.parametrize("kind", FILMS)
 def test_without_a_browser_the_command_says_what_to_install(tmp_path, capsys, monkeypatch, kind):
     for library in ("playwright", *(("av",) if kind == "mp4" else ())):
-        pytest.importorskip(library, reason=f"{library} is not installed: pip install 'mbkf[film]'")
+        pytest.importorskip(library, reason=f"{library} is not installed: pip install '.[film]'")
     monkeypatch.setattr(
         "mbkf.viz.film.browser.ways_to_start", lambda: [{"executable_path": str(tmp_path / "none")}]
     )
