@@ -26,6 +26,25 @@ def read_xyz(path, options):
     markers = mbkf.MarkerTrajectories(names, 1e-3 * rows.reshape(-1, len(names), 3), 100.0)
     return mbkf.Capture(str(path), markers)
 """
+BACKEND = """
+import zipfile
+
+def build_wheel(folder, config_settings=None, metadata_directory=None):
+    info = "my_xyz-1.dist-info/"
+    files = {
+        "my_xyz.py": open("my_xyz.py").read(),
+        info + "METADATA": "Metadata-Version: 2.1\\nName: my-xyz\\nVersion: 1\\n",
+        info + "WHEEL": "Wheel-Version: 1.0\\nRoot-Is-Purelib: true\\nTag: py3-none-any\\n",
+        info + "entry_points.txt": "[mbkf.readers]\\nxyz = my_xyz\\n",
+    }
+    files[info + "RECORD"] = "".join(name + ",,\\n" for name in [*files, info + "RECORD"])
+    with zipfile.ZipFile(folder + "/my_xyz-1-py3-none-any.whl", "w") as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return "my_xyz-1-py3-none-any.whl"
+"""
+# A build backend without requirements, so that pip needs neither a network nor setuptools.
+
 MOTION = """
 from mbkf.synthesis.motions import register_motion, registered_motion
 register_motion("slow_squat", seconds=2.0)(registered_motion("squat").planner)
@@ -149,27 +168,15 @@ def test_motions_of_an_installed_package_are_known(tmp_path):
 
 @pytest.mark.slow
 def test_pip_installs_such_a_package(tmp_path):
-    source = tmp_path / "source"
+    source, place = tmp_path / "source", tmp_path / "place"
     source.mkdir()
     (source / "my_xyz.py").write_text(READER)
+    (source / "backend.py").write_text(BACKEND)
     (source / "pyproject.toml").write_text(
-        '[build-system]\nrequires = ["setuptools"]\nbuild-backend = "setuptools.build_meta"\n'
-        '[project]\nname = "my-xyz"\nversion = "1"\n[tool.setuptools]\npy-modules = ["my_xyz"]\n'
-        '[project.entry-points."mbkf.readers"]\nxyz = "my_xyz"\n'
+        '[build-system]\nrequires = []\nbuild-backend = "backend"\nbackend-path = ["."]\n'
     )
-    place = tmp_path / "place"
-    pip = [
-        sys.executable,
-        "-m",
-        "pip",
-        "install",
-        "-q",
-        "--no-deps",
-        "--no-build-isolation",
-        "--target",
-        place,
-        source,
-    ]
+    options = ("-q", "--no-deps", "--no-build-isolation", "--target", place)
+    pip = [sys.executable, "-m", "pip", "install", *options, source]
     subprocess.run(pip, check=True, capture_output=True)
     trial = write_xyz(tmp_path / "a.xyz", tuple("abcdefgh"), standing_points(20) / 1e3)
     shown = mbkf_command(place, "info", trial)
