@@ -51,7 +51,10 @@ def test_the_conda_recipe_asks_for_what_the_package_asks_for():
     recipe = read(ROOT / ".ci" / "conda" / "recipe.yaml")
     assert recipe["context"]["version"] == __version__
     asked = {need.replace(" ", "") for need in recipe["requirements"]["run"]}
-    named = {need.replace("pin>", "pinocchio>") for need in PROJECT["dependencies"]}
+    named = {
+        need.replace("pin>", "pinocchio>").replace("meshcat>", "meshcat-python>")
+        for need in PROJECT["dependencies"]
+    }
     assert asked == named | {f"python{PROJECT['requires-python']}"}
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cache
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from mbkf.io.dimensions import AXES, ONE, Unit, numbered, shape_of
 
 T = TypeVar("T")
 
-LATER: Any = object()
+LATER = cast(Any, object())
 """Default of a quantity that older files and logs lack; there it is NaN."""
 
 _REQUIRED: Any = MISSING

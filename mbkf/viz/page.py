@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 from collections.abc import Iterable, Mapping
@@ -9,6 +10,7 @@ from functools import cache
 from html import escape
 from pathlib import Path
 
+from mbkf.errors import FileFormatError
 from mbkf.viz.language import languages, words
 
 ASSETS = Path(__file__).resolve().parent / "assets"
@@ -76,9 +78,22 @@ def embedded_words(*sections: str) -> str:
 
 @cache
 def viewer_script() -> str:
-    """The viewer of meshcat 0.3.2 (with three.js inside) below its licences, escaped for a script element."""
-    licences = "\n".join(asset(f"meshcat/{name}") for name in ("LICENSE", "main.min.js.LICENSE.txt"))
-    return _in_script(f"/*\n{licences.replace('*/', '* /')}\n*/\n{asset('meshcat/main.min.js')}")
+    """The viewer of the installed meshcat (with three.js inside) below its licences, escaped for a script element.
+
+    Raises:
+        FileFormatError: The installed meshcat brings no viewer.
+    """
+    found = importlib.util.find_spec("meshcat")
+    folder = Path(found.origin).parent / "viewer" / "dist" if found and found.origin else Path("meshcat")
+    try:
+        names = (folder.parent / "LICENSE", folder / "main.min.js.LICENSE.txt")
+        licences = "\n".join(path.read_text(encoding="utf-8") for path in names if path.is_file())
+        script = (folder / "main.min.js").read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileFormatError(
+            folder, f"meshcat's viewer is missing ({error}); reinstall the package meshcat"
+        ) from error
+    return _in_script(f"/*\n{licences.replace('*/', '* /')}\n*/\n{script}")
 
 
 def scripts(names: Iterable[str]) -> str:

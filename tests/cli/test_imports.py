@@ -4,9 +4,9 @@ import subprocess
 import sys
 
 UNUSED = {
-    "casadi", "matplotlib", "pyarrow", "pylsl", "rich.progress", "scipy.interpolate", "scipy.io", "scipy.ndimage",
-    "scipy.optimize", "scipy.signal", "scipy.spatial", "scipy.special", "scipy.stats", "sphinx", "websockets",
-    "yourdfpy",
+    "casadi", "matplotlib", "meshcat", "pyarrow", "pylsl", "rich.progress", "scipy.interpolate", "scipy.io",
+    "scipy.ndimage", "scipy.optimize", "scipy.signal", "scipy.spatial", "scipy.special", "scipy.stats", "sphinx",
+    "websockets", "yourdfpy",
 }  # fmt: skip
 """What no reconstruction of a C3D file needs; ``rich.progress`` is for terminals."""
 

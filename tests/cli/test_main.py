@@ -89,7 +89,7 @@ def test_paragraphs_of_the_help_are_filled_and_examples_kept(monkeypatch, capsys
 def test_help_loads_no_slow_library():
     code = (
         "import sys; from mbkf.cli.main import build_parser; build_parser(); "
-        "print(*sorted({'pinocchio', 'casadi', 'scipy', 'matplotlib', 'pyarrow'} & set(sys.modules)))"
+        "print(*sorted({'pinocchio', 'casadi', 'scipy', 'matplotlib', 'meshcat', 'pyarrow'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.results import Reconstruction
 from mbkf.io.session import FootEvent
-from mbkf.study.arrow import pa, pq
 from mbkf.trial.gait.curves import SideCurve, side_curves
 from mbkf.trial.gait.cycles import POINTS, Cycle, find_gait, over_cycle
 

@@ -6,11 +6,13 @@ from collections.abc import Iterable, Sequence
 from os import cpu_count
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from mbkf.conventions import StageCallback
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import check_folder
 from mbkf.io.leftovers import sweep
-from mbkf.study.arrow import pa, pq
 from mbkf.study.batch.cluster import ClusterWorkers
 from mbkf.study.batch.folder import plan_of_folder
 from mbkf.study.batch.lists import plan_of_csv, plan_of_toml

@@ -8,10 +8,13 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
+
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results_folder import RUN_ID, SUMMARY_FILE
-from mbkf.study.arrow import pa, pa_csv, pq
 from mbkf.study.batch.curves import SCHEMA, read_curves
 from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.plan import Plan, Trial

@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
 
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
-from mbkf.study.arrow import pa, pa_csv, pq
 from mbkf.study.session.cycles import Key, SideCycles
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.trial.gait.cycles import POINTS
