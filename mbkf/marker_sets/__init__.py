@@ -1,1 +1,1 @@
-"""Which segment and landmark each marker of an unknown capture is on, from names, standing body and movement."""
+"""Inference of marker sets: segments and landmarks of unknown markers, from names, a posed body and movement."""

@@ -1,4 +1,4 @@
-"""What software and laboratories put before or behind the names of a whole set: subjects, studies, systems."""
+"""Affixes that software and laboratories add to the names of a whole set: subjects, studies, systems."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _FEW, _SHARE, _ROUNDS = 5, 0.1, 4
 
 @dataclass(frozen=True)
 class Core:
-    """A name without what it shares with many others of its set.
+    """A name without the affixes that it shares with many others of its set.
 
     Attributes:
-        name: The name as it stands in the capture.
-        core: What is left of it.
-        affixes: What was taken away; names that lost the same belong together.
+        name: The name in the capture.
+        core: The name without its affixes.
+        affixes: The affixes; names with the same ones belong together.
     """
 
     name: str
@@ -28,13 +28,13 @@ class Core:
 
 
 def without_affixes(names: Sequence[str], means: Callable[[str], bool]) -> list[Core]:
-    """Names without the first and last words that stand on many of them and mean nothing.
+    """Names without the first and last words that many of them share and that mean no place.
 
-    What stands before a colon is always taken for a subject's name, a number in front for that of a session.
+    A word before a colon is always taken for a subject's name, a number in front for that of a session.
 
     Args:
         names: Names of the markers of one capture.
-        means: Whether a word says something about a place or a side, so that it must stay.
+        means: True for a word that means a place or a side and must stay.
     """
     cores = []
     for name in names:
@@ -65,7 +65,7 @@ def _word(pattern: re.Pattern[str], text: str) -> str:
 
 
 def _shared(words: Sequence[str], count: int) -> set[str]:
-    """Words that stand on many names of a set, or on all of a few."""
+    """Words on many names of a set, or on all of a few."""
     counts = Counter(word for word in words if word)
     return {
         word

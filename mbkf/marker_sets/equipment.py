@@ -1,4 +1,4 @@
-"""Which parts of a person carry markers: the sets of segments that laboratories equip, and how common each is."""
+"""Parts of a person that carry markers: the sets of segments that laboratories equip, and the frequency of each."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class Equipment:
     """A part of the body that carries markers.
 
     Attributes:
-        name: In words, for people.
-        without: Segments that carry none, by the end of their names ("hand" is both hands).
-        share: How many laboratories equip just this.
-        top_m: Heights at which its highest marker may be on the standing reference body.
-        bottom_m: The same of its lowest marker.
+        name: Its name in messages.
+        without: Segments without markers, by the end of their names ("hand" is both hands).
+        share: Share of the laboratories that equip exactly this part.
+        top_m: Possible heights of its highest marker on the standing reference body.
+        bottom_m: Height of its lowest marker.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Equipment:
     bottom_m: float = 0.03
 
     def bare(self, places: WornPlaces) -> BoolArray:
-        """(C,) components on segments that carry no markers."""
+        """(C,) True for components on segments without markers."""
         return np.array([segment.endswith(self.without) for segment in places.segments], dtype=bool)
 
 
@@ -39,24 +39,14 @@ _HEAD = ("head", "neck")
 _LEGS = ("thigh", "shank", "foot", "toes")
 _LEFT_ARM, _RIGHT_ARM = (tuple(f"{side}_{part}" for part in _ARMS) for side in ("left", "right"))
 
-FEWEST = {
-    "head": 3,
-    "torso": 2,
-    "pelvis": 3,
-    "upper_arm": 1,
-    "forearm": 1,
-    "thigh": 2,
-    "shank": 2,
-    "foot": 2,
-}
-"""Fewest markers that a laboratory puts on a segment that it equips, by the end of the segment's name; neck, hands and
-toes may be bare whatever their neighbours carry."""
+FEWEST = {"head": 3, "torso": 2, "pelvis": 3, "upper_arm": 1, "forearm": 1, "thigh": 2, "shank": 2, "foot": 2}
+"""Least number of markers on an equipped segment, by the end of its name; neck, hands and toes may have none."""
 
 LACKING = 0.1
-"""Probability of each marker that a segment has less than that: it fell off, or is hidden."""
+"""Probability of each marker missing from that number: it fell off, or is hidden."""
 
 UNPAIRED = 0.3
-"""Probability of each marker that a limb has more than the same limb of the other side."""
+"""Probability of each marker of a limb in excess of the other side's."""
 
 EQUIPMENTS = (
     Equipment("the whole body", (), 0.38, (1.80, 1.68)),
@@ -74,20 +64,20 @@ EQUIPMENTS = (
 
 
 def equipped_weight(places: WornPlaces, equipment: Equipment) -> Array:
-    """(C,) shares of the components where only these segments carry markers; they sum to 1."""
+    """(C,) weights of the components where only these segments carry markers; they sum to 1."""
     weight = np.where(equipment.bare(places), 0.0, places.weight)
     return np.asarray(weight / weight.sum())
 
 
-def count_worth(places: WornPlaces, equipment: Equipment, shares: Array) -> float:
-    """Logarithm of the probability of how many markers the segments of an equipment carry.
+def count_log_probability(places: WornPlaces, equipment: Equipment, shares: Array) -> float:
+    """Logarithm of the probability of the numbers of markers on an equipment's segments.
 
-    Laboratories put a few on every segment, and as many on the left as on the right. Without it a child's whole body
-    explains the markers of a man's legs nearly as well as his legs do, and an arm those of the lower back.
+    Laboratories put a few on every segment, and as many on the left as on the right. Without this term a child's whole
+    body explains the markers of a man's legs nearly as well as his legs do, and an arm those of the lower back.
 
     Args:
-        places: Where markers are worn.
-        equipment: The part of the body that is thought to carry them.
+        places: Density of marker places.
+        equipment: The part of the body that carries them.
         shares: (N, C) shares of the points in the components.
     """
     each = np.bincount(places.segment_index, shares.sum(axis=0), len(places.body.segments))

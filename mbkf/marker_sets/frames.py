@@ -1,4 +1,4 @@
-"""Which frames of captures are looked at: one in which the person stands, and some of the movement."""
+"""Frames of captures from which a marker set is inferred: one of standing, and some of the movement."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.numerics.runs import spread_indices
 
 SPREAD = 16
-"""Frames of a movement that are looked at."""
+"""Number of frames of a movement."""
 
 NEARLY_ALL = 0.9
-"""A frame that shows so much of what the best one shows is well seen."""
+"""Least number of markers in a well-seen frame, as a share of those in the best frame."""
 
 
 def anchor_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str], count: int) -> Array:
-    """(F, K, 3) well-seen frames of the trials, the tallest of each of so many stretches, the tallest of all first.
+    """(F, K, 3) well-seen frames: the tallest of each of so many parts of the trials, the tallest of all first.
 
     Args:
         trials: The trials.
-        names: (K,) names of the markers, in the order wanted.
-        count: How many frames.
+        names: (K,) names of the markers, in their order.
+        count: Number of frames.
     """
     columns = np.concatenate([_in_order(one, names) for one in trials])
     seen = (~np.isnan(columns[:, :, 0])).sum(axis=1)
@@ -35,12 +35,7 @@ def anchor_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str], co
 
 
 def spread_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str]) -> Array:
-    """(F, K, 3) well-seen frames spread over each of the trials.
-
-    Args:
-        trials: The trials.
-        names: (K,) names of the markers, in the order wanted.
-    """
+    """(F, K, 3) well-seen frames spread over each of the trials, with markers in the order of names (K,)."""
     chosen = []
     for one in trials:
         columns = _in_order(one, names)
@@ -58,7 +53,7 @@ def _in_order(trial: MarkerTrajectories, names: Sequence[str]) -> Array:
 
 
 def _height(points_m: Array) -> float:
-    """How tall and narrow a frame's points stand: legs together and arms at the side are told apart best."""
+    """Height of a frame's points less 0.3 of their width: limbs are separated best in upright, narrow postures."""
     z, across = points_m[:, 2], points_m[:, :2]
     return float(
         np.nanmax(z) - np.nanmin(z) - 0.3 * (np.nanmax(across, axis=0) - np.nanmin(across, axis=0)).max()

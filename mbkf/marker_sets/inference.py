@@ -1,14 +1,14 @@
-"""A marker set inferred: for every marker the segment that carries it, with a probability, and where on it.
+"""Inference of a marker set: the segment of every marker, with its probability, and the place on it.
 
-Three sources are brought together. A marker's name tells where markers of such names are worn
-(:mod:`mbkf.marker_sets.names`). A body posed in the cloud of points of one frame tells where the marker is on it
-(:mod:`mbkf.marker_sets.search`). The other frames tell which segment it moves with (:mod:`mbkf.marker_sets.movement`).
-The probability of a segment s for a marker with mean place ȳ in its frame is
+Three sources are combined: the marker's name, which gives the places of markers with such names
+(:mod:`mbkf.marker_sets.names`); a body posed in the cloud of points of one frame, which gives the marker's place on it
+(:mod:`mbkf.marker_sets.search`); and the other frames, which show the segment that it moves with
+(:mod:`mbkf.marker_sets.movement`). The probability of a segment s for a marker with mean place ȳ in its frame is
 
     P(s) ∝ Σ_{c of s} w_c N(ȳ; m_c, (s₀² + σ_c²) 1) · exp(−scatter of the marker in the frame of s)
 
-with the components c of :mod:`mbkf.marker_sets.places`, weighted by the name; a point that is no part of the body has
-the density ε u and a scatter of its own.
+with the components c of :mod:`mbkf.marker_sets.places`, weighted by the name; a point off the body has the density
+ε u and a scatter of its own.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from mbkf.errors import NotObservable
 from mbkf.io.records import MarkerTrajectories
 from mbkf.marker_sets.equipment import equipped_weight
 from mbkf.marker_sets.frames import anchor_frames, spread_frames
-from mbkf.marker_sets.movement import LOOKS, SKIN, Movement, movement, movement_cost, unrest_m
+from mbkf.marker_sets.movement import OBSERVATIONS, SKIN, Movement, movement, movement_cost, segment_scatter_m
 from mbkf.marker_sets.names import NameReading
 from mbkf.marker_sets.places import WornPlaces, worn_places
-from mbkf.marker_sets.posed_cloud import NO_BODY, ROOM_M3
+from mbkf.marker_sets.posed_cloud import OFF_BODY, ROOM_M3
 from mbkf.marker_sets.search import FoundBody, find_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
@@ -35,41 +35,41 @@ from mbkf.model.human import HumanModel
 Indices = NDArray[np.intp]
 
 SURE = 0.9
-"""From this probability on a marker's segment is not called doubtful."""
+"""Probability from which a marker's segment is certain; below it is doubtful."""
 
 PLACE_SD_M = 0.025
-"""Width s₀: how far the fitted body is from the person."""
+"""Width s₀: spread of the person about the fitted body."""
 
 OTHER_NAME = 0.03
-"""Probability that a name means another place than any that the dictionary gives."""
+"""Probability that a name means another place than those of the dictionary."""
 
 STRAY = 4.0
-"""A point that scatters by more than so many times the skin's variance on every segment is no part of the body."""
+"""Scatter of a point on every segment, in units of the skin's variance, above which it is off the body."""
 
 LOINS_M, OTHER_LOIN = (-0.12, 0.03), 0.15
-"""At these heights above the joint of pelvis and trunk a marker is on the other of both with this probability at least:
+"""Heights above the joint of pelvis and trunk at which a marker of one is on the other with at least this probability:
 the lumbar spine bends there over a hand's breadth, and the body has one joint, at its upper end."""
 
 ANCHORS = 4
-"""Frames of moving trials in which a body is searched for, at most."""
+"""Greatest number of frames of moving trials in which a body is searched."""
 
-CLEAR_EVIDENCE = 1.8
-"""A frame whose points are so much likelier on the body than anywhere near (mean logarithm) ends that search."""
+CLEAR_LOG_RATIO = 1.8
+"""Mean log-likelihood ratio of a frame's points on the body at which that search ends."""
 
 PASSES = 2
-"""How often the sure markers are chosen anew."""
+"""Number of times that the certain markers are chosen."""
 
 
 @dataclass(frozen=True)
 class InferredMarker:
-    """What a marker is thought to be.
+    """The inferred segment and place of a marker.
 
     Attributes:
         name: Its name in the captures.
-        segment: Its likeliest segment, "" for a point that is no part of the body.
-        probability: Of that.
+        segment: Its likeliest segment, "" for a point off the body.
+        probability: Probability of that.
         alternatives: Other segments with their probabilities, likeliest first, from 1 % on.
-        landmark: Landmark that it sits on, "" where none is likely.
+        landmark: Likely landmark that it sits on, or "".
         position_m: (3,) its place on the reference body, in the segment's frame, m.
         noise_m: Noise of a marker there, mostly movement of the skin, per coordinate, m.
     """
@@ -84,7 +84,7 @@ class InferredMarker:
 
     @property
     def doubtful(self) -> bool:
-        """Whether another segment is not unlikely."""
+        """True where another segment may carry it."""
         return self.probability < SURE
 
 
@@ -95,7 +95,7 @@ class Inference:
     Attributes:
         markers: Every marker that was seen.
         found: The body in the frame that the search began with.
-        rms_m: RMS distance of the sure markers from the body, over all frames looked at.
+        rms_m: RMS distance of the certain markers from the body, over all frames.
     """
 
     markers: tuple[InferredMarker, ...]
@@ -115,12 +115,12 @@ def infer_markers(
     Args:
         static: Standing trials.
         dynamic: Trials of any movement.
-        readings: What the names tell, by name; empty to do without.
+        readings: Readings of the names, by name; empty to ignore names.
         body: The reference body.
-        leave_out: Shipped protocols that do not count, for a trial on what they describe.
+        leave_out: Shipped protocols that do not count, for tests on the sets that they describe.
 
     Raises:
-        NotObservable: Too few points, or no person is found among them.
+        NotObservable: Too few points, or no body is found among them.
     """
     names = tuple(dict.fromkeys(name for one in (*static, *dynamic) for name in one.names))
     places = worn_places(body, leave_out)
@@ -128,7 +128,7 @@ def infer_markers(
     candidates = anchor_frames(static or dynamic, names, 1 if static else ANCHORS)
     found, anchor = _anchor(places, candidates, by_name)
     frames = np.concatenate([anchor[None], spread_frames([*static, *dynamic], names)])
-    inferred = _Evidence(places, names, by_name, found, anchor, frames).settled()
+    inferred = _Markers(places, names, by_name, found, anchor, frames).settled()
     placed = {marker.name for marker in inferred.markers}
     if not (static and dynamic) or placed.issuperset(names):
         return inferred
@@ -142,7 +142,7 @@ def _with_others(
     body: BodyDescription,
     leave_out: Sequence[str],
 ) -> Inference:
-    """With the markers that only the moving trials show, where the standing trial's body cannot be followed there."""
+    """The inference with markers that only the moving trials show, inferred from these alone."""
     try:
         moving = infer_markers((), dynamic, readings, body, leave_out)
     except NotObservable:
@@ -153,7 +153,7 @@ def _with_others(
 
 
 def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[FoundBody, Array]:
-    """The frame in which a body explains its points best, (K, 3), and that body; the first in which it does clearly."""
+    """The body that explains the points of a frame best, and that frame (K, 3); the first clear one ends the search."""
     best: tuple[float, FoundBody, Array] | None = None
     refused: NotObservable | None = None
     for frame in candidates:
@@ -163,33 +163,28 @@ def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[Foun
         except NotObservable as error:
             refused = error
             continue
-        worth = found.worth / np.count_nonzero(seen)
-        if best is None or worth > best[0]:
-            best = (worth, found, frame)
-        if found.evidence >= CLEAR_EVIDENCE:
+        per_point = found.log_posterior / np.count_nonzero(seen)
+        if best is None or per_point > best[0]:
+            best = (per_point, found, frame)
+        if found.log_ratio_per_point >= CLEAR_LOG_RATIO:
             break
     if best is None:
-        raise refused or NotObservable("no frame shows any point")
+        raise refused or NotObservable("no frame of the captures shows a marker")
     return best[1], best[2]
 
 
 def name_factors(places: WornPlaces, reading: NameReading | None) -> Array:
-    """(C,) how much likelier a marker of this name sits at each component than one without a name.
-
-    Args:
-        places: Where markers are worn.
-        reading: What the name tells.
-    """
+    """(C,) likelihood ratio of each component by a marker's name."""
     factors = np.ones(len(places.segments))
     if reading is None or not reading.places:
         return factors
-    told = min(sum(place.probability for place in reading.places), 1.0 - OTHER_NAME)
-    factors *= 1.0 - told
-    segments, landmarks = np.array(places.segments), np.array(places.landmarks)
     whole = sum(place.probability for place in reading.places)
+    stated = min(whole, 1.0 - OTHER_NAME)
+    factors *= 1.0 - stated
+    segments, landmarks = np.array(places.segments), np.array(places.landmarks)
     for place in reading.places:
         own = segments == place.segment
-        share = told * place.probability / whole
+        share = stated * place.probability / whole
         if place.landmark and (landmarks == place.landmark).any():
             at = landmarks == place.landmark
             factors[at] += 0.7 * share / places.weight[at].sum()
@@ -198,8 +193,8 @@ def name_factors(places: WornPlaces, reading: NameReading | None) -> Array:
     return np.asarray(factors)
 
 
-class _Evidence:
-    """What is known of K markers."""
+class _Markers:
+    """K markers, their names and the body found in one frame."""
 
     def __init__(
         self,
@@ -225,7 +220,7 @@ class _Evidence:
         self._first = Movement(local, np.zeros(local.shape[:2]), np.nan)
 
     def settled(self) -> Inference:
-        """The marker set once the poses rest on the sure markers."""
+        """The marker set, with poses from the certain markers."""
         seen, best = self._first, np.zeros(len(self.names), dtype=np.intp)
         for _ in range(PASSES):
             odds, _ = self.odds(seen, best)
@@ -247,7 +242,7 @@ class _Evidence:
         return Inference(markers, self.found, seen.rms_m)
 
     def odds(self, seen: Movement, best: Indices) -> tuple[Array, Array]:
-        """(K, S + 1) probability of every segment, that of no body last, and (K, C) of every component."""
+        """(K, S + 1) probability of every segment, last that of a point off the body, and (K, C) of every component."""
         index = self.places.segment_index
         variance = PLACE_SD_M**2 + self.places.sd_m**2
         standing = np.where(np.isnan(self._first.mean_m), seen.mean_m, self._first.mean_m)
@@ -255,15 +250,15 @@ class _Evidence:
         with np.errstate(divide="ignore"):
             weight = self._weight * self.by_name
             weight /= np.maximum(weight.sum(axis=1), 1e-300)[:, None]
-            logs = np.log((1.0 - NO_BODY) * weight) - 1.5 * np.log(2.0 * np.pi * variance)
+            logs = np.log((1.0 - OFF_BODY) * weight) - 1.5 * np.log(2.0 * np.pi * variance)
         logs = logs - 0.5 * squared / variance
         moved = 0.0
         if seen.squared_m2.any():
-            stance_statistic = unrest_m(seen, best, len(self.segments))
+            stance_statistic = segment_scatter_m(seen, best, len(self.segments))
             spread = np.hypot(SKIN * self.places.noise_m, stance_statistic[index])
             logs = logs - movement_cost(seen.squared_m2[:, index], spread)
-            moved = float(movement_cost(np.array(3.0 * LOOKS * STRAY), np.array(1.0)))
-        nothing = np.full((len(logs), 1), np.log(NO_BODY / ROOM_M3) - moved)
+            moved = float(movement_cost(np.array(3.0 * OBSERVATIONS * STRAY), np.array(1.0)))
+        nothing = np.full((len(logs), 1), np.log(OFF_BODY / ROOM_M3) - moved)
         every = np.concatenate([logs, nothing], axis=1)
         every = np.where(np.isnan(every), -np.inf, every)
         top = every.max(axis=1, keepdims=True)
@@ -276,7 +271,7 @@ class _Evidence:
         return own, odds[:, :-1]
 
     def _with_loins(self, odds: Array, best: int, means_m: Array) -> Array:
-        """The odds (S + 1,) of a marker; near the joint of root and trunk the other of both is never unlikely."""
+        """The odds (S + 1,) of a marker; near the joint of root and trunk both keep a share."""
         body = self.places.body
         trunk = next(
             (s.name for s in body.segments if s.parent == body.roles.root and s.name not in body.roles.legs),
@@ -293,32 +288,26 @@ class _Evidence:
         return shared if shared[best] > shared[other] else odds
 
     def _marker(self, k: int, odds: Array, components: Array, means_m: Array) -> InferredMarker:
-        order = np.argsort(-odds)
         labels = (*self.segments, "")
-        best = int(order[0])
-        if best == len(self.segments):
-            alternatives = tuple(
-                (labels[s], round(float(odds[s]), 3)) for s in order[1:] if odds[s] >= 0.01 and labels[s]
-            )
-            return InferredMarker(self.names[k], "", float(odds[best]), alternatives, "", np.zeros(3), 0.0)
-        odds = self._with_loins(odds, best, means_m)
+        best = int(odds.argmax())
+        if best < len(self.segments):
+            odds = self._with_loins(odds, best, means_m)
         alternatives = tuple(
             (labels[s], round(float(odds[s]), 3))
             for s in np.argsort(-odds)
             if s != best and odds[s] >= 0.01 and labels[s]
         )
+        if best == len(self.segments):
+            return InferredMarker(self.names[k], "", float(odds[best]), alternatives, "", np.zeros(3), 0.0)
         own = np.flatnonzero(self.places.segment_index == best)
         likeliest = own[components[own].argmax()]
-        landmark = self.places.landmarks[likeliest]
-        if components[likeliest] < 0.5 * odds[best]:
-            landmark = ""
-        position = means_m[best] / self._sizes[own[0]]
+        certain = components[likeliest] >= 0.5 * odds[best]
         return InferredMarker(
             self.names[k],
             labels[best],
             float(odds[best]),
             alternatives,
-            landmark,
-            position,
+            self.places.landmarks[likeliest] if certain else "",
+            means_m[best] / self._sizes[own[0]],
             float(self.places.noise_m[likeliest]),
         )

@@ -1,11 +1,11 @@
-"""Where markers are on the body by their names alone, from a dictionary of spellings and a small grammar.
+"""Places of markers by their names alone, from a dictionary of spellings and a small grammar.
 
-All names of a capture are read together, because a set shares a convention. What many of them carry in front or
-behind is taken off (:mod:`mbkf.marker_sets.affixes`); each way to find a side in a name is tried
-(:mod:`mbkf.marker_sets.sides`); what is left is looked up (:mod:`mbkf.marker_sets.spelling`). A way counts more
-where the set holds the marker of the other side (RKNE, LKNE) and where the other names tell their side the same way;
-an L counts as "lateral" where the set holds the same name with an M. A name that can be read in several ways keeps
-them with their probabilities; a name with an unknown piece is not read at all.
+All names of a capture are read together, because a set shares a convention. Affixes that many of them share are removed
+(:mod:`mbkf.marker_sets.affixes`); each way to find a side in a name is tried (:mod:`mbkf.marker_sets.sides`); the rest
+is looked up (:mod:`mbkf.marker_sets.spelling`). A way counts more where the set holds the marker of the other side
+(RKNE, LKNE) and where the other names state their side in the same way; an L counts as "lateral" where the set holds
+the same name with an M. A name that can be read in several ways keeps them with their probabilities; a name with an
+unknown piece remains unread.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from mbkf.marker_sets.spelling import Dictionary, Odds, Parse, load_dictionary
 from mbkf.model.body_file import load_body
 
 KINDS = ("marker", "keypoint", "computed", "object", "unknown")
-"""What a named point is: on the skin; a joint's centre of a markerless system; made by software; of no body."""
+"""Kinds of named points: on the skin; a joint's centre of a markerless system; made by software; off the body."""
 
 BODY = "human18"
-"""The body whose segments and landmarks the places are."""
+"""The body of the places' segments and landmarks."""
 
 _WITH_PARTNER, _WITHOUT_PARTNER = 6.0, 0.4
 _PARTNER_ELSEWHERE, _SIDE_POSSIBLE, _WHOLE_WORD = 0.15, 0.3, 0.3
@@ -51,8 +51,8 @@ class NamedPlace:
 
     Attributes:
         segment: Segment of human18.
-        landmark: Landmark of human18, "" where the name tells the segment only.
-        probability: That the marker is there.
+        landmark: Landmark of human18, "" where the name means the segment only.
+        probability: Probability of this place.
     """
 
     segment: str
@@ -62,13 +62,13 @@ class NamedPlace:
 
 @dataclass(frozen=True)
 class NameReading:
-    """What the name of one point tells.
+    """The reading of one point's name.
 
     Attributes:
         name: The name as given.
-        places: Likeliest first; their probabilities add up to 1 at most. Empty where the name tells no place.
+        places: Likeliest first; their probabilities add up to 1 at most. Empty for a name without a place.
         kind: One of :data:`KINDS`.
-        side: "right", "left", "middle" or "" where it is not known.
+        side: "right", "left", "middle", or "" where it is unknown.
     """
 
     name: str
@@ -93,7 +93,7 @@ def read_names(names: Sequence[str]) -> dict[str, NameReading]:
         names: The names as the file has them.
 
     Returns:
-        The reading by name; names that tell nothing are of kind "unknown" without places.
+        The reading by name; unread names are of kind "unknown" without places.
     """
     dictionary = load_dictionary()
     sides = side_words()
@@ -110,7 +110,7 @@ def read_names(names: Sequence[str]) -> dict[str, NameReading]:
 
 
 def _texts_of(word: str) -> list[str]:
-    """A word as a name, and what is left of it without a side."""
+    """A word as a name, and its rests without a side."""
     return [guess.rest for guess in side_guesses(word)]
 
 
@@ -139,17 +139,17 @@ class _Set:
 
         Args:
             core: The name.
-            styles: Share of the set's names that tell their side in this style; empty where that is not known.
+            styles: Share of the set's names that state their side in each style; empty where unknown.
         """
         guesses = side_guesses(self._text(core))
         parses = {guess: self.dictionary.spellings.parse(guess.rest) for guess in guesses}
-        # Where the other side's marker exists, the letter is no part of the place's name, even if the rest is unknown.
-        told = any(guess.partner in self.texts and parse is None for guess, parse in parses.items())
+        # Where the other side's marker exists, the letter is its side, even if the rest is unknown.
+        stated = any(guess.partner in self.texts and parse is None for guess, parse in parses.items())
         ways = []
         for guess, parse in parses.items():
-            if parse is None or not (guess.partner in self.texts or _believed(guess, styles)):
+            if parse is None or not (guess.partner in self.texts or _counts_alone(guess, styles)):
                 continue
-            if not guess.side and (told or self._is_a_number(guess.rest)):
+            if not guess.side and (stated or self._is_a_number(guess.rest)):
                 continue
             places, _ = parse.places(bool(guess.side), frozenset())
             weight = WEIGHTS[guess.style] * parse.quality * sum(places.values())
@@ -160,14 +160,14 @@ class _Set:
         return sorted(self._doubted(ways), key=lambda way: -way.weight)
 
     def _trust(self, guess: SideGuess, styles: Mapping[str, float]) -> float:
-        """How much the other names of the set speak for a side."""
+        """Weight that the other names of the set give a side."""
         if len(self.texts) == 1:
             return 1.0
         trust = _WITH_PARTNER if guess.partner in self.texts else _WITHOUT_PARTNER
         return trust * (_UNCONVENTIONAL + styles.get(guess.style, 0.0)) if styles else trust
 
     def _doubted(self, ways: Sequence[_Way]) -> list[_Way]:
-        """Ways of a name of which those without and with a side speak against each other."""
+        """Ways of a name, weighed down where ways with and without a side contradict each other."""
         sided = [way for way in ways if way.guess.side]
         plain = [way for way in ways if not way.guess.side]
         if not sided or not plain:
@@ -188,19 +188,19 @@ class _Set:
         ]
 
     def _is_lateral(self, guess: SideGuess) -> bool:
-        """Whether an L that was taken for left may be "lateral": the set holds the same name with an M."""
+        """True where an L taken for left may be "lateral": the set holds the same name with an M."""
         medial = {f"r{guess.rest}": f"m{guess.rest}", f"{guess.rest}r": f"{guess.rest}m"}
         return guess.side == "left" and medial.get(guess.partner, "") in self.texts
 
     def _styles(self, ways: dict[str, list[_Way]]) -> dict[str, float]:
-        """Share of the names with a partner that tell their side in each style."""
+        """Share of the names with a partner that state their side in each style."""
         counts = Counter(
             found[0].guess.style for found in ways.values() if found and found[0].guess.partner in self.texts
         )
         return {style: count / counts.total() for style, count in counts.items()}
 
     def _is_a_number(self, text: str) -> bool:
-        """Whether a letter and a number are a place in a row and no vertebra: S1 ... S20, L4 beside R4."""
+        """True for a letter and a number that are a place in a row, not a vertebra: S1 ... S20, L4 beside R4."""
         match = _NUMBERED.fullmatch(text)
         if match is None or match.group(1) not in _SPINE:
             return False
@@ -214,11 +214,11 @@ class _Set:
         return beyond or (not others and {"1", "2", "3"} <= row)
 
     def _is_axis(self, text: str) -> bool:
-        """Whether the point is of a segment's axes, stored as four points O, A, L and P: LTIO, LTIA, LTIL, LTIP."""
+        """True for a point of a segment's axes, stored as four points O, A, L and P: LTIO, LTIA, LTIL, LTIP."""
         return text[-1:] in _AXES and all(text[:-1] + end in self.texts for end in _AXES)
 
     def _virtual(self, core: Core) -> bool:
-        """Whether the name is that of another marker with a "v" for its virtual twin."""
+        """True for the name of another marker with a "v", its virtual twin."""
         text = "".join(tokens_of(core.core))
         return len(text) > 2 and text.endswith("v") and text[:-1] in self.texts
 
@@ -250,7 +250,7 @@ class _Set:
         )
 
     def _kind_without_place(self, core: Core, ways: Sequence[_Way]) -> str:
-        """Kind of a name that tells no place of the body, "" where it does."""
+        """Kind of a name without a place of the body, "" for one with a place."""
         dictionary, tokens = self.dictionary, set(tokens_of(core.core))
         rests = {guess.rest for guess in side_guesses(core.core)}
         if tokens & dictionary.objects:
@@ -271,24 +271,24 @@ class _Set:
         return "object" if named else "unknown"
 
     def _kind(self, core: Core, way: _Way) -> str:
-        told = way.parse.modifiers
-        if "made" in told or self._virtual(core):
+        modifiers = way.parse.modifiers
+        if "made" in modifiers or self._virtual(core):
             return "computed"
         if self.keypoints:
             return "keypoint"
         group = way.parse.group
         two = group.sided is not None or _paired(group.places)
-        between = "middle" in told and not way.guess.side and two
-        return "computed" if between or "centre" in told else group.kind
+        between = "middle" in modifiers and not way.guess.side and two
+        return "computed" if between or "centre" in modifiers else group.kind
 
     def _places(self, way: _Way) -> dict[tuple[str, str], float]:
         """Probability by segment and landmark of one way to read a name."""
-        group, told = way.parse.group, way.parse.modifiers
+        group = way.parse.group
         side = way.guess.side
         odds, landmarks = way.parse.places(bool(side), self.company)
         if self.keypoints and group.keypoint and group.keypoint not in odds:
             odds = {group.keypoint: sum(odds.values())}
-        landmarks = landmarks and "made" not in told
+        landmarks = landmarks and "made" not in way.parse.modifiers
         result: dict[tuple[str, str], float] = defaultdict(float)
         for place, probability in odds.items():
             for (segment, landmark), share in _on_body(place, side).items():
@@ -296,8 +296,8 @@ class _Set:
         return result
 
 
-def _believed(guess: SideGuess, styles: Mapping[str, float]) -> bool:
-    """Whether a side is believed without the marker of the other side."""
+def _counts_alone(guess: SideGuess, styles: Mapping[str, float]) -> bool:
+    """True where a side counts without the marker of the other side."""
     return guess.style not in NEEDS_PARTNER or styles.get(guess.style, 0.0) > _CONVENTION
 
 
@@ -317,7 +317,7 @@ def _unpaired_landmarks(odds: Odds) -> bool:
 
 
 def _on_body(place: str, side: str) -> dict[tuple[str, str], float]:
-    """Segments and landmarks of a place of the dictionary, each with its share where no side is told."""
+    """Segments and landmarks of a place of the dictionary, each with its share for a name without a side."""
     body = load_body(BODY)
     segments = {segment.name for segment in body.segments}
     if place in body.landmarks:

@@ -1,10 +1,10 @@
-"""Where on a body laboratories put markers: a density over every segment, from landmarks, known sets and the skin.
+"""Density of marker places on a body, from landmarks, known sets and the skin.
 
 The density is a mixture of Gaussian components, each fixed to a segment of the reference body:
 
 * its landmarks;
-* the places of the markers of the shipped protocols, the more protocols agree on one the more it weighs;
-* a grid over the skin of the segments' shapes, for clusters and other markers that may sit anywhere.
+* the places of the markers of the shipped protocols, each weighted by the number of protocols that use it;
+* a grid over the skin of the segments' shapes, for clusters and other markers of free placement.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from mbkf.model.description import BodyDescription, SegmentShape
 from mbkf.model.protocol import DEFAULT_NOISE_M, ProtocolMarker, load_protocol, protocol_names
 
 SAME_PLACE_M = 0.012
-"""Two places of a segment nearer to each other than this are one."""
+"""Distance below which two places of a segment are one."""
 
 LANDMARK_SD_M = 0.012
-"""How far a marker is from its landmark, per coordinate (1 sd)."""
+"""Spread of a marker about its landmark, per coordinate (1 sd)."""
 
 WIDEST_SD_M = 0.035
-"""Spread of the place of a marker that may sit anywhere, about where one protocol has it."""
+"""Greatest spread of a technical marker about its place in a protocol."""
 
 SKIN_SD_M = 0.030
 """Spread of the components of the skin, about their distance."""
 
 SKIN_ABOVE_M = 0.012
-"""How far the centre of a marker is above the skin."""
+"""Height of a marker's centre above the skin."""
 
 SKIN_SHARE = 0.25
 """Share of a segment's density that is spread over its skin."""
@@ -45,7 +45,7 @@ _LEVELS = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85)
 _AZIMUTHS = np.arange(8) * np.pi / 4.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WornPlaces:
     """The C components of the density.
 
@@ -53,7 +53,7 @@ class WornPlaces:
         body: The reference body.
         segments: (C,) segment of each.
         position_m: (C, 3) its centre in the segment's frame.
-        landmarks: (C,) landmark that it is, "" for others.
+        landmarks: (C,) its landmark, "" for others.
         sd_m: (C,) its spread per coordinate.
         weight: (C,) its share; they sum to 1.
         noise_m: (C,) noise of a marker there, mostly movement of the skin, per coordinate.
@@ -76,16 +76,14 @@ class WornPlaces:
         return index
 
     def only(self, components: BoolArray) -> WornPlaces:
-        """Some of the components, (C,) set; their weights then sum to less than 1."""
+        """Some of the components, (C,) True; their weights then sum to less than 1."""
         kept = np.flatnonzero(components)
         return WornPlaces(
             self.body,
             tuple(self.segments[c] for c in kept),
             read_only(self.position_m[kept]),
             tuple(self.landmarks[c] for c in kept),
-            read_only(self.sd_m[kept]),
-            read_only(self.weight[kept]),
-            read_only(self.noise_m[kept]),
+            *(read_only(values[kept]) for values in (self.sd_m, self.weight, self.noise_m)),
         )
 
 
@@ -104,30 +102,13 @@ def worn_places(body: BodyDescription, leave_out: Iterable[str] = ()) -> WornPla
 
     Args:
         body: The reference body.
-        leave_out: Protocols that do not count, for a trial of the density on what it does not know.
+        leave_out: Protocols that do not count, for tests of the density on unknown sets.
     """
-    return _worn_places(_Known(body), tuple(sorted(leave_out)))
-
-
-class _Known:
-    """A body as a key: bodies are immutable, but hold arrays."""
-
-    def __init__(self, body: BodyDescription) -> None:
-        self.body = body
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Known) and (self.body.name, self.body.text) == (
-            other.body.name,
-            other.body.text,
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.body.name, self.body.text))
+    return _worn_places(body, tuple(sorted(leave_out)))
 
 
 @lru_cache(maxsize=8)
-def _worn_places(known: _Known, leave_out: tuple[str, ...]) -> WornPlaces:
-    body = known.body
+def _worn_places(body: BodyDescription, leave_out: tuple[str, ...]) -> WornPlaces:
     places = [
         _Place(mark.segment, mark.position_m, name, LANDMARK_SD_M, UNUSED_LANDMARK)
         for name, mark in body.landmarks.items()
@@ -158,7 +139,7 @@ def _worn_places(known: _Known, leave_out: tuple[str, ...]) -> WornPlaces:
 
 
 def _add(places: list[_Place], marker: ProtocolMarker) -> None:
-    """Adds a protocol's place, or its weight and noise to one that is there."""
+    """Adds a protocol's place, or its weight and noise to the same place."""
     near = [
         place
         for place in places
@@ -174,7 +155,7 @@ def _add(places: list[_Place], marker: ProtocolMarker) -> None:
 
 
 def _spread_noise(places: list[_Place]) -> None:
-    """Gives every place without a noise that of the nearest place of its segment that has one."""
+    """Gives every place without a noise that of the nearest place with one on its segment."""
     known = [place for place in places if place.noise_m]
     for place in places:
         if not place.noise_m:
@@ -188,45 +169,30 @@ def _distance_m(place: _Place, position_m: Array) -> float:
 
 
 def _skin(body: BodyDescription, segment: str) -> Array:
-    """(n, 3) points just above the skin of a segment's shape; none where it has no shape of its own."""
-    mirrored = segment.startswith("left_")
-    shape = body.shapes.get(segment) or body.shapes.get("right_" + segment.removeprefix("left_"))
-    points = np.zeros((0, 3)) if shape is None else _points(body, shape)
-    if mirrored and segment not in body.shapes:
-        points = points * [1.0, -1.0, 1.0]
-    return points
+    """(n, 3) points just above the skin of a segment's shape; empty where it has no shape of its own."""
+    own = body.shapes.get(segment)
+    if own is not None:
+        return _points(body, own)
+    right = body.shapes.get("right_" + segment.removeprefix("left_"))
+    points = np.zeros((0, 3)) if right is None else _points(body, right)
+    return points * [1.0, -1.0, 1.0] if segment.startswith("left_") else points
 
 
 def _points(body: BodyDescription, shape: SegmentShape) -> Array:
     circle = np.column_stack([np.cos(_AZIMUTHS), np.sin(_AZIMUTHS)])
+    rings = []
     if shape.kind == "limb":
         end = body.segment(shape.to).origin_m
-        radii = [np.interp(level, [0.0, 1.0], shape.numbers[:2]) + SKIN_ABOVE_M for level in _LEVELS]
-        rings = [
-            level * end + np.insert(radius * circle, 2, 0.0, axis=1)
-            for level, radius in zip(_LEVELS, radii, strict=True)
-        ]
-        return np.concatenate(rings)
-    if shape.kind == "tube":
-        sections = np.reshape(shape.numbers, (-1, 4))
-        rings = [
-            np.column_stack(
-                [
-                    x + (depth + SKIN_ABOVE_M) * circle[:, 0],
-                    (breadth + SKIN_ABOVE_M) * circle[:, 1],
-                    np.full(len(circle), z),
-                ]
-            )
-            for x, z, depth, breadth in sections
-            if depth > 0.05
-        ]
-        return np.concatenate(rings)
-    if shape.kind == "ellipsoid":
+        for level in _LEVELS:
+            radius = np.interp(level, [0.0, 1.0], shape.numbers[:2]) + SKIN_ABOVE_M
+            rings.append(level * end + np.insert(radius * circle, 2, 0.0, axis=1))
+    elif shape.kind == "tube":
+        for x, z, depth, breadth in np.reshape(shape.numbers, (-1, 4)):
+            if depth > 0.05:
+                ring = [x, 0.0] + [depth + SKIN_ABOVE_M, breadth + SKIN_ABOVE_M] * circle
+                rings.append(np.insert(ring, 2, z, axis=1))
+    elif shape.kind == "ellipsoid":
         centre, axes = shape.numbers[:3], shape.numbers[3:] + SKIN_ABOVE_M
-        heights = np.sin([-0.6, 0.0, 0.6, 1.57])
-        rings = [
-            centre + axes * np.column_stack([np.sqrt(1 - h**2) * circle, np.full(len(circle), h)])
-            for h in heights
-        ]
-        return np.concatenate(rings)
-    return np.zeros((0, 3))
+        for height in np.sin([-0.6, 0.0, 0.6, 1.57]):
+            rings.append(centre + axes * np.insert(np.sqrt(1 - height**2) * circle, 2, height, axis=1))
+    return np.concatenate(rings) if rings else np.zeros((0, 3))

@@ -1,13 +1,13 @@
-"""A body fitted to a cloud of unnamed points: pose and size by expectation–maximisation over where markers are worn.
+"""A body fitted to a cloud of unnamed points: pose and size by expectation–maximisation over places of markers.
 
 With the density of :mod:`mbkf.marker_sets.places` on a body in pose q with scale factors k, a point p has the
 likelihood
 
     L(p) = ε u + (1 − ε) Σ_c π_c N(p; m_c(q, k), (s² + σ_c²) 1)
 
-with the share ε of points that are no body, spread evenly (u), and a width s that shrinks while the fit goes on, so
-that far starts are drawn in (deterministic annealing). The E-step shares every point out among the components, the
-M-step is one Gauss–Newton step of the weighted distances with priors of posture, size and upright stance (Dempster,
+with the share ε of points off the body, spread evenly (u), and a width s that shrinks during the fit, so that it
+converges from far starts (deterministic annealing). The E-step shares every point among the components, the M-step is
+one Gauss–Newton step of the weighted distances with priors of posture, size and upright stance (Dempster,
 Laird & Rubin 1977; for point sets Myronenko & Song, IEEE Trans. PAMI 32, 2010, 2262-2275).
 """
 
@@ -25,11 +25,11 @@ from mbkf.scaling.problem import FACTOR_BOUNDS
 from mbkf.sensors.marker_sensor import MarkerReading, MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
 
-NO_BODY = 0.03
-"""Share ε of points that are no part of the body, before anything is known."""
+OFF_BODY = 0.03
+"""Prior share ε of points that are not on the body."""
 
 ROOM_M3 = 2.0
-"""Volume that such points are spread over: that of a person with arms and legs moving, and what is around."""
+"""Volume of such points: that of a person with moving arms and legs, and its surroundings."""
 
 TILT_RAD = 0.25
 """Spread of the pelvis about upright."""
@@ -41,10 +41,10 @@ SIZE_SD = 0.13
 """Spread of the overall size about the reference body's, children among the persons."""
 
 LEAST_SHARE = 1e-3
-"""Components that have less of a point than this do not pull."""
+"""Least sum of shares of a component that takes part in the M-step."""
 
 LIMIT_SD_RAD = 0.1
-"""Softness of the joints' limits: knees and elbows bend one way, which tells front from back."""
+"""Softness of the joints' limits: knees and elbows bend one way, which distinguishes front and back."""
 
 _DAMPING = 1e-6
 
@@ -56,36 +56,30 @@ class PosedBody:
     Attributes:
         q: (nq,) pose.
         factors: (K,) scale factors.
-        shares: (N, C) probability that a point belongs to a component; what a row lacks of 1 is that of no body.
-        worth: Logarithm of likelihood and priors.
+        shares: (N, C) probability that a point belongs to a component; the rest of a row to 1 is that of a point off
+            the body.
+        log_posterior: Logarithm of likelihood and priors.
     """
 
     q: Array
     factors: Array
     shares: Array
-    worth: float
+    log_posterior: float
 
 
 class CloudProblem:
-    """Where a body of the reference's kind is among points.
+    """The fit of a body of the reference's kind to points.
 
     Attributes:
-        places: Where markers are worn.
+        places: Density of marker places.
         points_m: (N, 3) the points, all of them seen.
-        weight: (C,) share of each component in this cloud, or (N, C) for each of its points.
+        weight: (C,) weight of each component in this cloud, or (N, C) for each of its points.
+        model: The reference body; built where None.
     """
 
     def __init__(
         self, places: WornPlaces, points_m: Array, weight: Array, model: HumanModel | None = None
     ) -> None:
-        """A body of any pose and size.
-
-        Args:
-            places: Where markers are worn.
-            points_m: (N, 3) the points.
-            weight: (C,) or (N, C) shares.
-            model: The reference body, where it has been built already.
-        """
         self.places, self.points_m = places, points_m
         with np.errstate(divide="ignore"):
             self._log_weight = np.log(weight)
@@ -132,25 +126,25 @@ class CloudProblem:
         density = by_point @ by_component
         density += self._log_weight
         np.exp(density, out=density)
-        density *= 1.0 - NO_BODY
-        total = density.sum(axis=1) + NO_BODY / ROOM_M3
+        density *= 1.0 - OFF_BODY
+        total = density.sum(axis=1) + OFF_BODY / ROOM_M3
         density /= total[:, None]
         return density, float(np.log(total).sum())
 
     def priors(self, q: Array, factors: Array) -> float:
-        """Logarithm of the priors of a pose (nq,) and scale factors (K,), but for a constant."""
+        """Logarithm of the priors of a pose (nq,) and scale factors (K,), up to a constant."""
         turned, _ = self._posture.deviation(q)
         deviation = turned[self._posture.dofs] / self._posture.sd
-        beyond = self._beyond(turned) / LIMIT_SD_RAD
+        excess = self._limit_excess(turned) / LIMIT_SD_RAD
         rotation = self.model.placements(q)[0][self.model.root.joint_id]
         tilt = rotation[:2, 2] / TILT_RAD
         size = factors - 1.0
         return -0.5 * float(
-            deviation @ deviation + beyond @ beyond + tilt @ tilt + size @ self._factor_information @ size
+            deviation @ deviation + excess @ excess + tilt @ tilt + size @ self._factor_information @ size
         )
 
-    def _beyond(self, turned: Array) -> Array:
-        """(nv,) how far joints turned by these angles are beyond their limits, rad."""
+    def _limit_excess(self, turned: Array) -> Array:
+        """(nv,) excess of these joint angles over their limits, rad."""
         return np.asarray(turned - np.clip(turned, self.model.limits[:, 0], self.model.limits[:, 1]))
 
     def posed(self, q: Array, size: float, widths_m: tuple[float, ...]) -> PosedBody:
@@ -159,7 +153,7 @@ class CloudProblem:
         Args:
             q: (nq,) pose to start from, of the body of this size.
             size: Its overall size.
-            widths_m: Widths of the iterations, one after the other.
+            widths_m: Widths of the iterations.
         """
         factors = np.full(len(self.places.body.scale_factors), size)
         sensor = self._reference
@@ -178,7 +172,7 @@ class CloudProblem:
 
         Args:
             start: Where to start.
-            widths_m: Widths of the iterations, one after the other.
+            widths_m: Widths of the iterations.
         """
         q, factors = start.q, start.factors
         for width in widths_m:
@@ -191,8 +185,8 @@ class CloudProblem:
         return self._judged(q, factors, widths_m[-1], self.sized(factors).positions(q))
 
     def _judged(self, q: Array, factors: Array, width_m: float, positions_m: Array) -> PosedBody:
-        shares, worth = self.shares(positions_m, width_m)
-        return PosedBody(q, factors, shares, worth + self.priors(q, factors))
+        shares, likelihood = self.shares(positions_m, width_m)
+        return PosedBody(q, factors, shares, likelihood + self.priors(q, factors))
 
     def _with_root(self, q: Array, size: float) -> Array:
         moved = q.copy()
@@ -226,7 +220,7 @@ class CloudProblem:
 
         Args:
             reading: The components at q.
-            shares: (N, C) what the E-step gave.
+            shares: (N, C) shares of the E-step.
             points_m: (N, 3) the points.
             width_m: The width s.
             q: (nq,) the pose.
@@ -261,10 +255,10 @@ class CloudProblem:
         matrix[:nv, :nv] += rows.T @ rows
         gradient[:nv] -= rows.T @ (prior.deviation / self._posture.sd)
         turned, by_pose = self._posture.deviation(q)
-        beyond = self._beyond(turned)
-        passed = by_pose[beyond != 0.0] / LIMIT_SD_RAD
+        excess = self._limit_excess(turned)
+        passed = by_pose[excess != 0.0] / LIMIT_SD_RAD
         matrix[:nv, :nv] += passed.T @ passed
-        gradient[:nv] -= passed.T @ (beyond[beyond != 0.0] / LIMIT_SD_RAD)
+        gradient[:nv] -= passed.T @ (excess[excess != 0.0] / LIMIT_SD_RAD)
         self._upright(q, matrix, gradient)
         if sized is not None:
             matrix[nv:, nv:] += self._factor_information
@@ -272,7 +266,7 @@ class CloudProblem:
         return matrix, gradient
 
     def _upright(self, q: Array, matrix: Array, gradient: Array) -> None:
-        """Adds the pull of the pelvis towards upright: the horizontal part of its axis, R z."""
+        """Adds the prior of an upright pelvis: the horizontal part of its axis, R z."""
         rotation = self.model.placements(q)[0][self.model.root.joint_id]
         turns = np.arange(self.model.nv)[self.model.root.v][3:]
         # δ(R z) = R (δθ × z), δθ × z = (δθ_y, −δθ_x, 0)

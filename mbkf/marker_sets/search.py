@@ -1,4 +1,4 @@
-"""The body in one frame of points: many starts fitted roughly, the best of them finely, the likeliest kept."""
+"""The body in one frame of points: many starts fitted roughly, the best of them finely, and the likeliest kept."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import NotObservable
-from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, count_worth, equipped_weight
+from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, count_log_probability, equipped_weight
 from mbkf.marker_sets.places import WornPlaces
 from mbkf.marker_sets.posed_cloud import CloudProblem, PosedBody
 from mbkf.marker_sets.starts import starts
 from mbkf.model.human import HumanModel
 
 FEWEST_POINTS = 12
-"""Fewer points do not show which part of which body they are on."""
+"""Least number of points in a frame."""
 
 COARSE_M = (0.12, 0.12, 0.10, 0.10, 0.08, 0.08)
 """Widths of the rough fit of every start."""
@@ -29,7 +29,7 @@ THINNEST_M = 0.2
 """Least side of the box around the points."""
 
 KEPT_EACH, KEPT = 3, 9
-"""So many rough fits of every equipment, and in all, are fitted finely."""
+"""Rough fits of every equipment, and in all, that are fitted finely."""
 
 
 @dataclass(frozen=True)
@@ -39,20 +39,20 @@ class FoundBody:
     Attributes:
         body: Its pose, size and shares.
         equipment: The part of it that carries markers.
-        worth: Logarithm of likelihood and priors, the equipment's among them.
-        rival: The same of the best body that faces another way, −inf where there is none.
-        evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
-            names aside.
-        odds: Logarithm of how much likelier all points are this body than strewn over that box: the evidence of all
-            points and the priors, names aside.
+        log_posterior: Logarithm of likelihood and priors, that of the equipment among them.
+        other_heading: The same of the best body with another heading, −inf without any.
+        log_ratio_per_point: Mean log-likelihood ratio of a point on this body and one anywhere in the box around the
+            points, without names.
+        log_odds: Log odds of this body against points strewn over that box: the log ratios of all points and the
+            priors, without names.
     """
 
     body: PosedBody
     equipment: Equipment
-    worth: float
-    rival: float
-    evidence: float
-    odds: float
+    log_posterior: float
+    other_heading: float
+    log_ratio_per_point: float
+    log_odds: float
 
 
 def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -> FoundBody:
@@ -61,71 +61,56 @@ def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -
     Args:
         places: Where markers are worn.
         points_m: (N, 3) the points, z up.
-        named: (N, C) how much likelier each component is by a point's name than without it; None without names.
+        named: (N, C) likelihood ratio of each component by a point's name; None without names.
 
     Raises:
-        NotObservable: The points are too few, or too low or too tall for a person.
+        NotObservable: The points are too few, or their height is not a person's.
     """
     if len(points_m) < FEWEST_POINTS:
         raise NotObservable(
-            f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show "
-            "which part of a body they are on"
+            f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show which part of a body they "
+            "are on"
         )
-    if named is not None:
-        named = None if (named == 1.0).all() else named.copy()
-    return _searched(_Frame(places, points_m.copy(), named))
-
-
-@dataclass(frozen=True, eq=False)
-class _Frame:
-    """A frame as a key: who decides about its axes and who infers a set search the same one."""
-
-    places: WornPlaces
-    points_m: Array
-    named: Array | None
-
-    @cached_property
-    def _content(self) -> tuple[bytes, bytes]:
-        return self.points_m.tobytes(), b"" if self.named is None else self.named.tobytes()
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Frame) and self.places is other.places and self._content == other._content
-
-    def __hash__(self) -> int:
-        return hash(self._content)
+    names = b"" if named is None or (named == 1.0).all() else named.tobytes()
+    return _searched(places, points_m.tobytes(), names)
 
 
 @lru_cache(maxsize=8)
-def _searched(frame: _Frame) -> FoundBody:
-    """What :func:`find_body` finds; its arrays are not to be changed."""
-    places, points_m, named = frame.places, frame.points_m, frame.named
+def _searched(places: WornPlaces, points: bytes, names: bytes) -> FoundBody:
+    """The result of :func:`find_body`, cached: a frame is searched for its axes, and again for its marker set."""
+    points_m = np.frombuffer(points).reshape(-1, 3)
+    named = np.frombuffer(names).reshape(len(points_m), -1) if names else 1.0
     rough: list[_Candidate] = []
     reference: HumanModel | None = None
     for equipment in EQUIPMENTS:
         worn = ~equipment.bare(places)
-        weight = weights(places, equipment, named)[..., worn]
+        weight = (equipped_weight(places, equipment) * named)[..., worn]
         problem = CloudProblem(places.only(worn), points_m, weight, reference)
         reference = problem.model
         own = [
             _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)
             for start in starts(problem.model, points_m, equipment)
         ]
-        rough += sorted(own, key=lambda one: -one.worth)[:KEPT_EACH]
+        rough += sorted(own, key=lambda one: -one.log_posterior)[:KEPT_EACH]
     if not rough:
         raise NotObservable(
-            f"the points reach over {np.ptp(points_m[:, 2]):.2f} m of height; no person stands there "
-            "(which axis points up? give --up; which unit? give --unit)"
+            f"no upright body is found: the points extend over {np.ptp(points_m[:, 2]):.2f} m of height; give the axis "
+            "that points up (--up), or the unit (--unit)"
         )
-    rough.sort(key=lambda one: -one.worth)
+    rough.sort(key=lambda one: -one.log_posterior)
     fine = [replace(one, body=one.problem.fitted(one.body, FINE_M)) for one in rough[:KEPT]]
-    best, *others = sorted(fine, key=lambda one: -one.worth)
-    rivals = [one.worth for one in others if _apart(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
-    evidence = _evidence(places, points_m, best.body, best.equipment)
-    odds = len(points_m) * evidence + best.prior
-    body = PosedBody(
-        read_only(best.body.q), read_only(best.body.factors), _all_shares(places, best), best.body.worth
+    best, *others = sorted(fine, key=lambda one: -one.log_posterior)
+    others = [one for one in others if _angle(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
+    ratio = _log_ratio_per_point(places, points_m, best.body, best.equipment)
+    q, factors, shares = map(read_only, (best.body.q, best.body.factors, _all_shares(places, best)))
+    return FoundBody(
+        PosedBody(q, factors, shares, best.body.log_posterior),
+        best.equipment,
+        best.log_posterior,
+        max((one.log_posterior for one in others), default=-math.inf),
+        ratio,
+        len(points_m) * ratio + best.prior,
     )
-    return FoundBody(body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds)
 
 
 @dataclass(frozen=True)
@@ -135,9 +120,9 @@ class _Candidate:
     equipment: Equipment
 
     @cached_property
-    def worth(self) -> float:
-        """Logarithm of likelihood and priors, those of the equipment among them."""
-        return self.body.worth + self._equipped
+    def log_posterior(self) -> float:
+        """Logarithm of likelihood and priors, that of the equipment among them."""
+        return self.body.log_posterior + self._equipped
 
     @property
     def prior(self) -> float:
@@ -146,40 +131,26 @@ class _Candidate:
 
     @property
     def _equipped(self) -> float:
-        count = count_worth(self.problem.places, self.equipment, self.body.shares)
+        count = count_log_probability(self.problem.places, self.equipment, self.body.shares)
         return math.log(self.equipment.share) + count
 
 
 def _all_shares(places: WornPlaces, found: _Candidate) -> Array:
-    """(N, C) shares of all components, 0 where the equipment leaves a segment bare."""
+    """(N, C) shares of all components, 0 on segments without markers."""
     shares = np.zeros((len(found.body.shares), len(places.segments)))
     shares[:, ~found.equipment.bare(places)] = found.body.shares
-    return read_only(shares)
+    return shares
 
 
-def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
+def _log_ratio_per_point(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
     problem = CloudProblem(places, points_m, equipped_weight(places, equipment))
     _, likelihood = problem.shares(problem.sized(body.factors).positions(body.q), FINE_M[-1])
     box = float(np.prod(np.maximum(np.ptp(points_m, axis=0), THINNEST_M)))
     return likelihood / len(points_m) + math.log(box)
 
 
-def weights(places: WornPlaces, equipment: Equipment, named: Array | None) -> Array:
-    """(C,) or (N, C) share of every component, by the equipment and by the points' names.
-
-    Args:
-        places: Where markers are worn.
-        equipment: The part of the body that carries them.
-        named: (N, C) how much likelier each component is by a point's name than without it; None without names.
-    """
-    weight = equipped_weight(places, equipment)
-    if named is None:
-        return weight
-    return np.asarray(weight * named)
-
-
-def _apart(problem: CloudProblem, one: Array, other: Array) -> float:
-    """Angle between the ways that two poses face, seen from above, rad."""
+def _angle(problem: CloudProblem, one: Array, other: Array) -> float:
+    """Angle between the headings of two poses, rad."""
     forward = [problem.model.placements(q)[0][problem.model.root.joint_id][:2, 0] for q in (one, other)]
     cross = forward[0][0] * forward[1][1] - forward[0][1] * forward[1][0]
     return abs(math.atan2(cross, float(forward[0] @ forward[1])))

@@ -1,4 +1,4 @@
-"""Where the name of a marker may tell its side, in front, behind or inside, and what is left of it then."""
+"""Sides in the name of a marker, in front, behind or inside, and the rest of the name without them."""
 
 from __future__ import annotations
 
@@ -8,49 +8,28 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 PAIRS = (
-    ("right", "left"),
-    ("r", "l"),
-    ("rt", "lt"),
-    ("rgt", "lft"),
-    ("rx", "lx"),
-    ("re", "li"),
-    ("rechts", "links"),
-    ("rechte", "linke"),
-    ("rechter", "linker"),
-    ("rechtes", "linkes"),
-    ("droite", "gauche"),
-    ("droit", "gauche"),
-    ("dx", "sx"),
-    ("destra", "sinistra"),
-    ("destro", "sinistro"),
-    ("derecha", "izquierda"),
-    ("derecho", "izquierdo"),
-    ("der", "izq"),
-    ("direita", "esquerda"),
-    ("direito", "esquerdo"),
-)
-"""Words for right and left that stand together, of English, German, French, Italian, Spanish and Portuguese."""
+    ("right", "left"), ("r", "l"), ("rt", "lt"), ("rgt", "lft"), ("rx", "lx"), ("re", "li"),
+    ("rechts", "links"), ("rechte", "linke"), ("rechter", "linker"), ("rechtes", "linkes"),
+    ("droite", "gauche"), ("droit", "gauche"), ("dx", "sx"), ("destra", "sinistra"), ("destro", "sinistro"),
+    ("derecha", "izquierda"), ("derecho", "izquierdo"), ("der", "izq"),
+    ("direita", "esquerda"), ("direito", "esquerdo"),
+)  # fmt: skip
+"""Words for right and left, by pairs, in English, German, French, Italian, Spanish and Portuguese."""
 
 INITIALS = (("d", "g"), ("d", "s"), ("d", "i"), ("d", "e"))
-"""Initials of the same words: taken only where the set holds the marker of the other side, too."""
+"""Initials of the same words: used only where the set also holds the marker of the other side."""
 
 WEIGHTS = {
-    "word": 1.0,
-    "token": 0.95,
-    "inner token": 0.8,
-    "first letter": 0.7,
-    "last letter": 0.35,
-    "inner letter": 0.1,
-    "initial": 0.3,
-    "none": 0.5,
-}
-"""How likely a name is to tell its side this way, before the other names of the set are looked at."""
+    "word": 1.0, "token": 0.95, "inner token": 0.8, "first letter": 0.7, "last letter": 0.35, "inner letter": 0.1,
+    "initial": 0.3, "none": 0.5,
+}  # fmt: skip
+"""Prior weight of each way to state a side, before the other names of the set are considered."""
 
 NEEDS_PARTNER = ("initial", "inner letter", "last letter")
-"""Ways that are believed only where the set holds the marker of the other side, or tells many sides this way."""
+"""Ways that count only where the set holds the marker of the other side, or states many sides this way."""
 
 APART = ("word", "token", "inner token")
-"""Ways in which the side stands by itself, so that its letter is hardly part of the place's name."""
+"""Ways with a separate word or letter, which is hardly part of the place's name."""
 
 _TOKEN = re.compile(r"(?<![A-Za-z])[A-Za-z]\d+|[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 _LETTERS = {"r": ("right", "l"), "l": ("left", "r")}
@@ -62,9 +41,9 @@ class SideGuess:
     """One way to read the side out of a name.
 
     Attributes:
-        side: "right", "left" or "" for a name that tells none.
+        side: "right", "left", or "" for a name without a side.
         rest: The name without its side, in small letters and digits.
-        style: How the side is told, a key of :data:`WEIGHTS`.
+        style: The way the side is stated, a key of :data:`WEIGHTS`.
         partner: The name of the other side's marker in the same letters, "" without a side.
     """
 
@@ -81,12 +60,12 @@ def tokens_of(name: str) -> list[str]:
 
 
 def side_words() -> frozenset[str]:
-    """Every word and initial that may tell a side."""
+    """Every word and initial that may state a side."""
     return frozenset(word for pair in (*PAIRS, *INITIALS) for word in pair)
 
 
 def side_guesses(name: str) -> list[SideGuess]:
-    """Every way to read a side out of a name; that it tells none comes last."""
+    """Every way to read a side out of a name; the last is without a side."""
     tokens = tokens_of(name)
     text = "".join(tokens)
     found: dict[tuple[str, str], SideGuess] = {}
@@ -97,7 +76,7 @@ def side_guesses(name: str) -> list[SideGuess]:
 
 
 def _tokens(tokens: list[str]) -> Iterator[SideGuess]:
-    """Sides told by a word or letter that stands by itself."""
+    """Sides stated by a separate word or letter."""
     for pairs, initial in ((PAIRS, False), (INITIALS, True)):
         for at, token in enumerate(tokens):
             for pair in pairs:
@@ -117,7 +96,7 @@ def _tokens(tokens: list[str]) -> Iterator[SideGuess]:
 
 
 def _letters(text: str) -> Iterator[SideGuess]:
-    """Sides told by a word at an end of the name, or by a letter anywhere in it."""
+    """Sides stated by a word at an end of the name, or by a letter anywhere in it."""
     for right, left in PAIRS:
         for side, word, other in (("right", right, left), ("left", left, right)):
             if len(word) >= _SHORTEST_WORD and text.startswith(word):

@@ -1,7 +1,7 @@
 """The dictionary of marker spellings: from a name without its side to places of the body, by a small grammar.
 
 A name is read as one place ("knee", "lfc") with modifiers around it ("lateral", "upper", a number, another part of
-the body as in "femoral epicondyle"). It must be covered without rest: a name with an unknown piece is not read.
+the body as in "femoral epicondyle"). Its pieces must cover it: a name with an unknown piece remains unread.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Odds = Mapping[str, float]
 SURE = 0.95
 """Probability of a place that the file gives without one."""
 SILENT = ("filler",)
-"""Modifiers that tell nothing."""
+"""Modifiers without a meaning."""
 _LETTERS = "apdulmfbstic"
 _LEADING_LETTERS = "pda"
 _MOST_LETTERS = 2
@@ -35,10 +35,10 @@ _DIGITS = re.compile(r"\d+")
 
 @dataclass(frozen=True)
 class Company:
-    """Places that a spelling means where others are in the same set.
+    """Places that a spelling means beside certain others of the same set.
 
     Attributes:
-        any: Spellings one of which the set must hold.
+        any: Spellings of which the set must hold one.
         places: Places of names without a side, None for the usual ones.
         sided: Places of names with a side, None for the usual ones.
     """
@@ -50,7 +50,7 @@ class Company:
 
 @dataclass(frozen=True)
 class Group:
-    """Spellings of one meaning; markers/dictionary/spellings.toml tells what its fields say."""
+    """Spellings of one meaning; markers/dictionary/spellings.toml explains the fields."""
 
     spellings: tuple[str, ...]
     places: Odds
@@ -71,10 +71,10 @@ class Parse:
     """A name without its side as the grammar takes it apart.
 
     Attributes:
-        group: What it means.
+        group: Its meaning.
         spelling: The spelling of the place.
         modifiers: Names of the modifiers around it.
-        quality: How plainly it is spelt, 0 to 1: single letters of direction cost.
+        quality: Plainness of the spelling, 0 to 1: single letters of direction reduce it.
     """
 
     group: Group
@@ -83,22 +83,16 @@ class Parse:
     quality: float
 
     def places(self, sided: bool, company: frozenset[str]) -> tuple[Odds, bool]:
-        """Places that it may mean, and whether they are landmarks to be kept.
+        """Probability by place; and False where a modifier moves the marker away from the landmark, to its segment.
 
-        Args:
-            sided: Whether the name tells a side.
-            company: Spellings of the other names of the set.
-
-        Returns:
-            Probability by place; False where a modifier moves the marker away from the landmark, so that only the
-            segment is told.
+        ``sided`` is True for a name with a side, ``company`` are the spellings of the other names of the set.
         """
         group = self.group
-        told = [key for key in group.modified if key <= self.modifiers]
+        keys = [key for key in group.modified if key <= self.modifiers]
         if group.cluster and self.modifiers & _NUMBERED:
-            told = [key for key in told if key & _NUMBERED]
-        if told:
-            return group.modified[max(told, key=lambda key: (len(key), sorted(key)))], True
+            keys = [key for key in keys if key & _NUMBERED]
+        if keys:
+            return group.modified[max(keys, key=lambda key: (len(key), sorted(key)))], True
         places = group.sided if sided and group.sided is not None else group.places
         for one in group.beside:
             if one.any & company:
@@ -113,7 +107,7 @@ class Parse:
 
 @dataclass(frozen=True)
 class _Piece:
-    """What a word of the dictionary may be."""
+    """A meaning of a word of the dictionary."""
 
     kind: str
     value: str = ""
@@ -122,7 +116,7 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Used:
-    """How much of a name's grammar is used up: pieces, places and letters of direction."""
+    """Numbers of pieces, places and letters of direction in the read part of a name."""
 
     pieces: int = 0
     places: int = 0
@@ -150,11 +144,11 @@ class Spellings:
         self._known: dict[str, Parse | None] = {}
 
     def knows(self, word: str) -> bool:
-        """Whether a word is a place or modifier of the dictionary."""
+        """True where a word is a place or modifier of the dictionary."""
         return word in self._words or bool(_DIGITS.fullmatch(word)) or self.parse(word) is not None
 
     def parse(self, text: str) -> Parse | None:
-        """The plainest way to read a name without its side, None where no reading covers it."""
+        """The plainest way to read a name without its side, None without a complete reading."""
         if text not in self._known:
             self._known[text] = self._parse(text)
         return self._known[text]
@@ -195,7 +189,7 @@ class Spellings:
 
 
 def _joined(pieces: list[tuple[str, _Piece]]) -> Parse | None:
-    """One place with modifiers out of the pieces of a name, None where they do not belong together."""
+    """One place with modifiers out of the pieces of a name, None where they do not combine."""
     places = [piece for _, piece in pieces if piece.group is not None]
     head, modifiers, quality = places[-1], set(), 0.98
     if len(places) == 2:
@@ -238,8 +232,8 @@ class Dictionary:
 
     Attributes:
         spellings: Places and the grammar of their names.
-        objects: Words of things that are no part of the body.
-        lone_objects: Words that are so only beside no place of the body.
+        objects: Words of things off the body.
+        lone_objects: Words of such things, unless the name also holds a place of the body.
         computed: Words of software's outputs.
     """
 
@@ -265,12 +259,12 @@ def load_dictionary(path: Path | None = None) -> Dictionary:
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
     except (KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(path, f"not a valid dictionary of spellings ({error})") from error
+        raise FileFormatError(path, f"not a valid dictionary of spellings: {error}") from error
     seen: set[str] = set()
     for group in groups:
         for spelling in group.spellings:
             if spelling in seen:
-                raise FileFormatError(path, f"'{spelling}' stands in two groups")
+                raise FileFormatError(path, f"'{spelling}' is in two groups; keep it in one")
             seen.add(spelling)
     return Dictionary(
         Spellings(groups, modifiers), frozenset(objects["always"]), frozenset(objects["alone"]), computed
@@ -302,8 +296,8 @@ def _group(entry: TomlTable) -> Group:
 
 
 def _odds(value: str | TomlTable) -> Odds:
-    """Probability by place, from a table or from the name of a place that is as good as sure."""
+    """Probability by place, from a table or from the name of a nearly certain place."""
     odds = {value: SURE} if isinstance(value, str) else {str(k): float(p) for k, p in value.items()}
     if any(not 0 < p <= 1 for p in odds.values()) or sum(odds.values()) > 1 + 1e-9:
-        raise ValueError(f"probabilities of {sorted(odds)} are not between 0 and 1 or add up to more than 1")
+        raise ValueError(f"probabilities of {sorted(odds)} must lie between 0 and 1 and add up to 1 at most")
     return odds

@@ -1,4 +1,4 @@
-"""Where a body may be in a cloud of points: headings, sizes and arm postures to start the fit from."""
+"""Starts of the fit of a body to a cloud of points: headings, sizes and arm postures."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from mbkf.marker_sets.equipment import Equipment
 from mbkf.model.human import HumanModel
 
 HEADINGS = 8
-"""Headings that are tried: nothing tells which way the person faces."""
+"""Number of headings: that of the person is unknown."""
 
 SIZES = (0.5, 1.2)
-"""Least and greatest overall size that is tried: a child of three, and a tall man."""
+"""Least and greatest overall size: a child of three, and a tall man."""
 
 ARMS_RAD = (0.2, 0.8, 1.5)
-"""Arms hanging, held away from the body, and stretched out sideways."""
+"""Abduction of the arms: hanging, held away from the body, and stretched out sideways."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Start:
 
 
 def starts(model: HumanModel, points_m: Array, equipment: Equipment) -> Iterator[Start]:
-    """Poses to start from, upright, highest and lowest point where the equipment has its highest and lowest marker.
+    """Upright poses whose equipment has its highest and lowest markers at the highest and lowest points.
 
     Args:
         model: The reference body.

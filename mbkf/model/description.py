@@ -146,9 +146,9 @@ class SegmentShape:
     to: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BodyDescription:
-    """A reference body.
+    """A reference body; equal to itself only, so that results for it can be cached.
 
     Attributes:
         name: Its name.

@@ -101,7 +101,7 @@ def test_points_that_are_no_person(tmp_path, refuse_scale):
     path = tmp_path / "scattered.trc"
     names = tuple(f"P{i}" for i in range(36))
     write_trc(MarkerTrajectories(names, np.repeat(scattered[None], 5, axis=0), 100.0), path)
-    refuse_scale([path, "--up", "y", "--mass", "75"], "no person is found", "--protocol")
+    refuse_scale([path, "--up", "y", "--mass", "75"], "no upright body is found", "--protocol")
 
 
 def test_too_few_markers_to_follow_any_body(tmp_path, refuse_scale, refuse_reconstruct):

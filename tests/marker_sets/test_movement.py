@@ -7,11 +7,11 @@ from scipy.stats import t as student
 from mbkf.marker_sets.frames import spread_frames
 from mbkf.marker_sets.movement import (
     FREEDOM,
-    LOOKS,
+    OBSERVATIONS,
     Movement,
     movement,
     movement_cost,
-    unrest_m,
+    segment_scatter_m,
 )
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.marker_sets.worn import box_at, walking
@@ -43,7 +43,7 @@ def seen(worn):
 
 
 def spread_of(seen):
-    return np.sqrt(seen.squared_m2 / (3.0 * LOOKS))
+    return np.sqrt(seen.squared_m2 / (3.0 * OBSERVATIONS))
 
 
 def test_a_marker_scatters_least_on_its_own_segment(worn, seen):
@@ -92,19 +92,19 @@ def test_a_marker_that_is_never_seen_has_no_place(worn):
 
 def test_unrest_is_the_median_of_a_segments_own_markers():
     spread = np.array([[0.01, 9.0], [0.03, 9.0], [0.02, 9.0], [9.0, 0.05]])
-    seen = Movement(np.zeros((4, 2, 3)), 3.0 * LOOKS * spread**2, 0.0)
-    np.testing.assert_allclose(unrest_m(seen, np.array([0, 0, 0, 1]), 2), [0.02, 0.05])
+    seen = Movement(np.zeros((4, 2, 3)), 3.0 * OBSERVATIONS * spread**2, 0.0)
+    np.testing.assert_allclose(segment_scatter_m(seen, np.array([0, 0, 0, 1]), 2), [0.02, 0.05])
     # a segment without markers is as restless as all are in the median
-    np.testing.assert_allclose(unrest_m(seen, np.array([0, 0, 0, 1]), 3)[2], 0.025)
+    np.testing.assert_allclose(segment_scatter_m(seen, np.array([0, 0, 0, 1]), 3)[2], 0.025)
 
 
 def test_the_cost_is_that_of_a_student_distribution():
-    """In one dimension it is scipy's; LOOKS of three coordinates are so many dimensions more."""
+    """In one dimension it is scipy's; OBSERVATIONS of three coordinates are so many dimensions more."""
     spread, x = 0.01, np.array([0.0, 0.005, 0.02, 0.1])
     exact = -student.logpdf(x / spread, FREEDOM)
     of_one = 0.5 * (FREEDOM + 1.0) * np.log1p(x**2 / (spread**2 * FREEDOM))
     np.testing.assert_allclose(of_one, exact - exact[0])
-    ratio = (FREEDOM + 3.0 * LOOKS) / (FREEDOM + 1.0)
+    ratio = (FREEDOM + 3.0 * OBSERVATIONS) / (FREEDOM + 1.0)
     np.testing.assert_allclose(movement_cost(x**2, np.array(spread)), ratio * of_one)
 
 

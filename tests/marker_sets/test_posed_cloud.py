@@ -6,7 +6,7 @@ from scipy.stats import multivariate_normal
 
 from mbkf.marker_sets.equipment import EQUIPMENTS, equipped_weight
 from mbkf.marker_sets.places import worn_places
-from mbkf.marker_sets.posed_cloud import NO_BODY, ROOM_M3, CloudProblem
+from mbkf.marker_sets.posed_cloud import OFF_BODY, ROOM_M3, CloudProblem
 from mbkf.model.body_file import load_body
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.marker_sets.worn import standing
@@ -65,9 +65,9 @@ def test_the_likelihood_is_that_of_the_mixture(scene):
             for w, mean, s in zip(WEIGHT, positions, sd, strict=True)
         ]
     ).T
-    total = (1.0 - NO_BODY) * density.sum(axis=1) + NO_BODY / ROOM_M3
+    total = (1.0 - OFF_BODY) * density.sum(axis=1) + OFF_BODY / ROOM_M3
     assert found == pytest.approx(np.log(total).sum(), rel=1e-9)
-    np.testing.assert_allclose(shares, (1.0 - NO_BODY) * density / total[:, None], atol=1e-9)
+    np.testing.assert_allclose(shares, (1.0 - OFF_BODY) * density / total[:, None], atol=1e-9)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -103,18 +103,18 @@ def test_a_pass_does_not_lower_the_objective(scene, width_m):
         lambda one: problem.posed(one.q, 0.95, (width_m,)),
         lambda one: problem.fitted(one, (width_m,)),
     ):
-        worths = [body.worth]
+        posteriors = [body.log_posterior]
         for _ in range(8):
             body = fit(body)
-            worths.append(body.worth)
-        assert np.diff(worths).min() > -0.01
-        assert worths[-1] > worths[0]
+            posteriors.append(body.log_posterior)
+        assert np.diff(posteriors).min() > -0.01
+        assert posteriors[-1] > posteriors[0]
 
 
 def test_worth_is_the_objective(scene):
     problem, q, _ = scene
     body = problem.fitted(problem.posed(q, 0.95, (0.05,)), (0.05, 0.03))
-    assert body.worth == pytest.approx(objective(problem, body.q, body.factors, 0.03))
+    assert body.log_posterior == pytest.approx(objective(problem, body.q, body.factors, 0.03))
 
 
 def test_a_size_is_a_body_of_these_factors(scene):
@@ -123,7 +123,7 @@ def test_a_size_is_a_body_of_these_factors(scene):
     one = problem.posed(q, 0.8, (0.1, 0.08))
     np.testing.assert_array_equal(one.factors, 0.8)
     whole = np.full_like(one.factors, 0.8)
-    assert one.worth == pytest.approx(objective(problem, one.q, whole, 0.08))
+    assert one.log_posterior == pytest.approx(objective(problem, one.q, whole, 0.08))
 
 
 def test_a_turned_cloud_has_the_same_objective_for_the_turned_body(scene):

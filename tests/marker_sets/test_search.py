@@ -6,7 +6,8 @@ import pytest
 from mbkf.errors import NotObservable
 from mbkf.marker_sets.equipment import EQUIPMENTS, equipped_weight
 from mbkf.marker_sets.places import worn_places
-from mbkf.marker_sets.search import FEWEST_POINTS, find_body, weights
+from mbkf.marker_sets.posed_cloud import CloudProblem
+from mbkf.marker_sets.search import FEWEST_POINTS, find_body
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
 from tests.marker_sets.worn import near, standing
@@ -44,8 +45,8 @@ def test_a_standing_person_is_found(worn, found):
     assert np.mean(right) >= 0.95
     assert facing(found)[0] > 0.95, "he faces along x"
     assert found.equipment.name == "the whole body"
-    assert found.evidence > 1.0
-    assert found.rival < found.worth
+    assert found.log_ratio_per_point > 1.0
+    assert found.other_heading < found.log_posterior
 
 
 def test_who_searches_a_frame_again_gets_the_body_that_was_found(worn, found):
@@ -56,7 +57,7 @@ def test_who_searches_a_frame_again_gets_the_body_that_was_found(worn, found):
         assert not one.flags.writeable
     told = nothing.copy()
     told[0, np.array(PLACES.segments) == worn.segments[worn.markers.names[0]]] = 2.0
-    assert find_body(PLACES, worn.points_m, told).worth > found.worth + 0.01, (
+    assert find_body(PLACES, worn.points_m, told).log_posterior > found.log_posterior + 0.01, (
         "a name that tells the true segment"
     )
     assert find_body(PLACES, worn.points_m + 1e-6) is not found
@@ -86,17 +87,21 @@ def test_a_turned_and_shifted_cloud_has_the_turned_body(worn, found):
         atol=0.03,
     )
     np.testing.assert_allclose(again.body.factors, found.body.factors, atol=0.02)
-    assert again.worth == pytest.approx(found.worth, abs=1.0)
+    assert again.log_posterior == pytest.approx(found.log_posterior, abs=1.0)
 
 
 def test_names_are_weighed_point_by_point(worn):
+    """A name that doubles the density of its own point takes half of that point's share off the body, of no other's."""
     weight = equipped_weight(PLACES, EQUIPMENTS[0])
     named = np.ones((3, len(weight)))
     named[1] = 2.0
-    np.testing.assert_array_equal(weights(PLACES, EQUIPMENTS[0], None), weight)
-    np.testing.assert_array_equal(
-        weights(PLACES, EQUIPMENTS[0], named), np.stack([weight, 2 * weight, weight])
+    far = PLACES.position_m + 0.5  # so that points are as likely off the body
+    plain, doubled = (
+        CloudProblem(PLACES, worn.points_m[:3], weight * factor).shares(far, 0.2)[0].sum(axis=1)
+        for factor in (1.0, named)
     )
+    odds = plain / (1.0 - plain)
+    np.testing.assert_allclose(doubled / (1.0 - doubled), odds * [1.0, 2.0, 1.0], rtol=1e-9)
 
 
 def test_too_few_points_are_refused(worn):
@@ -106,11 +111,11 @@ def test_too_few_points_are_refused(worn):
 
 @pytest.mark.parametrize("scale", [0.1, 10.0, 1000.0])
 def test_clouds_of_no_persons_size_are_refused(worn, scale):
-    with pytest.raises(NotObservable, match=r"of height; no person stands there .* which unit"):
+    with pytest.raises(NotObservable, match=r"no upright body is found: .* of height; .*--unit"):
         find_body(PLACES, scale * worn.points_m)
 
 
 def test_scattered_points_speak_for_no_body(found):
     rng = np.random.default_rng(2)
     scattered = rng.uniform([-0.3, -0.4, 0.0], [0.3, 0.4, 1.7], (40, 3))
-    assert find_body(PLACES, scattered).evidence < found.evidence - 0.5
+    assert find_body(PLACES, scattered).log_ratio_per_point < found.log_ratio_per_point - 0.5

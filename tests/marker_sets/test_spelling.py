@@ -99,10 +99,10 @@ def test_a_dictionary_of_ones_own():
         ("nothing", "not a valid dictionary"),
         (EMPTY, "not a valid dictionary"),
         (EMPTY + "places = { thigh = 1.5 }", "between 0 and 1"),
-        (EMPTY + "places = { thigh = 0.7, shank = 0.7 }", "add up to more than 1"),
+        (EMPTY + "places = { thigh = 0.7, shank = 0.7 }", "add up to 1 at most"),
         (
             EMPTY + 'places = { thigh = 0.7 }\n[[place]]\nspellings = ["knee"]\nplaces = {}',
-            "'knee' stands in two groups",
+            "'knee' is in two groups",
         ),
     ],
 )

@@ -120,9 +120,9 @@ class TrackNaming:
         good = [one for one in found if one is not None]
         if not good:
             raise NotObservable(
-                f"the capture's tracks fit no person with the {len(self._markers)} markers of '{self._protocol.name}'; "
-                "check the marker set (--protocol), unit and axes (--unit, --up), and that the person moves; else "
-                "scale a labelled trial first and give --subject"
+                f"the capture's tracks do not fit a person with the {len(self._markers)} markers of "
+                f"'{self._protocol.name}'; check the marker set (--protocol), unit and axes (--unit, --up), and that"
+                " the person moves; else scale a labelled trial first and give --subject"
             )
         return max(good, key=lambda one: one.log_ratio)
 
@@ -163,7 +163,7 @@ class TrackNaming:
         return name_tracks_of_frame(sensor, _rough_sd(sensor), self._points_m, self._tracks, frame)
 
     def _scaled(self, owner: Indices) -> NamedTracks | None:
-        """Person and names that agree, from first names (count,); None where they fit no person."""
+        """Person and names that agree, from first names (count,); None where they do not fit a person."""
         named = self._settled(owner)
         if named is None:
             return None
@@ -181,7 +181,7 @@ class TrackNaming:
         return NamingProblem(self._shown(owner), self._protocol, height_m=self._height_m)
 
     def _settled(self, owner: Indices) -> NamedTracks | None:
-        """Person and names after scaling and naming in turns, from first names (count,); None where no person fits."""
+        """Person and names after scaling and naming in turns, from first names (count,); None without a fit."""
         named = None
         for _ in range(ROUNDS):
             try:

@@ -1,4 +1,4 @@
-"""Whether a marker set explains a capture: what it knows, what it does not reach, and how well a person fits."""
+"""Check of a marker set against a capture: known and missing markers, and the fit of a person."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ from mbkf.trial.protocol.standing import scale_nominally
 OK, DOUBTFUL, BAD = "ok", "doubtful", "bad"
 
 WHOLE_SHARE = 0.9
-"""A set that knows a smaller share of the capture's markers is not its whole set."""
+"""Least share of the capture's markers that its whole set knows."""
 
 GOOD_RMS_MM, POOR_RMS_MM = 12.0, 25.0
-"""Up to the first the markers fit as those of a right set do (2 to 12 mm in our captures); beyond the second they are
-on other places than the set says."""
+"""RMS distance up to which the markers fit as those of a correct set (2 to 12 mm in our captures), and beyond which
+they are at other places than in the set."""
 
 POOR_MARKER_MM = 40.0
-"""A single marker that fits worse than this is on another segment than the set says, or carries another's name."""
+"""RMS distance beyond which a single marker is on another segment than in the set, or has another one's name."""
 
 FAR_SHARE, FAR_MM = 2.7, 80.0
-"""A marker that scaling moved by more than both, the first as a multiple of what the set allows for, is far from where
-the set says. A standing trial shows this where its single posture fits anything."""
+"""Distance from its place in the set, as a multiple of the set's spread and in mm, beyond both of which a marker is
+far: a wrong marker of a standing trial, whose single posture fits nearly any set."""
 
 TWISTED_RAD = np.deg2rad(45.0)
-"""A standing person none of whose joints can turn so far beyond its limits carries markers elsewhere than the set says:
-with both knees' outer markers exchanged, both thighs face backwards and every marker fits."""
+"""Greatest excess of a standing person's joints over their limits: with both knees' outer markers exchanged, both
+thighs face backwards and every marker fits."""
 
 WRONG_SHARE, WRONG_MM = 4.0, 250.0
-"""Beyond either, a marker that is far is not where the set says at all."""
+"""Beyond either, a far marker is wrong."""
 
 
 @dataclass(frozen=True)
 class MarkerFit:
-    """How a marker fits the scaled person.
+    """Fit of a marker to the scaled person.
 
     Attributes:
         name: The marker.
-        segment: The segment that the set has it on.
-        rms_mm: RMS distance from where the person carries it.
-        moved_mm: How far it was moved from its place in the set.
-        share: The same as a multiple of what the set allows for.
+        segment: Its segment in the set.
+        rms_mm: RMS distance from its place on the person.
+        moved_mm: Distance of that place from its place in the set.
+        share: The same as a multiple of the set's spread.
     """
 
     name: str
@@ -60,33 +60,33 @@ class MarkerFit:
 
     @property
     def far(self) -> bool:
-        """Whether it lies far from where the set says."""
+        """True where it is far from its place in the set."""
         return self.share > FAR_SHARE and self.moved_mm > FAR_MM
 
     @property
     def badness(self) -> float:
-        """How bad the fit is: 1 where a bound is reached."""
+        """Measure of a bad fit: 1 where a bound is reached."""
         return max(self.share / FAR_SHARE, self.rms_mm / POOR_MARKER_MM)
 
     @property
     def wrong(self) -> bool:
-        """Whether it cannot be where the set says."""
+        """True where its place in the set is wrong."""
         return self.far and (self.share > WRONG_SHARE or self.moved_mm > WRONG_MM)
 
 
 @dataclass(frozen=True)
 class SetCheck:
-    """What a marker set makes of a capture.
+    """Result of the check of a marker set against a capture.
 
     Attributes:
-        use: The markers it knows and does not know.
-        absent: Its own markers that the capture lacks, computed points aside.
-        bare: Segments of its body that no known marker is on.
-        rms_mm: RMS distance of the markers from the scaled person; None where none could be scaled.
+        use: Known and unknown markers of the capture.
+        absent: Markers of the set that the capture lacks, without computed points.
+        bare: Segments of its body without a known marker.
+        rms_mm: RMS distance of the markers from the scaled person; None where scaling failed.
         markers: The fit of every marker, the worst first.
-        trouble: Why no person could be scaled, "" where one was.
+        trouble: Reason why scaling failed, or "".
         verdict: "ok", "doubtful" or "bad".
-        reasons: Why it is not "ok", each with what to do.
+        reasons: Reasons why it is not "ok", each with a remedy.
     """
 
     use: MarkerUse
@@ -100,7 +100,7 @@ class SetCheck:
 
 
 def check_set(protocol: Protocol, capture: Capture, progress: StageCallback | None = None) -> SetCheck:
-    """Scales a person by the marker set and tells how well that went.
+    """Scales a person by the marker set and judges the fit.
 
     Args:
         protocol: The marker set.
@@ -140,7 +140,7 @@ def _fits(report: object, protocol: Protocol) -> list[MarkerFit]:
 
 
 def _twisted(subject: Subject) -> dict[str, float]:
-    """Segments that a standing person turns too far beyond their joints' limits, rad; none without a standing trial."""
+    """Segments that a standing person turns too far beyond their joints' limits, rad; empty without standing."""
     if subject.standing_q is None:
         return {}
     model = HumanModel.of(subject)
@@ -153,40 +153,30 @@ def _twisted(subject: Subject) -> dict[str, float]:
 def _judged(
     use: MarkerUse, rms: float | None, fits: list[MarkerFit], twisted: dict[str, float], trouble: str
 ) -> tuple[str, list[str]]:
-    """The verdict and its reasons.
-
-    Args:
-        use: What the set knows of the capture.
-        rms: RMS distance of the markers, mm.
-        fits: Every marker's fit, the worst first.
-        twisted: Segments turned beyond their joints' limits, rad.
-        trouble: Why no person could be scaled.
-    """
+    """The verdict and its reasons."""
     bad, doubtful = [], []
     if trouble:
         bad.append(trouble)
     if use.unknown:
-        told = f"{use.told}, not {listed(use.unknown)}: add them, or leave them out with 'mbkf protocol edit'"
-        if use.share < LEAST_SHARE:
-            bad.append(told)
-        elif use.share < WHOLE_SHARE:
-            doubtful.append(told)
+        line = f"{use.told}, not {listed(use.unknown)}: add them, or leave them out with 'mbkf protocol edit'"
+        if use.share < WHOLE_SHARE:
+            (bad if use.share < LEAST_SHARE else doubtful).append(line)
     if rms is not None and rms > GOOD_RMS_MM:
-        told = f"markers fit to {rms:.0f} mm RMS, a right set to {GOOD_RMS_MM:.0f}: see which are worst"
-        (bad if rms > POOR_RMS_MM else doubtful).append(told)
+        line = f"markers fit to {rms:.0f} mm RMS, those of a correct set to {GOOD_RMS_MM:.0f}: check the worst ones"
+        (bad if rms > POOR_RMS_MM else doubtful).append(line)
     if twisted:
         turned = listed([f"{name} ({np.rad2deg(angle):.0f}°)" for name, angle in twisted.items()])
         worst = listed([one.name for one in fits if one.segment in twisted][:3])
-        bad.append(f"turned beyond what joints allow: {turned}; are markers exchanged, {worst} among them?")
+        bad.append(
+            f"segments turned beyond their joints' limits: {turned}; check for exchanged markers, as {worst}"
+        )
     for wrong, into in ((True, bad), (False, doubtful)):
         far = [f"{one.name} ({one.moved_mm:.0f} mm)" for one in fits if one.far and one.wrong == wrong]
         if far:
-            into.append(
-                f"far from where the set has them: {listed(far)}; are they on the segments that it says?"
-            )
+            into.append(f"markers far from their places in the set: {listed(far)}; check their segments")
     poor = [one for one in fits if one.rms_mm > POOR_MARKER_MM]
     if poor:
         names = listed([one.name for one in poor])
-        doubtful.append(f"{names}: on another segment than the set says, or under another's name")
+        doubtful.append(f"markers that fit poorly: {names}; check their segments and names")
     verdict = BAD if bad else DOUBTFUL if doubtful else OK
     return verdict, bad + doubtful

@@ -1,4 +1,4 @@
-"""The marker set of a person's captures: the shipped protocol that explains them, else one inferred."""
+"""The marker set of a person's captures: the shipped protocol that knows them, else an inferred one."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
 
 @dataclass(frozen=True)
 class ChosenSet:
-    """A marker set, and the captures that go with it.
+    """A marker set and its captures.
 
     Attributes:
         protocol: The marker set.
-        captures: The captures, those of an inferred set with their axes put right.
-        inferred: What was inferred, None where a shipped protocol explains the captures.
+        captures: The captures; with an inferred set, with corrected axes.
+        inferred: The inferred set, None for a shipped protocol.
     """
 
     protocol: Protocol
@@ -31,7 +31,7 @@ class ChosenSet:
 def choose_marker_set(
     static: Capture | None, trials: Sequence[Capture], body: BodyDescription | None = None
 ) -> ChosenSet:
-    """The marker set that a person's captures wear.
+    """The marker set of a person's captures.
 
     Args:
         static: A standing trial, if there is one.
@@ -39,8 +39,8 @@ def choose_marker_set(
         body: The reference body; by default the one that the protocol was written for.
 
     Raises:
-        InvalidInput: The axes of a capture cannot be right.
-        NotObservable: No shipped protocol knows enough of the markers, and no person is found among them.
+        InvalidInput: The axes of a capture contradict the body.
+        NotObservable: No shipped protocol knows enough of the markers, and no body is found among them.
     """
     captures = (*([] if static is None else [static]), *trials)
     shipped = shipped_protocol(captures, body)
@@ -52,7 +52,7 @@ def choose_marker_set(
 def inferred_choice(
     static: Capture | None, trials: Sequence[Capture], body: BodyDescription | None = None
 ) -> ChosenSet:
-    """The same, always inferred, whatever the names.
+    """The same, always inferred.
 
     Args:
         static: A standing trial, if there is one.
@@ -60,20 +60,15 @@ def inferred_choice(
         body: The reference body.
 
     Raises:
-        InvalidInput: The axes of a capture cannot be right.
-        NotObservable: Too few markers, or no person is found among them.
+        InvalidInput: The axes of a capture contradict the body.
+        NotObservable: Too few markers, or no body is found among them.
     """
     inferred = infer_marker_set(static, trials, body)
     return ChosenSet(inferred.protocol, inferred.captures, inferred)
 
 
 def shipped_protocol(captures: Sequence[Capture], body: BodyDescription | None = None) -> Protocol | None:
-    """The shipped protocol that knows enough of the markers of a person's captures, None where none does.
-
-    Args:
-        captures: The captures, the static one first.
-        body: The reference body; by default the one that the protocol was written for.
-    """
+    """The shipped protocol that knows enough of the markers of a person's captures, static one first, or None."""
     try:
         protocol = detect_protocol(captures[0].markers.names, body)
     except UnknownName:

@@ -1,4 +1,4 @@
-"""A marker set changed by hand: markers moved to another segment or landmark, left out, or taken in."""
+"""A marker set changed by hand: markers moved to another segment or landmark, left out, or added."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from mbkf.model.protocol import (
     load_protocol,
 )
 from mbkf.trial.protocol.choice import choose_marker_set
-from mbkf.trial.protocol.standing import Standing, in_reference, stands_still
+from mbkf.trial.protocol.standing import Standing, stands_still
 
 SURE = 0.9
-"""A marker is in doubt where its probability is below this."""
+"""Probability below which a marker is doubtful."""
 
 LEFT_OUT = "left out by hand"
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What a person wants of a marker: one of the three is not empty; all empty confirms what the set says.
+    """A user's choice for a marker, by one of three fields; all empty confirms the set.
 
     Attributes:
-        segment: The segment that carries it, where the capture shows it.
+        segment: The segment that carries it, at its place in the capture.
         landmark: The landmark that it is on.
-        ignored: Why it is to be left out.
+        ignored: Reason to leave it out.
     """
 
     segment: str = ""
@@ -43,18 +43,13 @@ class Choice:
 
 
 def starting_set(capture: Capture, given: str | None) -> tuple[Protocol, Capture]:
-    """The marker set to begin with: the given one, the shipped one that knows the names, an inferred or an empty one.
+    """The marker set to begin with, and the capture, with corrected axes where the set was inferred from it.
 
-    Args:
-        capture: The capture.
-        given: Name or file of a marker set, None where none was named.
-
-    Returns:
-        The set, and the capture, with its axes put right where the set was inferred from it.
+    It is the given name or file, else the shipped set that knows the names, an inferred one, or an empty one.
 
     Raises:
-        UnknownName: No marker set is called so.
-        FileFormatError: The file is not a valid one.
+        UnknownName: There is no such marker set.
+        FileFormatError: The file is not a valid marker set.
     """
     if given is not None:
         return load_protocol(given), capture
@@ -67,20 +62,20 @@ def starting_set(capture: Capture, given: str | None) -> tuple[Protocol, Capture
 
 
 def edited(protocol: Protocol, standing: Standing, choices: Mapping[str, Choice], name: str) -> Protocol:
-    """The marker set with a person's choices.
+    """The marker set with a user's choices.
 
-    Markers that are moved get the place at which the capture shows them. One that the capture does not show can be
-    moved to a landmark or left out, not to a segment.
+    A marker moved to a segment gets its place in the capture; without one there, it can be moved to a landmark or left
+    out.
 
     Args:
         protocol: The set before.
         standing: The capture, with the body beside it.
         choices: The choice by the marker's name in the capture, or in the set where the capture lacks it.
-        name: What the changed set is called.
+        name: Name of the changed set.
 
     Raises:
-        InvalidInput: A marker is to be moved to a segment that the capture does not show it on.
-        UnknownName: The marker, the segment or the landmark is not known.
+        InvalidInput: A marker without a place in the capture is to be moved to a segment.
+        UnknownName: The marker, the segment or the landmark is unknown.
     """
     match = protocol.match(standing.names)
     points = {one: point for one, point in zip(standing.names, standing.points_m, strict=True)}
@@ -112,8 +107,8 @@ def edited(protocol: Protocol, standing: Standing, choices: Mapping[str, Choice]
 
 
 def _source(protocol: Protocol) -> str:
-    told = protocol.source or (protocol.title if protocol.markers else "")
-    return told if "by hand" in told else f"{told}, changed by hand".removeprefix(", ")
+    source = protocol.source or (protocol.title if protocol.markers else "")
+    return source if "by hand" in source else f"{source}, changed by hand".removeprefix(", ")
 
 
 def _placed(
@@ -126,28 +121,11 @@ def _placed(
     else:
         kind, segment = "technical", body.segment(choice.segment).name
         if point_m is None:
-            raise InvalidInput(
-                f"the capture does not show '{name}'; choose a landmark for it, or leave it out"
-            )
-        position = read_only(np.round(in_reference(standing, segment, point_m), 4))
+            raise InvalidInput(f"the capture does not show '{name}'; choose a landmark, or leave it out")
+        position = read_only(np.round(standing.to_reference(segment, point_m), 4))
     if before is None:
-        return ProtocolMarker(
-            name,
-            segment,
-            position,
-            kind,
-            DEFAULT_PLACEMENT_SD_M[kind],
-            DEFAULT_NOISE_M[kind],
-            landmark=choice.landmark,
-        )
+        spreads = DEFAULT_PLACEMENT_SD_M[kind], DEFAULT_NOISE_M[kind]
+        return ProtocolMarker(name, segment, position, kind, *spreads, landmark=choice.landmark)
     kind = before.kind if before.kind == "keypoint" else kind
-    return replace(
-        before,
-        segment=segment,
-        position_m=position,
-        kind=kind,
-        placement_sd_m=DEFAULT_PLACEMENT_SD_M[kind],
-        landmark=choice.landmark,
-        probability=1.0,
-        alternatives=(),
-    )
+    placed = replace(before, segment=segment, position_m=position, kind=kind, landmark=choice.landmark)
+    return replace(placed, placement_sd_m=DEFAULT_PLACEMENT_SD_M[kind], probability=1.0, alternatives=())

@@ -1,10 +1,10 @@
 """A marker set from an OpenSim model or marker set: bodies become segments, positions go to the reference body.
 
-With all coordinates at zero an OpenSim model stands as the reference body does, arms hanging, so a marker's place
-from a joint's centre is the same on both, up to size. Limbs start at the joint's centre, are laid along the line to
-the next joint and scaled by its length; the pelvis is laid on the midpoint of the front iliac spines, where OpenSim
-has its origin, and the trunk and head on the midpoint of the shoulders. The forearm's palm faces forward there and
-inward here: what turns with the radius is turned.
+With all coordinates at zero an OpenSim model has the posture of the reference body, arms hanging, so a marker's place
+from a joint's centre is the same on both, up to size. Limbs start at the joint's centre, lie along the line to the
+next joint and are scaled by its length; the pelvis is placed by the midpoint of the front iliac spines, OpenSim's
+origin, trunk and head by the midpoint of the shoulders. The palm faces forward there and inward here: parts that move
+with the radius are turned.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from mbkf.model.protocol import DEFAULT_PLACEMENT_SD_M, Protocol, ProtocolMarker
 from mbkf.trial.protocol.osim_bodies import head_origin, poses_at_zero, segment_of
 
 FIXED_SD_M, FREE_SD_M = 0.025, 0.050
-"""How far a marker may sit from its imported place, per coordinate: where OpenSim holds it fixed, and where it is free.
-Against the sets that come with mbkf, the same markers imported from four files differ by 17 mm per coordinate."""
+"""Spread of a marker about its imported place, per coordinate: fixed in OpenSim, and free. The same markers imported
+from four files differ from the sets that come with mbkf by 17 mm per coordinate."""
 
 NOISE_M = {
     "thigh": 0.008, "upper_arm": 0.007, "torso": 0.006, "neck": 0.006, "pelvis": 0.005, "shank": 0.005,
@@ -35,26 +35,26 @@ NOISE_M = {
 """Camera noise and skin movement by segment, in the order of Leardini 2005 and Cappozzo 1996."""
 
 INSIDE_M = 0.015
-"""A marker nearer than this to the centre of a large joint lies inside the body: software computed it."""
+"""Distance from the centre of a large joint below which a marker is inside the body: software computed it."""
 
 HEAD_FROM_M = 0.36
-"""Height in the reference torso above which a point that a model without a head has on its torso is on the head."""
+"""Height in the reference torso above which a marker on the torso of a model without a head is on the head."""
 
 TOES_FROM_M, FOOT_UP_TO_M = 0.03, 0.015
-"""Before the line that the toes bend on, a marker of the foot is on the toes; behind the second, one of the toes is on
-the foot: many models weld the two."""
+"""Distance before the line of the toes' bend from which a marker of the foot is on the toes, and up to which one of the
+toes is on the foot: many models weld the two."""
 
 BY_PLACE = 0.8
-"""Probability of a segment that was chosen by the place of the marker against the file."""
+"""Probability of a segment chosen by the marker's place instead of the file's body."""
 
 SKIN_M = 0.010
-"""How far a marker's middle is in front of the bone of the iliac spine, which is OpenSim's origin."""
+"""Distance of a marker's middle in front of the bone of the iliac spine, OpenSim's origin."""
 
 LONGEST_M = 3.0
 _NEXT = {"thigh": "shank", "shank": "foot", "foot": "toes", "upper_arm": "forearm", "forearm": "hand"}
 _LARGE_JOINTS = ("thigh", "shank", "foot", "upper_arm", "forearm")
 _SIDES = ("right_", "left_")
-_NO_BODY = "its body '{}' is no part of the reference body"
+_NO_BODY = "its body '{}' has no segment in the reference body"
 
 
 @dataclass(frozen=True)
@@ -62,11 +62,11 @@ class ImportedSet:
     """A marker set from another program's file.
 
     Attributes:
-        protocol: The marker set; what could not be placed is among its ignored points.
-        moved: By name, the markers that sit on another segment than the file says, "torso → head": the model has no
-            head, or its toes are part of the foot.
+        protocol: The marker set; markers that could not be placed are among its ignored points.
+        moved: Markers placed on another segment than the file's, by name, "torso → head": the model has no head, or
+            its toes are part of the foot.
         computed: Markers inside a joint, taken as computed points.
-        with_skeleton: Whether the file has the joints; else those of OpenSim's common model were used.
+        with_skeleton: True where the file has joints; else those of OpenSim's common model are used.
     """
 
     protocol: Protocol
@@ -82,8 +82,8 @@ def import_osim(path: str | Path) -> ImportedSet:
         path: The file.
 
     Raises:
-        FileFormatError: It is no such file, holds no marker, or none on a body that is known.
-        InvalidInput: Its lengths cannot be metres.
+        FileFormatError: It is not such a file, or holds no marker on a known body.
+        InvalidInput: Its lengths are not in metres.
     """
     model = read_osim(path)
     body = load_body("human18")
@@ -91,7 +91,7 @@ def import_osim(path: str | Path) -> ImportedSet:
     far = np.median([np.linalg.norm(marker.position_m) for marker in model.markers])
     if far > LONGEST_M:
         raise InvalidInput(
-            f"{path}: markers lie {far:.3g} m from their bodies' origins; OpenSim's lengths are metres"
+            f"{path}: markers lie {far:.3g} m from their bodies' origins; convert the file to metres, OpenSim's unit"
         )
     markers: list[ProtocolMarker] = []
     ignored = dict(model.damaged)
@@ -102,7 +102,8 @@ def import_osim(path: str | Path) -> ImportedSet:
         else:
             markers.append(placed)
     if not markers:
-        raise FileFormatError(path, f"holds no marker on a known body; bodies are {_bodies(model)}")
+        bodies = ", ".join(sorted({marker.body for marker in model.markers})[:8])
+        raise FileFormatError(path, f"holds no marker on a known body; its bodies are {bodies}")
     name = "_".join(Path(path).stem.lower().split())
     protocol = Protocol(
         name,
@@ -118,10 +119,6 @@ def import_osim(path: str | Path) -> ImportedSet:
         tuple(m.name for m in markers if m.kind == "computed"),
         bool(model.joints),
     )
-
-
-def _bodies(model: OsimModel) -> str:
-    return ", ".join(sorted({marker.body for marker in model.markers})[:8])
 
 
 class _Skeleton:
@@ -149,7 +146,7 @@ class _Skeleton:
         self._turns = {side + name: self._turn(side, name) for side in _SIDES for name in _NEXT}
 
     def place(self, marker: OsimMarker) -> ProtocolMarker | None:
-        """The marker on the reference body; None where its body is not known."""
+        """The marker on the reference body; None where its body is unknown."""
         segment, probability, others = segment_of(marker.body)
         pose = self._pose_of(marker.body, segment)
         if not segment or pose is None:
@@ -188,7 +185,7 @@ class _Skeleton:
         return self._poses[near[0]] if near else None
 
     def _by_place(self, ground: Array, segment: str, body: str) -> str:
-        """The segment that a point of the ground is on, where the model's bodies do not tell."""
+        """The segment of a point of the ground, where it differs from the model's body."""
         side = segment.removesuffix(_plain(segment))
         if segment == "torso" and not self._has_head and self._on_trunk(ground)[2] > HEAD_FROM_M:
             return "head"
@@ -217,7 +214,7 @@ class _Skeleton:
         return turned
 
     def _turn(self, side: str, name: str) -> Array:
-        """(3, 3) the least turn that lays a limb along the reference body's line from its joint to the next."""
+        """(3, 3) the least turn of a limb onto the reference body's line from its joint to the next."""
         line = self._centres[side + _NEXT[name]] - self._centres[side + name]
         if name == "forearm":
             line = _pronated(line, side)
@@ -230,7 +227,7 @@ class _Skeleton:
         return turn
 
     def _on_trunk(self, ground: Array) -> Array:
-        """(3,) a point of the ground in the reference body's torso, laid on the shoulders."""
+        """(3,) a point of the ground in the reference body's torso, by the shoulders."""
         origins = [self._body.segment(f"{side}_upper_arm").origin_m for side in ("right", "left")]
         return np.mean(origins, axis=0) + self._scales["torso"] * (ground - self._shoulders)
 

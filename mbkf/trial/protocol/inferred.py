@@ -1,4 +1,4 @@
-"""A protocol made for captures whose markers no shipped one explains."""
+"""A protocol inferred for captures with an unknown marker set."""
 
 from __future__ import annotations
 
@@ -30,28 +30,28 @@ from mbkf.trial.protocol.upright import upright_captures
 NAME = "inferred"
 """Name of an inferred protocol."""
 
-LEAST_ODDS, LEAST_NAMED_ODDS = 15.0, 0.0
-"""How much likelier (logarithm) the points must be a person than strewn about: 29 and more of measured persons, 9 to 27
-of synthetic trunks with one arm, about −15 of scattered points and 13 at most; up to 73 of a person on his head. The
-second where names tell of most points that they are on a body."""
+LEAST_LOG_ODDS, LEAST_NAMED_LOG_ODDS = 15.0, 0.0
+"""Least log odds of a person against scattered points: measured persons have 29 and more, synthetic trunks with one arm
+9 to 27, scattered points about −15 and 13 at most, a person upside down up to 73. The second holds where the names of
+most points mean places on a body."""
 
 FEWEST_SEGMENTS = 3
-"""Markers on fewer segments do not show a person."""
+"""Least number of segments with markers."""
 
 LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
-"""How far a marker is from its landmark, and one without a landmark from where the posed body shows it."""
+"""Spread of a marker about its landmark, and of one without a landmark about its place on the posed body."""
 
 ROUNDS = 2
-"""How often a set is inferred: again where names turn out to be exchanged between the standing trial and the others."""
+"""Greatest number of inferences: it is repeated where names are exchanged between the standing trial and the others."""
 
 DOUBTFUL_NOISE = 1.2
-"""Noise of a marker whose segment is doubtful, over that of a sure one: it may follow, but not lead."""
+"""Noise of a marker of doubtful segment, over that of a certain one."""
 
 OFF_LANDMARK_M = 0.045
-"""A marker further from its landmark than this is not on it."""
+"""Greatest distance of a marker from its landmark."""
 
-NOT_BODY = "no part of the body: it fits and follows no segment"
-OBJECT = "no part of the body, by its name"
+OFF_BODY = "off the body: it does not fit or follow a segment"
+OBJECT = "off the body, by its name"
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,10 @@ class InferredSet:
 
     Attributes:
         protocol: The same as a protocol, with probabilities, alternatives and ignored points.
-        captures: The captures that it was inferred from, static one first, with their axes put right.
-        equipment: The part of the body that carries markers, in words.
-        rms_m: RMS distance of the sure markers from the body that they were found on; NaN where no frame was posed.
-        exchanged: Names that trials exchange against the standing trial and frames, put right in :attr:`captures`.
+        captures: The captures that it was inferred from, static one first, with corrected axes.
+        equipment: Name of the part of the body that carries markers.
+        rms_m: RMS distance of the certain markers from the body; NaN where no frame was posed.
+        exchanged: Names exchanged against the standing trial, and numbers of frames; corrected in :attr:`captures`.
     """
 
     protocol: Protocol
@@ -74,19 +74,19 @@ class InferredSet:
 
     @property
     def doubtful(self) -> tuple[str, ...]:
-        """Names of the markers whose segment is not sure, with their alternatives in :attr:`protocol`."""
+        """Names of the markers of doubtful segment, with their alternatives in :attr:`protocol`."""
         return tuple(marker.name for marker in self.protocol.markers if marker.probability < SURE)
 
     @property
     def line(self) -> str:
-        """What was inferred, in one line."""
+        """Summary of the inferred set."""
         markers, doubts = self.protocol.markers, self.doubtful
         segments = len({marker.segment for marker in markers})
-        told = f"marker set inferred: {len(markers)} markers on {segments} segments ({self.equipment})"
-        told += f"; {len(doubts)} doubtful" + (f": {listed(doubts)}" if doubts else "")
+        line = f"marker set inferred: {len(markers)} markers on {segments} segments ({self.equipment})"
+        line += f"; {len(doubts)} doubtful" + (f": {listed(doubts)}" if doubts else "")
         if self.protocol.ignored:
-            told += f"; left out: {listed(tuple(self.protocol.ignored))}"
-        return told
+            line += f"; left out: {listed(tuple(self.protocol.ignored))}"
+        return line
 
     @property
     def doubts(self) -> dict[str, list[tuple[str, float]]]:
@@ -112,17 +112,17 @@ def infer_marker_set(
         static: A standing trial, if there is one.
         trials: Trials of any movement.
         body: The reference body; human18 by default.
-        use_names: Whether the markers' names are read.
-        leave_out: Shipped protocols that do not count, for a trial on what they describe.
+        use_names: True to read the markers' names.
+        leave_out: Shipped protocols that do not count, for tests on the sets that they describe.
 
     Raises:
-        InvalidInput: No capture is given, or its axes cannot be right.
-        NotObservable: Too few markers, or no person is found among them.
+        InvalidInput: No capture is given, or its axes contradict the body.
+        NotObservable: Too few markers, or no body is found among them.
     """
     reference = body or load_body()
     captures = [*([] if static is None else [static]), *trials]
     if not captures:
-        raise InvalidInput("a marker set is inferred from a static trial, from moving trials, or both")
+        raise InvalidInput("inferring a marker set needs captures: a static trial, moving trials, or both")
     names = tuple(dict.fromkeys(name for one in captures for name in _named(one.markers)))
     readings = read_names(names) if use_names else {}
     ignored = _ignored_by_name(readings)
@@ -139,15 +139,15 @@ def infer_marker_set(
         for _ in range(ROUNDS):
             worn = [_without(one.markers, ignored) for one in upright]
             found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
-            _require_person(found, LEAST_NAMED_ODDS if _mostly_named(worn, readings) else LEAST_ODDS)
-            left_out = ignored | {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
+            _require_person(found, LEAST_NAMED_LOG_ODDS if _mostly_named(worn, readings) else LEAST_LOG_ODDS)
+            left_out = ignored | {marker.name: OFF_BODY for marker in found.markers if not marker.segment}
             protocol = _protocol(found, reference, left_out, keypoints)
             if not (standing and trials):
                 break
-            fresh, told = trials_put_right(upright[0].markers, upright[1:], protocol)
-            if not told:
+            corrected, pairs = trials_put_right(upright[0].markers, upright[1:], protocol)
+            if not pairs:
                 break
-            upright, exchanged = [upright[0], *fresh], (*exchanged, *told)
+            upright, exchanged = [upright[0], *corrected], (*exchanged, *pairs)
     return InferredSet(protocol, tuple(upright), found.found.equipment.name, found.rms_m, exchanged)
 
 
@@ -160,7 +160,7 @@ def _named(markers: MarkerTrajectories) -> tuple[str, ...]:
 
 
 def _ignored_by_name(readings: Mapping[str, NameReading]) -> dict[str, str]:
-    """The reason by name of points that are no markers of a body, as their names tell."""
+    """The reason by name of points that are not markers of a body, by their names."""
     reasons = {"object": OBJECT, "computed": COMPUTED}
     return {name: reasons[one.kind] for name, one in readings.items() if one.kind in reasons}
 
@@ -170,31 +170,27 @@ def _without(markers: MarkerTrajectories, ignored: Mapping[str, str]) -> MarkerT
 
 
 def _mostly_named(captures: Sequence[MarkerTrajectories], readings: Mapping[str, NameReading]) -> bool:
-    """Whether names tell of most markers that they are on a body."""
+    """True where the names of most markers mean places on a body."""
     names = {name for one in captures for name in one.names}
     return 2 * sum(name in readings and bool(readings[name].places) for name in names) > len(names)
 
 
-def _require_person(found: Inference, least_odds: float) -> None:
-    """Refuses what is no person.
-
-    Args:
-        found: What was inferred.
-        least_odds: Odds that the body has to have.
+def _require_person(found: Inference, least_log_odds: float) -> None:
+    """Refuses points that do not form a body, or too small a part of one.
 
     Raises:
-        NotObservable: The points are not where markers of a person are, or on too small a part of one.
+        NotObservable: The log odds of the body, or the number of segments, are too small.
     """
     segments = {marker.segment for marker in found.markers if marker.segment}
-    if found.found.odds < least_odds:
+    if found.found.log_odds < least_log_odds:
         raise NotObservable(
-            "no person is found among the points: they do not stand as the markers of an upright body do "
-            "(which axis points up? give --up; a static trial with --static; or a marker set with --protocol)"
+            "no upright body is found among the points; give the axis that points up (--up), a static trial "
+            "(--static), or the marker set (--protocol)"
         )
     if len(segments) < FEWEST_SEGMENTS:
         raise NotObservable(
             f"the markers are on {len(segments)} segments ({', '.join(sorted(segments)) or 'none'}); "
-            f"fewer than {FEWEST_SEGMENTS} do not show a person; give --protocol"
+            f"fewer than {FEWEST_SEGMENTS} do not show a body; give --protocol"
         )
 
 
@@ -212,13 +208,13 @@ def _protocol(
         "inferred from the captures",
         body,
         markers,
-        "inferred from the markers' names, a standing body and what moves together",
+        "inferred from the markers' names, an upright body, and markers that move together",
         dict(ignored),
     )
 
 
 def _nearest_on_landmarks(found: Inference, body: BodyDescription) -> set[str]:
-    """Names of the markers on landmarks: of those that claim the same one, the nearest, if it is near enough."""
+    """Names of the markers on landmarks: of those with the same one, the nearest, if it is near enough."""
     nearest: dict[str, tuple[float, str]] = {}
     for marker in found.markers:
         if marker.landmark:

@@ -1,4 +1,4 @@
-"""What OpenSim's bodies are to the reference body: their segments by name, and where their joints stand by default."""
+"""Segments of the reference body for OpenSim's bodies by name, and the joints of OpenSim's common model."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def segment_of(body: str) -> tuple[str, float, tuple[tuple[str, float], ...]]:
     """The segment of the reference body that an OpenSim body belongs to.
 
     Returns:
-        Its name ("" where there is none), the probability, and the other segments that it may be, with theirs.
+        Its name or "", its probability, and other possible segments with theirs.
     """
     plain = re.sub(r"([a-z])([LR])$", r"\1_\2", body.strip()).lower()
     side = "left_" if _LEFT.search(plain) else "right_" if _RIGHT.search(plain) else ""
@@ -97,22 +97,18 @@ MIDDLE_OF_HEAD_M = 0.61
 
 
 def head_origin(heights_m: Array) -> float:
-    """The height in the common torso at which a head begins that the file does not join to anything.
+    """The height in the common torso of a head without a joint, from heights (N,) of its markers in its own frame, m.
 
-    Args:
-        heights_m: (N,) heights of its markers in its own frame, m: of the known origins, the one that brings their
-            middle to the head is taken.
+    Of the known origins it is the one that brings the median marker nearest to the middle of the head.
     """
     middle = float(np.median(heights_m))
     return min(HEAD_ORIGINS_M, key=lambda origin: abs(origin + middle - MIDDLE_OF_HEAD_M))
 
 
 def poses_at_zero(joints: tuple[OsimJoint, ...]) -> dict[str, Array]:
-    """(4, 4) frame of every body in the ground with all coordinates at zero; bodies that hang on nothing are left out.
+    """(4, 4) frame of every body in the ground with all coordinates at zero; unconnected bodies are left out.
 
-    Args:
-        joints: The joints of a model; those of :data:`COMMON_JOINTS` stand in for bodies that it does not join, or
-            joins to what hangs on nothing.
+    :data:`COMMON_JOINTS` replace missing joints, and joints to unconnected bodies.
     """
     common = {joint.child: joint for joint in COMMON_JOINTS}
     by_child = common | {joint.child: joint for joint in joints}

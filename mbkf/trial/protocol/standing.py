@@ -1,4 +1,4 @@
-"""The markers of a capture at one moment, and a body beside them, as well as a marker set explains them."""
+"""The markers of a capture in one frame, and a body posed beside them by a marker set."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mbkf.errors import MbkfError
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.model.protocol import Protocol
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_most_markers, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -20,26 +20,26 @@ from mbkf.trial.axes.captures import checked_for_protocol
 from mbkf.trial.scale import scale
 
 NOMINAL_MASS_KG = 70.0
-"""Mass of a person whose mass nobody told: it hardly matters to where markers are."""
+"""Mass of a person of unknown mass: it hardly affects the places of markers."""
 
 STILL_M = 0.05
-"""A capture in which half of the markers stay within this of their mean is a standing trial."""
+"""Greatest distance of half of a standing trial's markers from their means."""
 
 _FEW = 4
-"""Known markers with which a body can be laid roughly beside a capture."""
+"""Least number of known markers by which a body is posed."""
 
 
 @dataclass(frozen=True)
 class Standing:
-    """A capture at one moment, and a body beside it.
+    """A capture in one frame, and a body beside it.
 
     Attributes:
         names: The P markers that have a name and were seen.
-        points_m: (P, 3) their places in that moment; where a marker was not seen then, in the nearest frame it was.
-        model: The body: of the person, or the reference body.
+        points_m: (P, 3) their places in that frame; of a marker not seen then, in the nearest frame with it.
+        model: The person's body, or the reference body.
         q: (nq,) its configuration.
-        subject: The scaled person; None where the set does not explain the capture.
-        trouble: Why there is none, "" where there is one.
+        subject: The scaled person; None where scaling by the set failed.
+        trouble: Reason why scaling failed, or "".
     """
 
     names: tuple[str, ...]
@@ -49,13 +49,29 @@ class Standing:
     subject: Subject | None
     trouble: str = ""
 
+    def to_reference(self, segment: str, point_m: Array) -> Array:
+        """(3,) place on the reference body, in a segment's frame, of a point (3,) of the capture, m."""
+        R, origin, scale = self._frame(segment)
+        return np.asarray(R.T @ (point_m - origin) / scale)
+
+    def to_world(self, segment: str, position_m: Array) -> Array:
+        """(3,) place on the body beside the capture of a place (3,) in the reference body's segment, m."""
+        R, origin, scale = self._frame(segment)
+        return np.asarray(origin + R @ (scale * position_m))
+
+    def _frame(self, segment: str) -> tuple[Array, Array, Array]:
+        rotations, origins = self.model.placements(self.q)
+        joint = self.model.joint(segment).joint_id
+        scale = self.model.axis_scale(self.model.description.segment(segment))
+        return rotations[joint], origins[joint], scale
+
 
 def stand_beside(capture: Capture, protocol: Protocol, progress: StageCallback | None = None) -> Standing:
-    """The person of a capture, or where the marker set does not give one, the reference body laid on the markers.
+    """The person of a capture, or where scaling fails, the reference body posed on the markers.
 
     Args:
         capture: The capture, standing or moving.
-        protocol: The marker set; it may know few of the markers or none.
+        protocol: The marker set, even if it knows few of the markers.
         progress: As for :func:`mbkf.trial.scale.scale`.
     """
     subject, trouble = None, ""
@@ -70,7 +86,11 @@ def stand_beside(capture: Capture, protocol: Protocol, progress: StageCallback |
         placed = {marker.name: (marker.segment, marker.position_m) for marker in subject.markers}
     else:
         model = _sized(protocol, points)
-        placed = {m.name: (m.segment, _scaled(model, m)) for m in protocol.markers if m.kind != "computed"}
+        placed = {
+            m.name: (m.segment, model.axis_scale(model.description.segment(m.segment)) * m.position_m)
+            for m in protocol.markers
+            if m.kind != "computed"
+        }
     known = {name: marker.name for name, marker in protocol.match(names).items() if marker.name in placed}
     if len(known) < _FEW:
         return Standing(names, points, model, _upright(model, points), subject, trouble)
@@ -95,26 +115,15 @@ def scale_nominally(capture: Capture, protocol: Protocol, progress: StageCallbac
         progress: As for :func:`mbkf.trial.scale.scale`.
 
     Raises:
-        MbkfError: The marker set does not explain the capture.
+        MbkfError: The markers of the set do not fit a person.
     """
     mass = capture.subject_mass_kg or NOMINAL_MASS_KG
-    still = stands_still(capture.markers)
-    return scale(
-        capture if still else None,
-        () if still else (capture,),
-        mass_kg=mass,
-        protocol=protocol,
-        progress=progress,
-    )
+    static, trials = (capture, ()) if stands_still(capture.markers) else (None, (capture,))
+    return scale(static, trials, mass_kg=mass, protocol=protocol, progress=progress)
 
 
 def stands_still(markers: MarkerTrajectories, share: float = 0.5) -> bool:
-    """Whether the person of a capture stands still.
-
-    Args:
-        markers: The capture's markers.
-        share: So many of them must stay, 0 to 1.
-    """
+    """True where this share of a capture's markers stay near their means."""
     seen = markers.positions_m[:, markers.present.any(axis=0)]
     if not seen.size:
         return False
@@ -122,38 +131,8 @@ def stands_still(markers: MarkerTrajectories, share: float = 0.5) -> bool:
     return bool(np.quantile(np.nanmax(away, axis=0), share) < STILL_M)
 
 
-def in_reference(standing: Standing, segment: str, point_m: Array) -> Array:
-    """(3,) where a point of the capture is in a segment's frame on the reference body, m.
-
-    Args:
-        standing: The capture, with the body beside it.
-        segment: The segment.
-        point_m: (3,) the point, m.
-    """
-    rotations, origins = standing.model.placements(standing.q)
-    joint = standing.model.joint(segment).joint_id
-    own = rotations[joint].T @ (point_m - origins[joint])
-    found: Array = own / standing.model.axis_scale(standing.model.description.segment(segment))
-    return found
-
-
-def in_world(standing: Standing, segment: str, position_m: Array) -> Array:
-    """(3,) where a place of the reference body's segment is on the body beside the capture, m.
-
-    Args:
-        standing: The capture, with the body beside it.
-        segment: The segment.
-        position_m: (3,) the place in the segment's frame on the reference body, m.
-    """
-    rotations, origins = standing.model.placements(standing.q)
-    joint = standing.model.joint(segment).joint_id
-    own = standing.model.axis_scale(standing.model.description.segment(segment)) * position_m
-    found: Array = origins[joint] + rotations[joint] @ own
-    return found
-
-
 def faced_forward(standing: Standing) -> Standing:
-    """The same with the body's root above the origin and facing forward, wherever it stood in the laboratory."""
+    """The same, turned and moved so that the body faces forward with its root above the origin."""
     model, q = standing.model, standing.q.copy()
     rotations, origins = model.placements(q)
     joint = model.root.joint_id
@@ -181,7 +160,7 @@ def neutral_on_floor(model: HumanModel) -> Array:
 
 
 def _moment(markers: MarkerTrajectories) -> tuple[tuple[str, ...], Array]:
-    """Names and (P, 3) places in the frame that shows most markers, the rest as near to it as they were seen."""
+    """Names and (P, 3) places in the frame with most markers; of others, in the nearest frame with them."""
     seen = markers.present
     columns = [i for i, name in enumerate(markers.names) if seen[:, i].any() and not name.startswith("*")]
     frame = int(np.argmax(seen[:, columns].sum(axis=1))) if columns else 0
@@ -193,16 +172,11 @@ def _moment(markers: MarkerTrajectories) -> tuple[tuple[str, ...], Array]:
 
 
 def _sized(protocol: Protocol, points_m: Array) -> HumanModel:
-    """The reference body, as tall as the capture's points say."""
+    """The reference body, scaled to the height of the capture's points."""
     body = protocol.body
     tall = float(np.ptp(points_m[:, 2])) / body.reference_height_m if len(points_m) else 1.0
     factor = float(np.clip(tall, 0.7, 1.2)) if len(points_m) >= _FEW and tall > 0.7 else 1.0
     return HumanModel.scaled(dict.fromkeys(body.scale_factors, factor), None, body)
-
-
-def _scaled(model: HumanModel, marker: ProtocolMarker) -> Array:
-    found: Array = model.axis_scale(model.description.segment(marker.segment)) * marker.position_m
-    return found
 
 
 def _upright(model: HumanModel, points_m: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Captures of a person whose marker set is not known yet, with their axes put right: by names, or by the posed body."""
+"""Captures of a person of unknown marker set, with corrected axes: by names, or by the posed body."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mbkf.errors import NotObservable
 from mbkf.io.axes import axes_matrix, axes_text, rotation_to_world
 from mbkf.io.records import AxesSource, Capture
 from mbkf.marker_sets.frames import anchor_frames
-from mbkf.marker_sets.inference import CLEAR_EVIDENCE
+from mbkf.marker_sets.inference import CLEAR_LOG_RATIO
 from mbkf.marker_sets.names import NameReading
 from mbkf.marker_sets.places import worn_places
 from mbkf.marker_sets.search import find_body
@@ -21,11 +21,11 @@ from mbkf.trial.axes.decision import AxesFinding, Verdict, applied, find_axes, m
 from mbkf.trial.axes.evidence import marker_places
 
 SURE_NAME = 0.8
-"""From this probability on a name tells where its marker is."""
+"""Probability from which the place that a name means is certain."""
 
 CLEARLY = 15.0
-"""How much likelier (logarithm) the body must be along another axis than along the file's for that axis to be up: one
-found along a wrong axis falls 30 and more behind."""
+"""Least gain in the log posterior of the body along another axis than the file's for that axis to be up: a body along a
+wrong axis is lower by 30 and more."""
 
 UPS = ("z", "-z", "x", "-x", "y", "-y")
 
@@ -33,43 +33,38 @@ UPS = ("z", "-z", "x", "-x", "y", "-y")
 def upright_captures(
     captures: Sequence[Capture], readings: Mapping[str, NameReading], body: BodyDescription
 ) -> list[Capture]:
-    """Captures of one person with their axes checked and put right.
+    """Captures of one person with checked and corrected axes.
 
-    Names that tell where their markers are decide about up and handedness, as those of a protocol do. Where they do
-    not, the axis is up along which a body explains the points clearly better; a mirror image is a person as well then.
+    Names of certain places decide about up and handedness, as those of a protocol do. Without such names, the axis
+    along which a body explains the points clearly better is up; handedness then remains unknown.
 
     Args:
         captures: The captures.
-        readings: What the names of their markers tell, by name.
+        readings: Readings of their markers' names, by name.
         body: The reference body.
 
     Raises:
-        InvalidInput: The axes or the unit of a capture cannot be right, and it is not clear what they are.
+        InvalidInput: The axes or the unit of a capture are wrong, and the right ones are ambiguous.
     """
     known = known_places(readings, body)
     found = [
         find_axes(one, marker_places(one.markers.names, _of(known, one), body), with_plates=False)
         for one in captures
     ]
-    told = next((one for one in found if one.verdict in (Verdict.RIGHT, Verdict.PUT_RIGHT)), None)
+    clear = next((one for one in found if one.verdict in (Verdict.RIGHT, Verdict.PUT_RIGHT)), None)
     result = []
     for capture, finding in zip(captures, found, strict=True):
         own = finding
-        if own.verdict is Verdict.UNKNOWN and told is None:
-            own = told = _by_body(capture, body)
-        elif told is not None and _alike(captures, found, told, capture) and may_follow(own, told.turn):
-            own = told
+        if own.verdict is Verdict.UNKNOWN and clear is None:
+            own = clear = _by_body(capture, body)
+        elif clear is not None and _alike(captures, found, clear, capture) and may_follow(own, clear.turn):
+            own = clear
         result.append(applied(capture, own))
     return result
 
 
 def known_places(readings: Mapping[str, NameReading], body: BodyDescription) -> dict[str, ProtocolMarker]:
-    """Markers whose names tell a landmark for sure, by name.
-
-    Args:
-        readings: What the names tell, by name.
-        body: The reference body.
-    """
+    """Markers whose names certainly mean a landmark, by name."""
     known = {}
     for name, reading in readings.items():
         best = reading.places[0] if reading.places else None
@@ -91,18 +86,18 @@ def _of(known: Mapping[str, ProtocolMarker], capture: Capture) -> dict[str, Prot
 
 
 def _alike(
-    captures: Sequence[Capture], found: Sequence[AxesFinding], told: AxesFinding, capture: Capture
+    captures: Sequence[Capture], found: Sequence[AxesFinding], clear: AxesFinding, capture: Capture
 ) -> bool:
-    """Whether a capture was read with the axes of the one that told."""
+    """True where a capture was read with the same axes as that of a clear finding."""
     return any(
         (one.axes, one.axes_source) == (capture.axes, capture.axes_source)
         for one, finding in zip(captures, found, strict=True)
-        if finding is told
+        if finding is clear
     )
 
 
 def _by_body(capture: Capture, body: BodyDescription) -> AxesFinding:
-    """Which axis points up by the body that explains a frame's points best."""
+    """The finding about the up axis from the body that explains a frame's points best."""
     same = AxesFinding(Verdict.UNKNOWN, np.eye(3))
     if capture.axes_source in (AxesSource.UP_GIVEN, AxesSource.GIVEN):
         return same
@@ -111,29 +106,29 @@ def _by_body(capture: Capture, body: BodyDescription) -> AxesFinding:
     points = frame[~np.isnan(frame[:, 0])]
     old = axes_matrix(capture.axes)
     turns = {up: np.asarray(rotation_to_world(up)) for up in UPS}
-    worth = {"z": -np.inf}
+    posterior = {"z": -np.inf}
     try:
         standing = find_body(worn_places(body), points)
     except NotObservable:
         pass
     else:
-        if standing.evidence >= CLEAR_EVIDENCE:
+        if standing.log_ratio_per_point >= CLEAR_LOG_RATIO:
             return same
-        worth["z"] = standing.worth
-    worth |= {up: _worth(points @ turn.T, body) for up, turn in turns.items() if up != "z"}
-    best = max(worth, key=lambda up: worth[up])
-    if best == "z" or worth[best] < worth["z"] + CLEARLY:
+        posterior["z"] = standing.log_posterior
+    posterior |= {up: _log_posterior(points @ turn.T, body) for up, turn in turns.items() if up != "z"}
+    best = max(posterior, key=posterior.__getitem__)
+    if best == "z" or posterior[best] < posterior["z"] + CLEARLY:
         return same
     axes = axes_text(turns[best] @ old)
     note = (
-        f"axes put right: {axes} point forward, left and up, not {capture.axes} (a body stands there upright, "
-        f"and nowhere else); --axes={capture.axes} keeps them"
+        f"axes put right: {axes} point forward, left and up, not {capture.axes} (only then does a body stand upright); "
+        f"--axes={capture.axes} keeps them"
     )
     return AxesFinding(Verdict.PUT_RIGHT, turns[best], note)
 
 
-def _worth(points_m: Array, body: BodyDescription) -> float:
+def _log_posterior(points_m: Array, body: BodyDescription) -> float:
     try:
-        return find_body(worn_places(body), points_m).worth
+        return find_body(worn_places(body), points_m).log_posterior
     except NotObservable:
         return -np.inf

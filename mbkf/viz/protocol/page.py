@@ -9,7 +9,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
 from mbkf.model.segment_poses import segment_poses
 from mbkf.trial.protocol.editing import SURE
-from mbkf.trial.protocol.standing import Standing, faced_forward, in_world, neutral_on_floor
+from mbkf.trial.protocol.standing import Standing, faced_forward, neutral_on_floor
 from mbkf.viz.page import asset, embedded, fill, viewer_script
 from mbkf.viz.page import scripts as joined
 from mbkf.viz.protocol.colours import segment_colours
@@ -78,7 +78,7 @@ def set_data(protocol: Protocol, standing: Standing) -> dict[str, object]:
             {
                 "name": one.name,
                 "segment": one.segment,
-                "at": _plain(in_world(standing, one.segment, one.position_m)),
+                "at": _plain(standing.to_world(one.segment, one.position_m)),
             }
             for one in body.landmarks.values()
         ],
@@ -94,7 +94,7 @@ def _markers(protocol: Protocol, standing: Standing) -> list[dict[str, object]]:
     found: list[dict[str, object]] = []
     for marker in protocol.markers:
         name = names.get(marker.name, marker.name)
-        place = in_world(standing, marker.segment, marker.position_m)
+        place = standing.to_world(marker.segment, marker.position_m)
         found.append(
             {
                 "name": name,

@@ -8,6 +8,7 @@ import pytest
 from mbkf.errors import NotObservable
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.tracks import link_tracks
+from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.trial.labelling.track_naming import ROUGH_M, SAME_RATIO, NamedTracks, TrackNaming, _agree, _rough_sd
 from tests.labelling.bodies import reference_sensor
@@ -54,14 +55,12 @@ def test_the_start_is_the_frame_with_most_named_markers_in_its_pose():
     subject = replace(made.subject, markers=tuple(made.subject.markers))
     start = TrackNaming(trial, tracks, PROTOCOL, 70.0, None).start(NamedTracks(subject, owner, 1.0))
     assert start.frame == 20
-    from mbkf.model.human import HumanModel
-
     moved = HumanModel.of(subject).difference(made.truth.q[20], start.q)
     assert np.abs(moved[:3]).max() < 0.02
     assert np.abs(moved[3:6]).max() < 0.1
 
 
-def test_points_at_random_fit_no_person():
+def test_points_at_random_are_refused():
     made = walker()
     rng = np.random.default_rng(0)
     positions = rng.uniform(-1.0, 1.0, (20, 3)) + np.cumsum(rng.normal(0.0, 0.004, (30, 20, 3)), axis=0)
@@ -69,5 +68,7 @@ def test_points_at_random_fit_no_person():
     markers = replace(made.raw.markers, names=names, positions_m=positions)
     tracks = link_tracks(positions, markers.rate_hz)
     naming = TrackNaming(replace(made.raw, markers=markers), tracks, PROTOCOL, 70.0, 1.8)
-    with pytest.raises(NotObservable, match=r"fit no person with the 36 markers of 'reference36'.*--subject"):
+    with pytest.raises(
+        NotObservable, match=r"do not fit a person with the 36 markers of 'reference36'.*--subject"
+    ):
         naming.best(lambda *_: None)

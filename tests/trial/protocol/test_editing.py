@@ -8,7 +8,7 @@ import pytest
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.model.protocol import load_protocol
 from mbkf.trial.protocol.editing import Choice, edited, starting_set
-from mbkf.trial.protocol.standing import in_reference, stand_beside
+from mbkf.trial.protocol.standing import stand_beside
 from tests.captures import made_capture
 
 PROTOCOL = load_protocol("reference36")
@@ -37,7 +37,7 @@ def test_a_marker_is_moved_to_a_segment_at_the_place_where_it_is(standing):
     found = named(edited(PROTOCOL, standing, {FIRST: Choice(segment="left_hand")}, "mine"))[FIRST]
     point = standing.points_m[standing.names.index(FIRST)]
     assert (found.segment, found.kind, found.landmark) == ("left_hand", "technical", "")
-    assert found.position_m == pytest.approx(in_reference(standing, "left_hand", point), abs=1e-4)
+    assert found.position_m == pytest.approx(standing.to_reference("left_hand", point), abs=1e-4)
     assert found.noise_m == named(PROTOCOL)[FIRST].noise_m
 
 

@@ -131,7 +131,7 @@ def test_markers_on_unknown_bodies_are_ignored_and_none_on_a_known_one_refused(i
     )
     assert list(found.protocol.ignored) == ["B"]
     assert not found.with_skeleton
-    with pytest.raises(FileFormatError, match="no marker on a known body; bodies are walker"):
+    with pytest.raises(FileFormatError, match="no marker on a known body; its bodies are walker"):
         imported(marker_set([("B", "walker", (0.0, 0.0, 0.0), True)], 4))
     with pytest.raises(InvalidInput, match="OpenSim's lengths are metres"):
         imported(marker_set([("A", "pelvis", (10.0, 20.0, 130.0), True)], 4))

@@ -12,8 +12,8 @@ from mbkf.trial.preparation.coverage import COMPUTED
 from mbkf.trial.protocol.inferred import (
     DOUBTFUL_NOISE,
     NAME,
-    NOT_BODY,
     OBJECT,
+    OFF_BODY,
     infer_marker_set,
 )
 from tests.marker_sets.worn import box_at, near, standing, walking
@@ -58,7 +58,7 @@ def test_it_is_a_protocol_of_the_body(hidden):
 def test_points_of_a_box_are_left_out_and_told(hidden):
     found, truth = hidden
     box = {name for name, segment in truth.items() if not segment}
-    assert found.protocol.ignored == dict.fromkeys(box, NOT_BODY)
+    assert found.protocol.ignored == dict.fromkeys(box, OFF_BODY)
     assert all(name in found.line for name in box)
 
 
@@ -100,7 +100,7 @@ def test_with_names_every_marker_is_right(worn):
 
 
 def test_without_captures_nothing_is_inferred():
-    with pytest.raises(InvalidInput, match="static trial, from moving trials, or both"):
+    with pytest.raises(InvalidInput, match="a static trial, moving trials, or both"):
         infer_marker_set(None)
 
 
@@ -116,7 +116,7 @@ def test_markers_of_one_segment_are_refused(worn):
     angle, height = rng.uniform(0, 2 * np.pi, 14), rng.uniform(0.55, 0.85, 14)
     points = np.column_stack([0.07 * np.cos(angle), 0.07 * np.sin(angle), height])
     markers = MarkerTrajectories(tuple(f"M{k}" for k in range(14)), np.tile(points, (5, 1, 1)), 100.0)
-    with pytest.raises(NotObservable, match="no person"):
+    with pytest.raises(NotObservable, match="no upright body"):
         infer_marker_set(Capture("", markers))
 
 
@@ -124,9 +124,7 @@ def test_points_without_a_person_are_refused():
     rng = np.random.default_rng(1)
     points = rng.uniform([-0.3, -0.3, 0.0], [0.3, 0.3, 1.7], (30, 3))
     markers = MarkerTrajectories(tuple(f"M{k}" for k in range(30)), np.tile(points, (5, 1, 1)), 100.0)
-    with pytest.raises(
-        NotObservable, match=r"no person is found .* --up; a static trial with --static; .* --protocol"
-    ):
+    with pytest.raises(NotObservable, match=r"no upright body is found .*--up.*--static.*--protocol"):
         infer_marker_set(Capture("", markers))
 
 

@@ -12,8 +12,6 @@ from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.trial.protocol.standing import (
     Standing,
     faced_forward,
-    in_reference,
-    in_world,
     neutral_on_floor,
     scale_nominally,
     stand_beside,
@@ -44,13 +42,13 @@ def test_the_person_stands_at_the_markers(standing):
 def test_to_the_reference_body_and_back(standing):
     point = np.array([0.1, -0.2, 0.9])
     for segment in standing.model.joints:
-        assert in_world(standing, segment, in_reference(standing, segment, point)) == pytest.approx(point)
+        assert standing.to_world(segment, standing.to_reference(segment, point)) == pytest.approx(point)
 
 
 def test_a_made_person_s_markers_come_back_to_their_places_in_the_set(standing):
     for name, point in zip(standing.names, standing.points_m, strict=True):
         marker = PROTOCOL.match([name])[name]
-        assert in_reference(standing, marker.segment, point) == pytest.approx(marker.position_m, abs=0.012)
+        assert standing.to_reference(marker.segment, point) == pytest.approx(marker.position_m, abs=0.012)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.0, 2.5, -3.0])
@@ -68,8 +66,8 @@ def test_faced_forward(standing, yaw):
     assert np.arctan2(forward[1], forward[0]) == pytest.approx(0.0, abs=1e-9)
     assert origins[faced.model.root.joint_id][:2] == pytest.approx([0.0, 0.0], abs=1e-9)
     for point, before in zip(faced.points_m, standing.points_m, strict=True):
-        own = in_reference(faced, "right_shank", point)
-        assert own == pytest.approx(in_reference(standing, "right_shank", before), abs=1e-9)
+        own = faced.to_reference("right_shank", point)
+        assert own == pytest.approx(standing.to_reference("right_shank", before), abs=1e-9)
 
 
 def test_without_any_known_marker_the_reference_body_stands_among_the_points():
@@ -78,7 +76,7 @@ def test_without_any_known_marker_the_reference_body_stands_among_the_points():
     found = stand_beside(capture, empty)
     assert found.subject is None and found.trouble
     assert set(found.names) == set(capture.markers.names)
-    truth = {m.name: in_world(found, m.segment, m.position_m) for m in PROTOCOL.markers}
+    truth = {m.name: found.to_world(m.segment, m.position_m) for m in PROTOCOL.markers}
     away = [np.linalg.norm(truth[n] - p) for n, p in zip(found.names, found.points_m, strict=True)]
     assert np.median(away) < 0.10
 
@@ -124,6 +122,6 @@ def test_the_soles_are_on_the_floor():
     model = HumanModel.scaled({"right_shank": 1.1, "left_shank": 1.1})
     alone = Standing((), np.empty((0, 3)), model, neutral_on_floor(model), None)
     lowest = [
-        in_world(alone, sole.segment, np.array([0.0, 0.0, sole.height_m]))[2] for sole in model.roles.soles
+        alone.to_world(sole.segment, np.array([0.0, 0.0, sole.height_m]))[2] for sole in model.roles.soles
     ]
     assert lowest == pytest.approx([0.0, 0.0], abs=1e-9)

@@ -60,7 +60,7 @@ def test_without_names_up_is_where_a_body_stands(capture, turn):
     done = whole(found, turn)
     assert done[2, 2] == pytest.approx(1.0)
     assert np.linalg.det(done) == pytest.approx(1.0)
-    assert "a body stands there upright" in found.notes[-1]
+    assert "only then does a body stand upright" in found.notes[-1]
 
 
 def test_right_axes_stay(capture):
