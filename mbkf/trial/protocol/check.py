@@ -154,7 +154,8 @@ def _judged(
     use: MarkerUse, rms: float | None, fits: list[MarkerFit], twisted: dict[str, float], trouble: str
 ) -> tuple[str, list[str]]:
     """The verdict and its reasons."""
-    bad, doubtful = [], []
+    bad: list[str] = []
+    doubtful: list[str] = []
     if trouble:
         bad.append(trouble)
     if use.unknown:
