@@ -66,7 +66,7 @@ class Workspace:
         """The folder of a session.
 
         Raises:
-            InvalidInput: There is no such session.
+            InvalidInput: The session does not exist.
         """
         if session not in self.sessions():
             raise InvalidInput(f"there is no session '{session}'")

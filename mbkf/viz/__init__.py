@@ -1,1 +1,1 @@
-"""What people look at: the 3-D scene, the live page, playback and the report."""
+"""Pages and pictures: the 3-D scene, the live page, playback, reports, films and figures."""
