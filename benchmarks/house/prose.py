@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 HARD = re.compile(r"^(?:What|Whether|How|They|None)\b|\btold of\b|\bis no\b")
-MOST_HARD = 0.014
+MOST_HARD = 0.01
 """Largest share of hard texts in the package."""
 FEWEST_WORDS = 4
 """Strings of fewer words are names, units and keys."""
