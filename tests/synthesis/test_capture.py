@@ -9,7 +9,8 @@ from mbkf.errors import InvalidInput
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture_options import CaptureOptions
-from mbkf.synthesis import cameras, plates
+from mbkf.numerics.runs import runs
+from mbkf.synthesis import cameras
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from mbkf.synthesis.person import LIMIT, STATURE_RANGE, body_of, synthesise_subject
 
@@ -37,9 +38,7 @@ def test_skin_artefact_is_slow_and_has_the_stated_size():
 def test_occlusions_reach_the_fraction_in_streaks():
     hidden = cameras.occlusions(2000, 36, 0.1, np.random.default_rng(0))
     assert hidden.mean() == pytest.approx(0.1, abs=0.001)
-    lengths = [
-        end - start for column in hidden.T for start, end in plates.spells(column) if start > 0 and end < 2000
-    ]
+    lengths = [end - start for column in hidden.T for start, end in runs(column) if start > 0 and end < 2000]
     assert min(lengths) >= cameras.OCCLUSION_FRAMES
 
 

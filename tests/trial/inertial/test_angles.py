@@ -112,7 +112,7 @@ def test_what_cannot_work_is_refused():
     moving = [replace(one, angular_velocity_rad_s=one.angular_velocity_rad_s + sway) for one in readings]
     with pytest.raises(InvalidInput, match="stands still"):
         imu_angles(moving, MODEL)
-    with pytest.raises(InvalidInput, match="there are no readings"):
+    with pytest.raises(InvalidInput, match="readings are missing"):
         imu_angles(readings, MODEL, standing=(50.0, 60.0))
     with pytest.raises(InvalidInput, match="two sensors sit"):
         imu_angles([*readings, replace(readings[0], name="hip")], MODEL)

@@ -25,7 +25,7 @@ def test_the_truth_must_be_of_the_same_trial(walk):
     with pytest.raises(InvalidInput, match="frames"):
         score(replace(trial.markers, positions_m=trial.markers.positions_m[:5]), trial.markers, subject)
     other = MarkerTrajectories(("nothing",), np.zeros((trial.markers.frames, 1, 3)), 100.0)
-    with pytest.raises(InvalidInput, match="none of the subject's"):
+    with pytest.raises(InvalidInput, match="no marker of the subject"):
         score(trial.markers, other, subject)
 
 
