@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from mbkf.io.capture import CAPTURES, FORCES
+from mbkf.io.imu.files import IMUS
 from mbkf.kernel.loading import COMPILED, REFERENCE, SWITCH, library
 from mbkf.numerics.threads import single_threaded
 
@@ -60,3 +62,13 @@ def reference_kernel(monkeypatch) -> None:
     library.cache_clear()
     yield
     library.cache_clear()
+
+
+@pytest.fixture
+def registries():
+    """Registries that forget what a test adds."""
+    before = [(one, list(one)) for one in (CAPTURES, FORCES, IMUS)]
+    yield
+    for registry, formats in before:
+        for added in [one for one in registry if one not in formats]:
+            registry.remove(added)

@@ -11,7 +11,7 @@ EXAMPLES = sorted((ROOT / "docs" / "examples").glob("[0-9]*.py"))
 
 @pytest.mark.slow
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
-def test_example_runs(script, tmp_path, monkeypatch, capsys):
+def test_example_runs(registries, script, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", str(ROOT), prepend=":")
     runpy.run_path(str(script), run_name="__main__")

@@ -9,22 +9,12 @@ import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io import capture as captures
-from mbkf.io.capture import CAPTURES, FORCES, read_capture, register_reader, writable_suffixes, write_capture
-from mbkf.io.imu.files import IMUS, read_imu, register_imu_reader
+from mbkf.io.capture import CAPTURES, read_capture, register_reader, writable_suffixes, write_capture
+from mbkf.io.imu.files import read_imu, register_imu_reader
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry, either
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from tests.io.c3d_builder import standing_points
-
-
-@pytest.fixture
-def registries():
-    """Registries that forget what a test adds."""
-    before = [(one, list(one)) for one in (CAPTURES, FORCES, IMUS)]
-    yield
-    for registry, formats in before:
-        for added in [one for one in registry if one not in formats]:
-            registry.remove(added)
 
 
 def numbers(path: Path, _options) -> Capture:

@@ -133,7 +133,7 @@ def test_markers_on_unknown_bodies_are_ignored_and_none_on_a_known_one_refused(i
     assert not found.with_skeleton
     with pytest.raises(FileFormatError, match="no marker on a known body; its bodies are walker"):
         imported(marker_set([("B", "walker", (0.0, 0.0, 0.0), True)], 4))
-    with pytest.raises(InvalidInput, match="OpenSim's lengths are metres"):
+    with pytest.raises(InvalidInput, match="convert the file to metres"):
         imported(marker_set([("A", "pelvis", (10.0, 20.0, 130.0), True)], 4))
 
 
