@@ -39,7 +39,7 @@ class Value:
     Attributes:
         name: Its name; empty for the C function's own result.
         type: Array, Int32Array, BoolArray, float, int, bool, or the name of a record or handle.
-        role: In, Out, Made, or empty for what is no array.
+        role: In, Out or Made of an array; empty for other values.
         sizes: Expressions of an array's dimensions; the first may begin with ``*``.
         order: Empty, ``fortran`` or ``symmetric``.
         bounds: Expressions of the least value and of the end, for indices.

@@ -29,7 +29,7 @@ def hard_to_read(paths: Iterable[Path]) -> float:
 
 
 def is_hard(text: str) -> bool:
-    """True for a text that opens with What, Whether, How, They or None, or says "told of" or "is no"."""
+    """True for a text that matches :data:`HARD`."""
     return bool(HARD.search(text))
 
 

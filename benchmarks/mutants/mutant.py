@@ -74,6 +74,6 @@ def mirrored_tests(path: Path, root: Path = ROOT) -> list[str]:
 
 
 def times_found(mutant: Mutant, root: Path) -> int:
-    """How often a mutant's text stands in its file; 0 where there is no such file."""
+    """Number of times that a mutant's text stands in its file; 0 for a missing file."""
     path = root / mutant.file
     return path.read_text(encoding="utf-8").count(mutant.old) if path.is_file() else 0

@@ -12,7 +12,7 @@ SD_M, DRIFT = 0.005, "altimeter_drift"
 
 
 class Altimeter(mbkf.Block):
-    """Height (1,) of the pelvis, m; NaN where there is no reading."""
+    """Height (1,) of the pelvis, m; NaN: missing."""
 
     def states(self):
         return [mbkf.ExtraState(DRIFT, start=np.zeros(1), start_sd=np.ones(1), walk_sd=np.array([0.02]))]

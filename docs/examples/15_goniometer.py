@@ -9,7 +9,7 @@ import mbkf
 
 
 class Goniometer(mbkf.Block):
-    """Flexion (1,) of the knee, rad; NaN where there is no reading."""
+    """Flexion (1,) of the knee, rad; NaN: missing."""
 
     def __init__(self, sd_rad=0.02, name="knee_angle_r"):
         self.sd_rad, self.name = sd_rad, name

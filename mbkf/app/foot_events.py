@@ -20,7 +20,7 @@ def events_of(plain: object) -> tuple[FootEvent, ...] | None:
     """The events under "events"; None stands for the detected ones.
 
     Raises:
-        InvalidInput: There is no such entry, or there are too many events.
+        InvalidInput: An event lacks its entries, or the request holds too many events.
         FileFormatError: An event is not possible.
     """
     if not isinstance(plain, dict) or "events" not in plain:
