@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from mbkf.synthesis.motions import motion_names
+
 Mode = Literal["plain", "smoothed", "live"]
 
 FILTERS = ("kinematic", "torque", "dynamic")
@@ -373,21 +375,11 @@ _INERTIAL = (
     _asked("imu_stride_gaitmap", "imu", "stride", "{data}/imu_gaitmap_foot/imu_sample.csv"),
 )
 
-_MOTIONS = (
-    "squat",
-    "walk",
-    "jump",
-    "turn",
-    "one_foot",
-    "reach",
-    "step_up",
-    "general",
-    "sit_to_stand",
-    "rail",
-    "kneel",
-    "belt_walk",
-)
-CAPTURES: tuple[Captured, ...] = (*_REAL, *(synthetic(m) for m in _MOTIONS), *_OPTIONS, *_INERTIAL)
+LONG_MOTIONS = {"star_arc"}
+"""Motions of half a minute."""
+MOTIONS = tuple(name for name in motion_names(installed=False) if name not in LONG_MOTIONS)
+
+CAPTURES: tuple[Captured, ...] = (*_REAL, *(synthetic(m) for m in MOTIONS), *_OPTIONS, *_INERTIAL)
 
 LEFT_OUT = {
     "csu_2d_id_reference": "a table of six markers in a plane, no capture file",
