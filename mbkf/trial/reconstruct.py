@@ -63,7 +63,8 @@ def reconstruct(
 
     Raises:
         InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are; or angles
-            are to be zero in a static trial that the person was not scaled with.
+            are to be zero in a static trial that the person was not scaled with; or blocks, a plant or inertial sensors
+            are given for another filter than the dynamic one.
         NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate, the filter, the frame of the pelvis or the reading of angles
