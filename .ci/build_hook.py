@@ -6,7 +6,6 @@ The stable ABI makes one build serve every Python from 3.11 on.
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import shutil
 import sys
@@ -96,14 +95,14 @@ def compiled(folder: Path, flags: Sequence[str] = ("-O3", "-fno-math-errno", "-f
 
 
 def write_binding(folder: Path, to: Path) -> None:
-    """Writes what ``kernel_binding.py`` makes of the declarations in a folder."""
-    spec = importlib.util.spec_from_file_location(
-        "kernel_binding", Path(__file__).with_name("kernel_binding.py")
-    )
-    assert spec is not None and spec.loader is not None
-    made = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(made)
-    found = made.declarations(folder)
+    """Writes prototypes and binding made from the declarations in a folder."""
+    beside = str(Path(__file__).resolve().parent)
+    if beside not in sys.path:  # hatchling loads this file alone
+        sys.path.insert(0, beside)
+    import kernel_binding as made
+    import kernel_declarations
+
+    found = kernel_declarations.declarations(folder)
     (to / "declared.h").write_text(made.header(found), encoding="utf-8")
     (to / "binding.h").write_text(made.binding(found), encoding="utf-8")
 

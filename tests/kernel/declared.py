@@ -19,15 +19,17 @@ MOST = 9
 FREE_ROOT, PLATES = (7, 6, 2), 2  # nq, nv and joints of the smallest tree; plates of its feet
 
 
-def binding():
-    """The generator of the binding, which is no part of the package."""
-    spec = importlib.util.spec_from_file_location("kernel_binding", ROOT / ".ci" / "kernel_binding.py")
+def declaration_reader():
+    """The reader of declarations, which stands outside of the package."""
+    spec = importlib.util.spec_from_file_location(
+        "kernel_declarations", ROOT / ".ci" / "kernel_declarations.py"
+    )
     module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
-DECLARED = binding().declarations(ROOT / "mbkf" / "kernel")
+DECLARED = declaration_reader().declarations(ROOT / "mbkf" / "kernel")
 
 
 class Fault(NamedTuple):
