@@ -92,12 +92,9 @@ def reconstruct(
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
             capture = replace(capture, notes=(*capture.notes, *remarks))
         recording = replace(recording, readings=readings) if readings else recording
-        alone = None
-        if _asks_markers_alone(settings, inputs):
-            followed = None if progress is None else partial(progress, "Following markers alone")
-            alone = markers_alone(inputs, recording, followed)
-            if settings.other_contacts and settings.filter == "dynamic":
-                inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone)
+        alone = _markers_alone(settings, inputs, recording, progress)
+        if alone is not None and settings.other_contacts and settings.filter == "dynamic":
+            inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone)
         all_blocks = [*standard(inputs), *blocks] if blocks else None
         result = track(
             tracking_filter(settings.filter, inputs, all_blocks, plant),
@@ -131,12 +128,19 @@ def _check_names(settings: ReconstructSettings) -> None:
         raise UnknownName("reading of angles", settings.angles, ANGLES)
 
 
-def _asks_markers_alone(settings: ReconstructSettings, inputs: FilterInputs) -> bool:
-    """True where the motion of markers alone is needed besides the filter's."""
-    search = settings.other_contacts and settings.filter == "dynamic"
-    return (settings.checks and len(inputs.plates) > 0) or (
-        search and bool(inputs.sensor.model.description.bearings)
-    )
+def _markers_alone(
+    settings: ReconstructSettings,
+    inputs: FilterInputs,
+    recording: Recording,
+    progress: StageCallback | None,
+) -> Motion | None:
+    """The motion of markers alone, where checks of plates or the search for other contacts need it."""
+    judges_plates = settings.checks and len(inputs.plates) > 0
+    searches = settings.other_contacts and settings.filter == "dynamic"
+    if not judges_plates and not (searches and inputs.sensor.model.description.bearings):
+        return None
+    followed = None if progress is None else partial(progress, "Following markers alone")
+    return markers_alone(inputs, recording, followed)
 
 
 def _checks(
