@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from mbkf.model.body_file import load_body
     from mbkf.model.clinical import ClinicalAngles
     from mbkf.model.human import HumanModel
+    from mbkf.model.layout import ExtraState, Layout
     from mbkf.model.protocol import load_protocol
     from mbkf.numerics.kalman import Information
     from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
     from mbkf.sensors.contact.plates import plate_wrenches
-    from mbkf.sensors.layout import ExtraState, Layout
     from mbkf.study.batch.run import batch
     from mbkf.trial.export import export_result
     from mbkf.trial.inertia.estimate import InertiaEstimate, estimate_inertia
@@ -48,7 +48,7 @@ _HOMES = {
     "CaptureOptions": "mbkf.io.capture_options",
     "ClinicalAngles": "mbkf.model.clinical",
     "Estimate": "mbkf.trial.tracker",
-    "ExtraState": "mbkf.sensors.layout",
+    "ExtraState": "mbkf.model.layout",
     "Filter": "mbkf.filters.filter",
     "Frame": "mbkf.sensors.block",
     "Hidden": "mbkf.trial.preparation.settings",
@@ -56,7 +56,7 @@ _HOMES = {
     "ImuReadings": "mbkf.io.imu.readings",
     "InertiaEstimate": "mbkf.trial.inertia.estimate",
     "Information": "mbkf.numerics.kalman",
-    "Layout": "mbkf.sensors.layout",
+    "Layout": "mbkf.model.layout",
     "MarkerTrajectories": "mbkf.io.records",
     "Notes": "mbkf.sensors.block",
     "OperatingPoint": "mbkf.sensors.block",

@@ -8,11 +8,11 @@ import numpy as np
 from mbkf.filters.dynamic.support_loads import Loads, SupportLoads
 from mbkf.filters.torque.integrators import INTEGRATORS, Motion
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
+from mbkf.model.layout import SUPPORT
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Frame
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
-from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture import PosturePrior, PostureSettings, posture_information
 from mbkf.sensors.posture_sensor import PostureSensor

@@ -13,10 +13,10 @@ from mbkf.filters.settings import changed
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
+from mbkf.model.layout import Layout
 from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject

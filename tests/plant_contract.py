@@ -17,7 +17,7 @@ from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.plant import Plant
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
-from mbkf.sensors.layout import ExtraState, Layout
+from mbkf.model.layout import ExtraState, Layout
 from tests.derivatives import slope
 from tests.derivatives_of_bodies import forced_body
 from tests.dynamics import random_state

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.filters.plant import Plant
-from mbkf.sensors.layout import Layout
+from mbkf.model.layout import Layout
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
+from mbkf.model.layout import Layout
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.sensors.layout import Layout
 
 PLATE = np.array([0, 1, 5])
 """F_x, F_y and T_2 among the wrenches of both feet."""

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
-from mbkf.sensors.layout import FEET, Layout
+from mbkf.model.layout import FEET, Layout
 
 
 @dataclass(frozen=True)

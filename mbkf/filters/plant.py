@@ -17,9 +17,9 @@ from typing import Any, Generic, Protocol, Self, TypeVar, cast
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
+from mbkf.model.layout import Layout
 from mbkf.numerics.transition import DenseTransition, Transition
 from mbkf.sensors.block import Notes, State
-from mbkf.sensors.layout import Layout
 
 
 class TangentState(State, Protocol):

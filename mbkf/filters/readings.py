@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.model.layout import Layout
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import AnyBlock, Rows, Statement
-from mbkf.sensors.layout import Layout
 
 
 class Readings(NamedTuple):

@@ -19,6 +19,7 @@ from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.coordinate_variances import CoordinateVariances
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.layout import Layout
 
 ASKED = ("torques", "angles")
 """Standard deviations that a trial or a stream need not ask for: of generalised forces, and of clinical coordinates and
@@ -129,9 +130,9 @@ class Spread:
     @property
     def offset_covariance(self) -> Array:
         """(2 nv, 2 nv) covariance of the offset's part of configuration and velocity."""
-        nv = len(self.position_variance)
         if self.body is None:
-            return np.zeros((2 * nv, 2 * nv))
+            size = Layout.kinematic(len(self.position_variance)).size
+            return np.zeros((size, size))
         roots = np.vstack([self.body.position, self.body.velocity])
         return roots @ roots.T
 

@@ -173,6 +173,11 @@ def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[Foun
     return best[1], best[2]
 
 
+def place_log_density(squared_m2: Array, variance_m2: Array) -> Array:
+    """Logarithm of the normal density in space (1/m³) at points this far from a place, squared, alike in all axes."""
+    return -1.5 * np.log(2.0 * np.pi * variance_m2) - 0.5 * squared_m2 / variance_m2
+
+
 def name_factors(places: WornPlaces, reading: NameReading | None) -> Array:
     """(C,) likelihood ratio of each component by a marker's name."""
     factors = np.ones(len(places.segments))
@@ -250,8 +255,7 @@ class _Markers:
         with np.errstate(divide="ignore"):
             weight = self._weight * self.by_name
             weight /= np.maximum(weight.sum(axis=1), 1e-300)[:, None]
-            logs = np.log((1.0 - OFF_BODY) * weight) - 1.5 * np.log(2.0 * np.pi * variance)
-        logs = logs - 0.5 * squared / variance
+            logs = np.log((1.0 - OFF_BODY) * weight) + place_log_density(squared, variance)
         moved = 0.0
         if seen.squared_m2.any():
             stance_statistic = segment_scatter_m(seen, best, len(self.segments))

@@ -19,6 +19,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.model.body import Body
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
+from mbkf.model.layout import FEET, Layout
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
 """Coordinates of a wrench state; the moment is in the foot's axes in each.
@@ -94,7 +95,8 @@ class HumanDynamics(ForcedBody):
         self.fixed = np.zeros(model.nv, dtype=bool) if fixed is None else fixed
         self.kinematic = toes | self.fixed
         self.torque_dofs = np.flatnonzero(~toes)
-        self.nu = len(self.torque_dofs) + 12
+        self.nu = len(self.torque_dofs) + FEET
+        self._columns = Layout.forced(self.nv, self.nu)
         self._free = np.flatnonzero(~self.kinematic)
         self._foot_ids = [model.joint(name).joint_id for name in model.roles.feet]
         on_com = 1.0 if wrench_frame == "thesis" else 0.0
@@ -158,7 +160,8 @@ class HumanDynamics(ForcedBody):
         )
         slope = np.zeros((nv, right.shape[1]))
         slope[rows] = scipy.linalg.cho_solve(factor, right[rows], check_finite=False)
-        return LinearAcceleration(a, slope[:, :nv], slope[:, nv : 2 * nv], slope[:, 2 * nv :])
+        columns = self._columns
+        return LinearAcceleration(a, slope[:, columns.q], slope[:, columns.v], slope[:, columns["u"]])
 
     def forces(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
         """(nu,) forces u that cause a motion under given reactions, by inverse dynamics.
@@ -209,12 +212,12 @@ class HumanDynamics(ForcedBody):
     def force_rows(self, q: Array) -> Array:
         """(nu, nv + 12) derivative of u by accelerations and wrench states, δu = rows (δa, δw)."""
         dofs = len(self.torque_dofs)
-        rows = np.zeros((self.nu, self.nv + 12))
+        rows = np.zeros((self.nu, self.nv + FEET))
         rows[:dofs, : self.nv] = self.model.mass_matrix(q)[self.torque_dofs]
         if self._acting:
-            _, by_state, _ = self.local_wrench(q, np.zeros(12))
+            _, by_state, _ = self.local_wrench(q, np.zeros(FEET))
             rows[:dofs, self.nv :] = -(self._pull() @ by_state)[self.torque_dofs]
-        rows[dofs:, self.nv :] = np.eye(12)
+        rows[dofs:, self.nv :] = np.eye(FEET)
         return rows
 
     # Wrenches.
@@ -222,7 +225,7 @@ class HumanDynamics(ForcedBody):
     def wrench_state(self, q: Array, foot_wrench: Array) -> Array:
         """(12,) u's wrenches from those (2, 6) about the world's origin in world axes."""
         pin.forwardKinematics(self.model.pin_model, self._data, q)
-        state = np.empty(12)
+        state = np.empty(FEET)
         for side, (joint, point) in enumerate(zip(self._foot_ids, self._points, strict=True)):
             place = self._data.oMi[joint]
             force, moment = foot_wrench[side, :3], foot_wrench[side, 3:]
@@ -241,8 +244,8 @@ class HumanDynamics(ForcedBody):
 
     def _local(self, state: Array) -> tuple[Array, Array, Array]:
         if self.wrench_frame == "foot":
-            return state, np.eye(12), np.zeros((12, self.nv))
-        local, by_state, by_q = np.empty(12), np.zeros((12, 12)), np.zeros((12, self.nv))
+            return state, np.eye(FEET), np.zeros((FEET, self.nv))
+        local, by_state, by_q = np.empty(FEET), np.zeros((FEET, FEET)), np.zeros((FEET, self.nv))
         turns = [jacobian[3:] for jacobian in self._foot_jacobians()]
         for side, (joint, point) in enumerate(zip(self._foot_ids, self._points, strict=True)):
             at, force, moment = 6 * side, slice(6 * side, 6 * side + 3), slice(6 * side + 3, 6 * side + 6)
@@ -302,4 +305,4 @@ class _Given:
     @classmethod
     def nothing(cls, nv: int) -> _Given:
         none = np.zeros((nv, nv))
-        return cls(np.zeros(nv), none, none, np.zeros((nv, 12)))
+        return cls(np.zeros(nv), none, none, np.zeros((nv, FEET)))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.layout import FOOT, Layout
 
 ROOT = 6
 
@@ -26,7 +27,7 @@ class RootBalance:
 
     Attributes:
         residual: (6,) ID(q, v, a) − Σ J_fᵀ w_f.
-        by_state: (6, 3 nv + 12) its derivatives by q (in the tangent space), v, a and the feet's wrenches.
+        by_state: (6, N) its derivatives by q (in the tangent space), v, a and the feet's wrenches.
     """
 
     residual: Array
@@ -39,31 +40,33 @@ class JointTorques:
 
     Attributes:
         tau: (nv,) the forces.
-        by_state: (nv, 3 nv + 12) their derivatives by q (in the tangent space), v, a and the feet's wrenches.
+        by_state: (nv, N) their derivatives by q (in the tangent space), v, a and the feet's wrenches.
+        columns: Slices of these derivatives, N columns.
     """
 
     tau: Array
     by_state: Array
+    columns: Layout
 
     @property
     def by_q(self) -> Array:
         """(nv, nv) by the configuration."""
-        return self.by_state[:, : len(self.tau)]
+        return self.by_state[:, self.columns.q]
 
     @property
     def by_v(self) -> Array:
         """(nv, nv) by the velocity."""
-        return self.by_state[:, len(self.tau) : 2 * len(self.tau)]
+        return self.by_state[:, self.columns.v]
 
     @property
     def by_a(self) -> Array:
         """(nv, nv) by the acceleration."""
-        return self.by_state[:, 2 * len(self.tau) : 3 * len(self.tau)]
+        return self.by_state[:, self.columns.a]
 
     @property
     def by_wrench(self) -> Array:
         """(nv, 12) by the wrenches of right and left foot."""
-        return self.by_state[:, 3 * len(self.tau) :]
+        return self.by_state[:, self.columns.wrench]
 
 
 class NewtonEuler:
@@ -78,6 +81,7 @@ class NewtonEuler:
         self._after = [_moved_by(model, chain) for chain in self._chains]
         self._tree = model.tree
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
+        self._columns = Layout.dynamic(model.nv)
         self._J = self._data.J
         self._moves_feet = np.array(self._moves, dtype=bool)
 
@@ -94,8 +98,8 @@ class NewtonEuler:
         if self._tree is not None:
             return RootBalance(*self._tree.root(q, v, a, wrench))
         by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
-        data, nv = self._data, self.model.nv
-        by_state = np.empty((ROOT, 3 * nv + 2 * ROOT))
+        data = self._data
+        by_state = np.empty((ROOT, self._columns.size))
         by_wrench = -data.J[:, :ROOT].T
         # A wrench that is constant in the world turns in the pelvis's axes when these turn.
         own = by_wrench @ wrench
@@ -114,17 +118,17 @@ class NewtonEuler:
         """
         if self._tree is not None:
             tau, by_state, self._J = self._tree.torques(q, v, a, self._moves_feet, wrenches)
-            return JointTorques(tau, by_state)
+            return JointTorques(tau, by_state, self._columns)
         nv = self.model.nv
-        by_state = np.empty((nv, 3 * nv + 12), order="F")
-        found = JointTorques(np.empty(nv), by_state)
+        by_state = np.empty((nv, self._columns.size), order="F")
+        found = JointTorques(np.empty(nv), by_state, self._columns)
         found.by_q[:], found.by_v[:], found.by_a[:] = self._inverse_dynamics(q, v, a)
         found.tau[:], J = self._data.tau, self._data.J
         self._J = J
         for foot, (chain, moves, after) in enumerate(
             zip(self._chains, self._moves, self._after, strict=True)
         ):
-            mine = slice(6 * foot, 6 * foot + 6)
+            mine = slice(FOOT * foot, FOOT * foot + FOOT)
             wrench, block = wrenches[mine], found.by_wrench[:, mine]
             np.multiply(J.T, -moves[:, None], out=block)
             found.tau[:] += block @ wrench

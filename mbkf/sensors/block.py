@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
+from mbkf.model.layout import ExtraState, Layout
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.contact.records import ContactDecision
-from mbkf.sensors.layout import ExtraState, Layout
 
 NO_DOFS = np.zeros(0, dtype=np.intp)
 """An empty list of dofs."""

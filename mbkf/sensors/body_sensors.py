@@ -17,12 +17,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
+from mbkf.model.layout import ExtraState
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.inertial import observed_dofs
 from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.layout import ExtraState
 from mbkf.sensors.states import LoadedState
 
 BIASES, TURNS = "gyroscope biases", "turns of the mounts"
@@ -104,14 +104,13 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         if decision is None:
             return None
         state, layout, count = at.state, self.layout, len(self.sensor.mounts)
-        nv = len(state.v)
         bias, turn = (state.extra[layout.extra_index(name)].reshape(-1, 3) for name in (BIASES, TURNS))
         reading = self.sensor.reading(state.q, state.v, state.a)
         turned = self._mounted.transpose(0, 2, 1) @ _exponential(-turn) @ self._mounted
         values = (turned[:, None] @ reading.values.reshape(count, 2, 3, 1))[..., 0]
         motion = np.concatenate([reading.by_q, reading.by_v, reading.by_a], axis=2)
         jacobian = np.zeros((count, 2, 3, layout.size))
-        jacobian[..., : 3 * nv] = turned[:, None] @ motion.reshape(count, 2, 3, -1)
+        jacobian[..., : motion.shape[-1]] = turned[:, None] @ motion.reshape(count, 2, 3, -1)
         by_turn = _by_turn(self._mounted, turn, values)
         for k in range(count):
             first = 3 * k

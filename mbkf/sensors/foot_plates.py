@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.layout import Layout
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact
 from mbkf.sensors.contact.sharing import SharedLoad
 from mbkf.sensors.foot_wrench import FootWrenchSensor
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import ForceState
 from mbkf.sensors.supports.sharing import about
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.model.body import Body
+from mbkf.model.layout import SUPPORT, UNSEEN_MOMENT, Layout
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
-from mbkf.sensors.layout import SUPPORT, UNSEEN_MOMENT, Layout
 from mbkf.sensors.states import LoadedState
 
 
@@ -60,7 +60,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
-        nv, wrenches, support, unseen = len(state.v), state.w, self._support, self._unseen
+        wrenches, support, unseen = state.w, self._support, self._unseen
         if support is not None:
             # At the root a wrench counts alike wherever it acts: that of other parts adds to the right foot's.
             wrenches = wrenches.copy()
@@ -70,7 +70,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         if support is None and unseen is None:
             return Rows(root.by_state * sharp, -residual * self._sharp, readings=6)
         rows = np.zeros((6, max(part.stop for part in (support, unseen) if part is not None)))
-        np.multiply(root.by_state, sharp, out=rows[:, : 3 * nv + 12])
+        np.multiply(root.by_state, sharp, out=rows[:, : root.by_state.shape[1]])
         if support is not None:
             np.multiply(root.by_state[:, -6:], sharp, out=rows[:, support])
         if unseen is not None:

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbkf.model.layout import UNSEEN_MOMENT, ExtraState
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
-from mbkf.sensors.layout import UNSEEN_MOMENT, ExtraState
 from mbkf.sensors.states import LoadedState
 
 

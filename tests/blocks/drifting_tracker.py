@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbkf.model.layout import ExtraState
 from mbkf.sensors.block import Block, Rows
-from mbkf.sensors.layout import ExtraState
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 READING, BIAS = "hand_tracker", "hand_tracker_bias"

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.filters.error_covariance import ErrorCovariance
-from mbkf.sensors.layout import Layout
+from mbkf.model.layout import Layout
 
 NV = 5
 EVERYBODY, LAYOUT = np.arange(NV), Layout.dynamic(NV)

@@ -22,8 +22,8 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.warm_start import WarmStart
 from mbkf.filters.tracking import track
 from mbkf.filters.tracking_filter import TrackingFilter
+from mbkf.model.layout import ExtraState
 from mbkf.sensors.block import Block, Frame, Rows
-from mbkf.sensors.layout import ExtraState
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.blocks.drifting_tracker import BIAS, READING, DriftingTracker, TrackerSettings
 from tests.dynamics import DT, MARKER_SD_M, camera_markers, settings_with, trial

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from mbkf.filters.readings import Readings, summed
+from mbkf.model.layout import Layout
 from mbkf.numerics.kalman import information
 from mbkf.sensors.block import Rows
-from mbkf.sensors.layout import Layout
 from tests.motions import assert_near
 
 N, n = 9, 4

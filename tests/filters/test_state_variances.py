@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.state_variances import state_variances
-from mbkf.sensors.layout import ExtraState, Layout
+from mbkf.model.layout import ExtraState, Layout
 
 NV, DOFS = 31, np.array([[3, 4, 5], [6, 7, 8], [28, 29, 30], [0, 1, 2]])
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
 from mbkf.errors import NotObservable
-from mbkf.marker_sets.inference import OTHER_NAME, infer_markers, name_factors
+from mbkf.marker_sets.inference import OTHER_NAME, infer_markers, name_factors, place_log_density
 from mbkf.marker_sets.names import NamedPlace, NameReading
 from mbkf.marker_sets.places import worn_places
 from mbkf.model.body_file import load_body
@@ -124,6 +125,12 @@ def test_a_box_that_stands_beside_is_no_body(boxed):
 
 def test_a_walk_alone_is_enough(walk):
     assert walk[1].share_right(inferred(None, walk[1]).markers) >= 0.9
+
+
+def test_places_are_normally_distributed_in_space():
+    offset, sd = np.array([0.01, -0.02, 0.03]), 0.025
+    expected = multivariate_normal(np.zeros(3), sd**2).logpdf(offset)
+    assert place_log_density(np.array(offset @ offset), np.array(sd**2)) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from mbkf.model.layout import Layout
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
 from mbkf.sensors.contact.sharing import SharedLoad, Stance
 from mbkf.sensors.foot_contact import BELT_FORCE, PUSH_LEAST, FootContact, FootContactSettings, FootDecision
-from mbkf.sensors.layout import Layout
 
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
 SETTINGS = FootContactSettings()

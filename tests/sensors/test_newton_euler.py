@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.model.layout import SUPPORT, ExtraState
 from mbkf.model.newton_euler import NewtonEuler
-from mbkf.sensors.layout import SUPPORT, ExtraState
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
 from tests.dynamics import notes_of, prepared_at, random_state, singer, standing
 from tests.motions import assert_near, reference_model

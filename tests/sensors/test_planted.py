@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from mbkf.model.layout import Layout
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.contact.records import Planted
 from mbkf.sensors.contact.soles import sole_locals
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.planted import PlantedDecision, PlantedFeet, PlantedSettings, lying_level, standing_still
 from tests.motions import central_difference, moderate_pose, reference_model

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mbkf.filters.kinematic.plant import KinematicState
-from mbkf.sensors.layout import Layout
+from mbkf.model.layout import Layout
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.rest import PostureAndRest
 from tests.dynamics import prepared_at

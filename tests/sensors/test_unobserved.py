@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mbkf.sensors.layout import Layout
+from mbkf.model.layout import Layout
 from mbkf.sensors.unobserved import UnobservedJoints, UnobservedSettings
 from tests.dynamics import notes_of, prepared_at
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.model.layout import UNSEEN_MOMENT
 from mbkf.model.newton_euler import NewtonEuler
-from mbkf.sensors.layout import UNSEEN_MOMENT
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
 from mbkf.sensors.unseen_moment import UnseenMoment, UnseenMomentSettings
 from tests.dynamics import DT, prepared_at, random_state, singer, standing

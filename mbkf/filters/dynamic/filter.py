@@ -16,6 +16,7 @@ from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.plant import PlantMaker
+from mbkf.model.layout import FEET, Layout
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import AnyBlock, Frame
 from mbkf.sensors.contact.causal import ContactDetector
@@ -25,7 +26,6 @@ from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.lasting_noise import prior_dilution
-from mbkf.sensors.layout import FEET, Layout
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.mean_posture import MeanPosture

@@ -23,9 +23,9 @@ from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.loading import library
 from mbkf.kernel.state_functions import Singer
 from mbkf.model.body import Body
+from mbkf.model.layout import Layout, parted
 from mbkf.numerics.transition import RateTransition
 from mbkf.sensors.block import Notes
-from mbkf.sensors.layout import FEET, Layout
 
 
 @dataclass(frozen=True)
@@ -78,14 +78,9 @@ class DynamicState:
             step: (N,) tangent vector.
             P: (N, N) covariance of the moved state.
         """
-        nv = model.nv
+        q, v, a, w, extra = parted(step, self.v, self.v, self.a, self.w, self.extra)
         return DynamicState(
-            model.integrate(self.q, step[:nv]),
-            self.v + step[nv : 2 * nv],
-            self.a + step[2 * nv : 3 * nv],
-            self.w + step[3 * nv : 3 * nv + FEET],
-            P,
-            self.extra + step[3 * nv + FEET :],
+            model.integrate(self.q, q), self.v + v, self.a + a, self.w + w, P, self.extra + extra
         )
 
     def minus(self, model: Body, origin: DynamicState) -> Array:
@@ -120,7 +115,7 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
 
         Args:
             model: The body.
-            layout: Slices of the tangent state (:meth:`mbkf.sensors.layout.Layout.dynamic`).
+            layout: Slices of the tangent state (:meth:`mbkf.model.layout.Layout.dynamic`).
             dt_s: Time step.
             held: (nv,) dofs that no instrument shows; they stay where they are.
             settings: Process noise.

@@ -17,9 +17,9 @@ from mbkf.filters.estimate import Posterior, Record
 from mbkf.filters.report import FirstMotion, StateReport
 from mbkf.filters.spread import ConfigurationParts, Spread, root
 from mbkf.filters.state_variances import StateVariances, state_variances
+from mbkf.model.layout import FEET
 from mbkf.sensors.block import NO_DOFS, Frame
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.layout import FEET
 from mbkf.sensors.white_noise import WhiteNoise
 
 LATER_FADES_S = 0.1

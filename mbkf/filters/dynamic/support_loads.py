@@ -10,8 +10,8 @@ from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.model.body import Body
+from mbkf.model.layout import SUPPORT, Layout
 from mbkf.model.newton_euler import JointTorques, NewtonEuler
-from mbkf.sensors.layout import SUPPORT, Layout
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.sharing import Shares, shares
 

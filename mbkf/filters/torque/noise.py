@@ -17,8 +17,8 @@ from mbkf.conventions import Array
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.layout import Layout
 from mbkf.numerics.discretisation import symmetric
-from mbkf.sensors.layout import Layout
 
 
 @dataclass(frozen=True)

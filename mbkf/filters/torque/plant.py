@@ -20,9 +20,9 @@ from mbkf.filters.torque.integrators import Motion, integrator
 from mbkf.model.body import Body
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.layout import Layout, parted
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
 from mbkf.numerics.transition import DenseTransition
-from mbkf.sensors.layout import Layout
 
 
 @dataclass(frozen=True)
@@ -42,10 +42,8 @@ class ForcedState:
             step: (n,) tangent vector.
             P: (n, n) covariance of the moved state.
         """
-        nv = model.nv
-        return ForcedState(
-            model.integrate(self.q, step[:nv]), self.v + step[nv : 2 * nv], self.u + step[2 * nv :], P
-        )
+        q, v, u = parted(step, self.v, self.v, self.u)
+        return ForcedState(model.integrate(self.q, q), self.v + v, self.u + u, P)
 
     def minus(self, model: Body, origin: ForcedState) -> Array:
         """(n,) tangent vector from the mean of another state to this one's."""

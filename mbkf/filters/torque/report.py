@@ -16,10 +16,10 @@ from mbkf.filters.spread import Spread, root
 from mbkf.filters.torque.filter import TorqueFilter, TorqueStep
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.layout import FEET
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import ContactDecision
 from mbkf.sensors.foot_wrench import FootWrenchSensor
-from mbkf.sensors.layout import FEET
 from mbkf.sensors.marker_sensor import MarkerPrediction, MarkerSensor
 
 

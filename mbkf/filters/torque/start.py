@@ -11,8 +11,8 @@ from mbkf.filters.torque.noise import condition, load_variance, residual_varianc
 from mbkf.filters.torque.plant import ForcedState, TorquePlant
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.layout import Layout
 from mbkf.sensors.foot_plates import FootReading
-from mbkf.sensors.layout import Layout
 
 
 class TorqueStart:

@@ -21,8 +21,8 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.layout import SUPPORT, ExtraState, Layout
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.sensors.layout import SUPPORT, ExtraState, Layout
 from mbkf.sensors.states import LoadedState
 from mbkf.sensors.supports.bearings import BearingParts, BearingPoints
 from mbkf.sensors.supports.sharing import about

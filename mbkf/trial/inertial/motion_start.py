@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mbkf.conventions import Array
 from mbkf.filters.kinematic.plant import KinematicState
@@ -69,9 +70,7 @@ def first_posture(
     v[:3] = -rotations[model.root.joint_id].T @ np.array(at.velocity(foot, low))
     sd = np.full(model.nv, s.still_rate_sd_rad_s if standing else s.rate_sd_rad_s)
     sd[:3] = s.still_speed_sd_m_s if standing else s.speed_sd_m_s
-    covariance = np.zeros((2 * model.nv, 2 * model.nv))
-    covariance[: model.nv, : model.nv] = _posture_covariance(model, segments, q, s)
-    covariance[model.nv :, model.nv :] = np.diag(sd**2)
+    covariance = block_diag(_posture_covariance(model, segments, q, s), np.diag(sd**2))
     return KinematicState(q, v, covariance)
 
 

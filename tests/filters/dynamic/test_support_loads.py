@@ -8,9 +8,9 @@ import pytest
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.support_loads import SupportLoads
 from mbkf.filters.error_covariance import ErrorCovariance
+from mbkf.model.layout import SUPPORT
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import NO_DOFS
-from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.supports.block import Supports
 from mbkf.sensors.supports.sharing import shares
 from tests.dynamics import DT, random_state, singer

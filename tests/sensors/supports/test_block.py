@@ -8,8 +8,8 @@ import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.model.layout import SUPPORT
 from mbkf.sensors.block import Frame, Notes
-from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.supports.block import BEARING, Supports, SupportSettings
 from tests.dynamics import DT, about, prepared_at, random_covariance, singer, standing
 from tests.followed import made_filter, recording

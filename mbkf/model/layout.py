@@ -166,5 +166,14 @@ class Layout:
         return _joined([e.walk_sd for e in self.extras]) ** 2 * dt_s
 
 
+def parted(vector: Array, *like: Array) -> list[Array]:
+    """Views of a vector's consecutive parts, each as long as its pattern."""
+    parts, first = [], 0
+    for pattern in like:
+        parts.append(vector[first : first + len(pattern)])
+        first += len(pattern)
+    return parts
+
+
 def _joined(parts: Sequence[Array]) -> Array:
     return np.concatenate([np.asarray(part, dtype=float) for part in parts]) if parts else np.zeros(0)

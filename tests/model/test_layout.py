@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.sensors.layout import ExtraState, Layout
+from mbkf.model.layout import ExtraState, Layout, parted
 
 BIAS = ExtraState("bias", np.array([1.0, 2.0, 3.0]), np.full(3, 0.1), np.full(3, 0.5))
 LENGTH = ExtraState("length", np.array([4.0]), np.array([0.2]), np.zeros(1))
@@ -49,3 +49,10 @@ def test_names_occur_once_and_unknown_ones_are_refused():
         PLAIN.with_extras([ExtraState("wrench", np.zeros(1), np.zeros(1), np.zeros(1))])
     with pytest.raises(UnknownName):
         PLAIN["bias"]
+
+
+def test_a_tangent_vector_falls_into_parts_as_long_as_their_patterns():
+    vector = np.arange(6.0)
+    first, middle, last = parted(vector, np.zeros(2), np.zeros(3), np.zeros(1))
+    np.testing.assert_array_equal(np.concatenate([first, middle, last]), vector)
+    assert (len(first), len(middle), len(last)) == (2, 3, 1)
