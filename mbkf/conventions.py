@@ -40,7 +40,7 @@ JsonTable: TypeAlias = Mapping[str, Any]
 """An object of a JSON file, of this version or an older one; readers check each value that they take."""
 
 READING_KINDS = ("markers", "plates", "law", "other")
-"""Kinds of readings by which innovations are told: markers, force plates, Newton's law, all else."""
+"""Kinds of readings whose innovations are stated apart: markers, force plates, Newton's law, all else."""
 
 StageCallback = Callable[[str, int, int], None]
 """Progress callback: name of the stage, items done, items in all."""

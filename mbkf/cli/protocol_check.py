@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
 def _show(found: SetCheck) -> None:
     from mbkf.trial.preparation.coverage import UNKNOWN, listed
 
-    lines = [found.use.told]
+    lines = [found.use.summary]
     if found.use.unknown:
         lines.append(f"unknown: {listed(found.use.unknown)}")
     others = {name: reason for name, reason in found.use.ignored.items() if reason != UNKNOWN}

@@ -94,9 +94,9 @@ class HeldErrors:
     """Errors by the body along a trial: worked out once in a while, and only when asked for."""
 
     def __init__(self, body: BodyErrors | None, dt_s: float) -> None:
-        """Args: the errors by the body, None where they are not told, and the time between frames."""
+        """Args: the errors by the body, None where they are not known, and the time between frames."""
         self._body, self._held = body, max(1, round(OFFSETS_HELD_S / dt_s))
-        self._first, self._due, self._roots = 0, -1, _untold
+        self._first, self._due, self._roots = 0, -1, _unknown_body
 
     def of(self, number: int, posterior: Posterior) -> Callable[[], BodyErrorRoots | None]:
         """Function that computes the roots for a frame: those of the first frame of its stretch since the start.
@@ -115,7 +115,7 @@ class HeldErrors:
         return self._roots
 
 
-def _untold() -> BodyErrorRoots | None:
+def _unknown_body() -> BodyErrorRoots | None:
     return None
 
 
@@ -139,8 +139,8 @@ class FrameRecorder:
         Args:
             filter: The filter.
             markers: Number of markers.
-            body: What estimates err by because the person's body is not known exactly; None where that is not told.
-            asked: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are told; others are NaN.
+            body: What estimates err by because the person's body is not known exactly; None where that is not known.
+            asked: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are stated; others are NaN.
         """
         self.filter, self._body = filter, HeldErrors(body, filter.dt_s)
         self._asks_torques, self._asks_angles = (name in asked for name in ASKED)

@@ -40,8 +40,8 @@ def track(
         recording: What the instruments read.
         smoothing: How to smooth; None for the filter alone.
         lag_s: Without smoothing, how far later readings may correct a frame.
-        body: What estimates err by because the person's body is not known exactly; None where that is not told.
-        spreads: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are told.
+        body: What estimates err by because the person's body is not known exactly; None where that is not known.
+        spreads: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are stated.
         keep_covariance: Whether to keep the full covariance of (q, v) of every frame.
         progress: Called with frames done and frames in all.
 

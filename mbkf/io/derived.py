@@ -1,4 +1,4 @@
-"""Measured points of a C3D file, told from points that software computed and stored beside them.
+"""Measured points of a C3D file, kept apart from points that software computed and stored beside them.
 
 A file states this for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
 Joint centres, segment axes and the like carry no sign but their names, so the names of Vicon Plug-in Gait and

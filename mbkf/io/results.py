@@ -82,8 +82,8 @@ class Reconstruction(
         """Which later frames an estimate knows, in words: all, none, or those of a fixed lag; and how many do not."""
         if not (self.smoothed or self.lag_ms):
             return CAUSAL
-        told = SMOOTHED if self.smoothed else f"fixed lag {self.lag_ms:g} ms"
-        return f"{told}, but {self.uncorrected} of {self.frames} frames causal" if self.uncorrected else told
+        kind = SMOOTHED if self.smoothed else f"fixed lag {self.lag_ms:g} ms"
+        return f"{kind}, but {self.uncorrected} of {self.frames} frames causal" if self.uncorrected else kind
 
     @property
     def present(self) -> BoolArray:

@@ -26,7 +26,7 @@ RUN_ID = "run_id"
 """Key of summary.json, entry of the tables' headers and second line of motion.h5: the same in files of one run."""
 
 
-class AxesTold(TypedDict):
+class StatedAxes(TypedDict):
     """Axes of a capture as taken.
 
     Attributes:
@@ -142,7 +142,7 @@ class Summary(TypedDict):
     step_seconds_p99: float | None
     realtime_factor: float | None
     truth: dict[str, float | None] | None
-    axes: AxesTold
+    axes: StatedAxes
     checks: list[dict[str, object]]
     warnings: list[str]
     settings: dict[str, object]

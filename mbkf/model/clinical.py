@@ -64,7 +64,7 @@ class RateLayout(NamedTuple):
         single_columns: (m,) columns of the other angles, each ± one dof.
         single_dofs: (m,) those dofs.
         root_quaternion: First number in q of the root's.
-        root_axes: (3, 3) what takes the root's position to the axes it is told in.
+        root_axes: (3, 3) what takes the root's position to the axes it is stated in.
     """
 
     quaternions: NDArray[np.intp]
@@ -91,7 +91,7 @@ class ClinicalAngles:
         names: (A,) coordinate names, OpenSim's where it has them.
         units: (A,) "rad" or "m".
         rotational: (A,) True for angles, False for the pelvis's translations.
-        root_angles: (3,) columns of the root's angles; they are told against the world's axes.
+        root_angles: (3,) columns of the root's angles; they are stated against the world's axes.
         root_turns: Where the root's rotation stands in the tangent space.
         ball_turns: (n, 3) where the rotations of the joints with three angles do, in the model's order.
         ball_columns: (n, 3) columns of these joints' angles.

@@ -85,7 +85,7 @@ def motion_inputs(model: HumanModel, dt_s: float, segments: Sequence[str]) -> Fi
     """
     none = MarkerSensor(model, [], np.zeros((0, 3)))
     settings = KinematicSettings(), DynamicSettings(), TorqueSettings()
-    return FilterInputs(none, np.zeros(0), (), dt_s, untold(model, segments), *settings)
+    return FilterInputs(none, np.zeros(0), (), dt_s, unobserved(model, segments), *settings)
 
 
 def carrier(model: HumanModel, segments: Sequence[str]) -> str:
@@ -103,7 +103,7 @@ def carrier(model: HumanModel, segments: Sequence[str]) -> str:
     return min(segments, key=depth)
 
 
-def untold(model: HumanModel, segments: Sequence[str]) -> BoolArray:
+def unobserved(model: HumanModel, segments: Sequence[str]) -> BoolArray:
     """(nv,) dofs that no sensor observes; they keep the neutral posture.
 
     A root without a sensor moves with the segment of :func:`carrier`: the joint between them is unobserved.

@@ -145,9 +145,9 @@ def read_live_log(folder: Path) -> Logged:
     )
     sensors = tuple(header.get("sensors", ()))
     stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates, sensors)
-    frames_lost = _told(len(log.rows) - len(rows) + log.left_out, "frames", FRAMES_FILE)
-    told = tuple(sentence for sentence in (frames_lost, samples_lost) if sentence)
-    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, told)
+    frames_lost = _loss(len(log.rows) - len(rows) + log.left_out, "frames", FRAMES_FILE)
+    losses = tuple(sentence for sentence in (frames_lost, samples_lost) if sentence)
+    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, losses)
 
 
 def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
@@ -157,10 +157,10 @@ def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
     except FileFormatError as error:
         return np.zeros(0, dtype=plates_dtype(plates)), f"the plates' samples are left out: {error}"
     rows = log.rows[: _believable(log.rows["index"])]
-    return rows, _told(len(log.rows) - len(rows) + log.left_out, "samples of the plates", PLATES_FILE)
+    return rows, _loss(len(log.rows) - len(rows) + log.left_out, "samples of the plates", PLATES_FILE)
 
 
-def _told(count: int, what: str, file: str) -> str:
+def _loss(count: int, what: str, file: str) -> str:
     return f"{count} {what} are left out: {file} is damaged from there on" if count else ""
 
 

@@ -63,7 +63,7 @@ class MarkerUse:
         return self.share >= LEAST_SHARE
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         """The protocol's coverage, in words."""
         known = self.markers - len(self.unknown)
         return f"{self.protocol} knows {known} of {self.markers} markers ({100 * self.share:.0f} %)"
@@ -73,7 +73,7 @@ class MarkerUse:
         """A line about a protocol that knows too few of the markers, "" where it knows enough."""
         if self.share >= LEAST_SHARE:
             return ""
-        return f"protocol {self.told}; ignored are {listed(self.unknown)}"
+        return f"protocol {self.summary}; ignored are {listed(self.unknown)}"
 
     def without(self, reasons: Mapping[str, str]) -> MarkerUse:
         """The same with further markers that are not used after all.
@@ -91,7 +91,7 @@ class MarkerUse:
             "markers": self.markers,
             "used": len(self.used),
             "share": round(self.share, 4),
-            "told": self.told,
+            "told": self.summary,
             "warning": self.warning,
             "ignored": dict(self.ignored),
         }

@@ -159,7 +159,9 @@ def _judged(
     if trouble:
         bad.append(trouble)
     if use.unknown:
-        line = f"{use.told}, not {listed(use.unknown)}: add them, or leave them out with 'mbkf protocol edit'"
+        line = (
+            f"{use.summary}, not {listed(use.unknown)}: add them, or leave them out with 'mbkf protocol edit'"
+        )
         if use.share < WHOLE_SHARE:
             (bad if use.share < LEAST_SHARE else doubtful).append(line)
     if rms is not None and rms > GOOD_RMS_MM:

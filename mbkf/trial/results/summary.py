@@ -11,7 +11,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.contacts import ContactInterval
 from mbkf.io.results import Reconstruction, SdPart
-from mbkf.io.results_folder import AxesTold, ContactTold, Summary
+from mbkf.io.results_folder import ContactTold, StatedAxes, Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
 from mbkf.trial.results import innovations
@@ -82,7 +82,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "step_seconds_p99": _quantile(r.step_seconds, 99),
         "realtime_factor": r.frames / float(r.rate_hz) / computing if computing > 0 else None,
         "truth": None if truth is None else compare_with_truth(r, truth),
-        "axes": axes_told(r.file_axes, r.file_axes_source),
+        "axes": stated_axes(r.file_axes, r.file_axes_source),
         "checks": [check.as_table() for check in r.checks],
         "warnings": list(r.warnings),
         "settings": dict(r.settings),
@@ -101,7 +101,7 @@ def contact_summary(contact: ContactInterval) -> ContactTold:
     }
 
 
-def axes_told(axes: str, source: str) -> AxesTold:
+def stated_axes(axes: str, source: str) -> StatedAxes:
     """A capture's axes as summaries have them.
 
     Args:

@@ -12,7 +12,7 @@ from mbkf.trial.inertial.motion_inputs import (
     frame_times,
     motion_inputs,
     motion_recording,
-    untold,
+    unobserved,
     worn_filter,
 )
 from mbkf.trial.inertial.motion_start import first_posture
@@ -28,7 +28,7 @@ def test_fast_sensors_are_thinned_out():
 
 def test_dofs_of_segments_without_sensors_are_not_told():
     model = worn().model
-    found = untold(model, ("pelvis", "right_thigh"))
+    found = unobserved(model, ("pelvis", "right_thigh"))
     assert not found[:6].any() and not found[model.joint("right_thigh").v].any()
     assert found[model.joint("left_thigh").v].all()
 
@@ -36,7 +36,7 @@ def test_dofs_of_segments_without_sensors_are_not_told():
 def test_a_root_without_a_sensor_moves_with_the_segment_nearest_to_it():
     model, leg = worn().model, ("right_foot", "right_thigh", "right_shank")
     assert carrier(model, leg) == "right_thigh" and carrier(model, (*leg, "pelvis")) == "pelvis"
-    found = untold(model, leg)
+    found = unobserved(model, leg)
     assert not found[:6].any() and found[model.joint("right_thigh").v].all()
     assert not found[model.joint("right_shank").v].any()
 
