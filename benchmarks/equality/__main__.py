@@ -141,7 +141,8 @@ def _compared(args: argparse.Namespace) -> Iterator[Row]:
     rows: list[Row] = []
     with ThreadPoolExecutor(args.workers) as pool:
         # Lazily, so that no run starts before every person is scaled.
-        steps = ((comparison.prepared, captures), (comparison.followed, jobs))
+        prepared = [capture for capture in captures if capture.prepare]
+        steps = ((comparison.prepared, prepared), (comparison.followed, jobs))
         for row in (row for step in steps for row in pool.map(*step)):
             rows.append(row)
             print(f"{'ok   ' if row.passed else 'FAIL '} {_line(row)}", flush=True)
