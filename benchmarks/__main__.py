@@ -95,6 +95,13 @@ def _parser() -> argparse.ArgumentParser:
         "--seed", type=int, default=0, metavar="N", help="app: another person, other walks (%(default)s)"
     )
     parser.add_argument(
+        "--only",
+        action="append",
+        default=[],
+        metavar="PART",
+        help="misuse: this part alone; repeatable",
+    )
+    parser.add_argument(
         "--gate",
         action="store_true",
         help="instead of benchmarks: quick metrics from end to end against the committed baseline",
@@ -166,7 +173,7 @@ def _console() -> Console:
 
 def context_of(args: argparse.Namespace, out: Path) -> Context:
     """A benchmark's input from the command line, with its folder."""
-    return Context(args.data, out.resolve(), args.quick, args.old, args.minutes, args.seed)
+    return Context(args.data, out.resolve(), args.quick, args.old, args.minutes, args.seed, tuple(args.only))
 
 
 def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:

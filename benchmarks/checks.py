@@ -56,6 +56,7 @@ class Context:
         old: Folder of another source tree that this one is compared with, or None when there is none.
         minutes: How long a benchmark that can run for long is to run in place of its rows; None for its rows.
         seed: Of what is made at random, in benchmarks that take one.
+        only: Parts to run, in benchmarks that have parts; empty for all.
     """
 
     data: Path | None
@@ -64,6 +65,7 @@ class Context:
     old: Path | None = None
     minutes: float | None = None
     seed: int = 0
+    only: tuple[str, ...] = ()
 
     def require_data(self) -> Path:
         """The folder of reference captures.

@@ -1,0 +1,126 @@
+"""A process that runs mbkf's commands, each in a fork of itself, so that libraries are loaded once.
+
+    python -m benchmarks.misuse.server
+
+It reads one call as JSON per line of standard input (:class:`benchmarks.misuse.calls.Call`) and answers with the end of
+the command as JSON. A command that takes too long is killed; one that asks for more memory than it may gets none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib
+import json
+import os
+import resource
+import signal
+import sys
+import time
+import traceback
+from pathlib import Path
+from typing import Any
+
+LOADED = (
+    "mbkf.cli.main", "mbkf.trial.reconstruct", "mbkf.trial.scale", "mbkf.trial.label", "mbkf.trial.export",
+    "mbkf.io.results_folder", "mbkf.trial.results.summary", "mbkf.viz.report.document", "rich.table", "pyarrow.parquet",
+    "mbkf.study.batch.curves",
+)  # fmt: skip
+"""Modules that most commands load."""
+
+POLL_S = 0.005
+TRACEBACK_CODE = 70
+"""Exit code of a command whose error nothing caught."""
+
+UNPRIVILEGED = 65534
+"""The user "nobody", who may not read what only its owner may."""
+
+
+def serve() -> None:
+    """Answers calls until standard input ends."""
+    for name in LOADED:
+        importlib.import_module(name)
+    for line in sys.stdin:
+        print(json.dumps(ended(json.loads(line))), flush=True)
+
+
+def ended(call: dict[str, Any]) -> dict[str, Any]:
+    """Runs a call in a fork and returns its end."""
+    out, err = Path(call["scratch"]) / "stdout", Path(call["scratch"]) / "stderr"
+    begun = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        _be_the_command(call, out, err)
+    late = False
+    while True:
+        pid, status, used = os.wait4(child, os.WNOHANG)
+        if pid:
+            break
+        if not late and time.monotonic() - begun > call["seconds"]:
+            late = True
+            os.killpg(child, signal.SIGKILL)
+        time.sleep(POLL_S)
+    with contextlib.suppress(ProcessLookupError):  # workers that the command left behind
+        os.killpg(child, signal.SIGKILL)
+    shared = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return {
+        "code": None if late else os.waitstatus_to_exitcode(status),
+        "out": out.read_text("utf-8", "surrogateescape"),
+        "err": err.read_text("utf-8", "surrogateescape"),
+        "seconds": time.monotonic() - begun,
+        "memory_mb": max(0, used.ru_maxrss - shared) / 1024.0,
+    }
+
+
+def _be_the_command(call: dict[str, Any], out: Path, err: Path) -> None:
+    """Turns this process into the command and ends it."""
+    code = TRACEBACK_CODE
+    try:
+        os.setsid()
+        with contextlib.suppress(OSError):
+            os.close(0)
+        os.open(os.devnull, os.O_RDONLY)
+        for path, number in ((out, 1), (err, 2)):
+            made = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+            os.dup2(made, number)
+            os.close(made)
+        os.chdir(call["folder"])
+        os.environ.update(call["environment"])
+        if call["unprivileged"] and os.geteuid() == 0:
+            os.setgroups([])
+            os.setresgid(UNPRIVILEGED, UNPRIVILEGED, UNPRIVILEGED)
+            os.setresuid(UNPRIVILEGED, UNPRIVILEGED, UNPRIVILEGED)
+        if call["memory_mb"]:
+            _limit(call["memory_mb"])
+        if call["fault"]:
+            _arm(**call["fault"])
+        from mbkf.cli.main import main
+
+        try:
+            code = main(call["words"])
+        except SystemExit as end:
+            code = int(end.code or 0)
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        os._exit(code)
+
+
+def _limit(memory_mb: float) -> None:
+    """Grants so much address space beyond that in use, where the system states it."""
+    with contextlib.suppress(OSError, ValueError):
+        pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
+        most = pages * resource.getpagesize() + int(memory_mb * 2**20)
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+
+
+def _arm(library: str, folder: str, at: int, lasting: bool, report: str) -> None:
+    """Has the writes to files of a folder fail, as :mod:`benchmarks.misuse.full_disk` describes."""
+    shim = ctypes.CDLL(library)
+    shim.misuse_arm(folder.encode(), ctypes.c_long(at), ctypes.c_int(lasting), report.encode())
+
+
+if __name__ == "__main__":
+    serve()

@@ -1,0 +1,74 @@
+"""The laboratory that is misused: a folder with a file of every kind that commands read, all synthetic."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+from pathlib import Path
+
+from benchmarks.commands import mbkf
+from benchmarks.robustness.samples import make_samples
+
+INPUTS = {
+    "trial": "trial.c3d", "trc": "trial.trc", "raw": "raw.c3d", "static": "static.c3d", "subject": "subject.toml",
+    "forces": "forces.mot", "preset": "own.toml", "protocol": "set.toml", "body": "body.toml", "imus": "imus.csv",
+    "mounts": "imus.toml", "truth": "truth.h5", "result": "result", "study": "lab", "list": "list.csv",
+    "listed": "list.toml", "norms": "norms.toml", "labels": "labels.json", "session": "results", "osim": "model.osim",
+    "qualisys": "qualisys.tsv", "motive": "motive.csv", "still": "still.csv",
+}  # fmt: skip
+"""Files and folders of the laboratory by the names that cases give them."""
+
+PERSONS, GAIT_S = ("P1", "P2"), 3.0
+REST = '[[subject]]\nname = "P"\nstatic = "static.c3d"\ntrials = ["trial.c3d"]\n'
+
+
+def made_world(folder: Path) -> Path:
+    """Makes the laboratory in a folder, which it returns."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    make_samples(folder)
+    shutil.copy(folder / "result" / "reactions.mot", folder / "forces.mot")
+    (folder / "result" / "curves.parquet").unlink()
+    (folder / "list.toml").write_text(REST, "utf-8")
+    (folder / "list.csv").write_text("subject,trial,static\nP,trial.c3d,static.c3d\n", "utf-8")
+    mbkf("imu", "synth", folder / "truth.h5", "--out", folder / "imus.csv")
+    for person in PERSONS:
+        own = folder / "lab" / person
+        own.mkdir(parents=True)
+        for name in ("static.c3d", "trial.c3d"):
+            shutil.copy(folder / name, own)
+    made = folder / "made"
+    mbkf("synth", "--motion", "squat", "--seconds", "3", "--out", made)
+    mbkf("imu", "synth", made / "truth.h5", "--out", folder / "still.csv")
+    mbkf("synth", "--motion", "walk", "--seconds", str(GAIT_S), "--out", made)
+    for person in PERSONS:
+        (folder / "gait" / person).mkdir(parents=True)
+        for name in ("static.c3d", "trial.c3d"):
+            shutil.copy(made / name, folder / "gait" / person)
+    mbkf("batch", folder / "gait", "--workers", "1", "--filter", "kinematic", "--out", folder / "results")
+    for name in ("made", "gait"):
+        shutil.rmtree(folder / name)
+    return folder
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Sums over the content of all files below a folder, by their paths; links count as what they lead to."""
+    found = {}
+    for place, _, names in os.walk(folder):
+        for name in names:
+            path = Path(place, name)
+            found[str(path.relative_to(folder))] = digest(path)
+    return found
+
+
+def digest(path: Path) -> str:
+    """The sum over a file's content, or a word for what is no file."""
+    if not path.exists():
+        return "missing"
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "no file"
+
+
+def changed(before: dict[str, str], folder: Path) -> list[str]:
+    """Files of an earlier :func:`digests` that have another content now, or are gone."""
+    return [name for name, was in before.items() if digest(folder / name) != was]
