@@ -216,7 +216,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
         ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
         ("markers ignored", listed(summary["markers_ignored"])),
         ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
-        ("pelvis angles", f"{along['kind']}, {along['heading_deg']:.0f}° from the x axis"),
+        ("pelvis angles", f"{along['kind']}, {along['heading_deg']:z.0f}° from the x axis"),
         ("frames with all loads known", str(summary["valid_frames"])),
         ("frames with all loads measured", str(summary["measured_frames"])),
         (
@@ -234,13 +234,13 @@ def print_summary(summary: Summary, folder: Path) -> None:
         rows.append(("hidden markers RMS / max", hidden))
     for name, value in (summary["truth"] or {}).items():
         rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
-    rows += [("checks", line) for line in _checks(summary)]
+    rows += [("checks", "\n".join(_checks(summary)))]
     title = f"{summary['trial']} ({summary['filter']} filter)"
     table = Table(title=title, title_justify="left", show_header=False)
     table.add_column()
     table.add_column(justify="right")
     for name, text in rows:
-        if text or name != "markers ignored":
+        if text or name not in ("markers ignored", "checks"):
             table.add_row(name, text)
     console = terminal()
     console.print(table)

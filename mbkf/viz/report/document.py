@@ -129,7 +129,7 @@ def _pelvis_frame(r: Reconstruction) -> str:
     frame = progression_summary(r)
     if r.direction == LABORATORY:
         return "the laboratory's axes"
-    return f"frame of progression ({frame['kind']}, {frame['heading_deg']:.0f}° from the x axis)"
+    return f"frame of progression ({frame['kind']}, {frame['heading_deg']:z.0f}° from the x axis)"
 
 
 def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:
