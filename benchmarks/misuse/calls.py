@@ -35,7 +35,7 @@ class Call:
         seconds: After which it is killed.
         memory_mb: Address space that it may take; 0 for any.
         unprivileged: Whether it runs as the user "nobody", if this process may do that.
-        fault: Writes that fail, as :func:`benchmarks.misuse.full_disk.fault` states them.
+        fault: Writes that fail, as :meth:`benchmarks.misuse.failing_writes.FailingWrites.fault` states them.
     """
 
     words: Sequence[str]
@@ -62,6 +62,7 @@ class Ending:
         err: Its standard error.
         seconds: Wall time, s.
         memory_mb: Memory that it took beyond the loaded libraries.
+        writes: Its writes to the folder of the call's fault.
     """
 
     code: int | None
@@ -69,6 +70,7 @@ class Ending:
     err: str
     seconds: float
     memory_mb: float
+    writes: int = 0
 
     @property
     def unclean(self) -> str:

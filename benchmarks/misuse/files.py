@@ -119,7 +119,14 @@ def tried(run: Commands, acts: Sequence[Act], world: Path, folder: Path) -> list
 
 
 def done(run: Commands, act: Act, world: Path, place: Path) -> Found:
-    """Does one act and looks at what is there afterwards; its folder is removed if all went well."""
+    """Does one act and looks at the files afterwards; its folder is removed if all went well.
+
+    Args:
+        run: Runs commands.
+        act: The act.
+        world: The laboratory.
+        place: The act's folder, to be made.
+    """
     place.mkdir(parents=True)
     words = act.prepare(world, place)
     patience = SLOW_S if act.case.runs else SERVING_S

@@ -47,10 +47,12 @@ def serve() -> None:
 def ended(call: dict[str, Any]) -> dict[str, Any]:
     """Runs a call in a fork and returns its end."""
     out, err = Path(call["scratch"]) / "stdout", Path(call["scratch"]) / "stderr"
+    writes = Path(call["scratch"]) / "writes"
+    writes.unlink(missing_ok=True)
     begun = time.monotonic()
     child = os.fork()
     if child == 0:
-        _be_the_command(call, out, err)
+        _be_the_command(call, out, err, writes)
     late = False
     while True:
         pid, status, used = os.wait4(child, os.WNOHANG)
@@ -68,13 +70,14 @@ def ended(call: dict[str, Any]) -> dict[str, Any]:
         "out": out.read_text("utf-8", "surrogateescape"),
         "err": err.read_text("utf-8", "surrogateescape"),
         "seconds": time.monotonic() - begun,
+        "writes": int(writes.read_text("ascii")) if writes.exists() else 0,
         "memory_mb": max(0, used.ru_maxrss - shared) / 1024.0,
     }
 
 
-def _be_the_command(call: dict[str, Any], out: Path, err: Path) -> None:
+def _be_the_command(call: dict[str, Any], out: Path, err: Path, writes: Path) -> None:
     """Turns this process into the command and ends it."""
-    code = TRACEBACK_CODE
+    code, shim = TRACEBACK_CODE, None
     try:
         os.setsid()
         with contextlib.suppress(OSError):
@@ -93,7 +96,9 @@ def _be_the_command(call: dict[str, Any], out: Path, err: Path) -> None:
         if call["memory_mb"]:
             _limit(call["memory_mb"])
         if call["fault"]:
-            _arm(**call["fault"])
+            shim = ctypes.CDLL(call["fault"]["library"])
+            folder = os.fsencode(call["fault"]["folder"])
+            shim.misuse_arm(folder, call["fault"]["at"], int(call["fault"]["lasting"]))
         from mbkf.cli.main import main
 
         try:
@@ -102,6 +107,8 @@ def _be_the_command(call: dict[str, Any], out: Path, err: Path) -> None:
             code = int(end.code or 0)
         sys.stdout.flush()
         sys.stderr.flush()
+        if shim is not None:
+            writes.write_text(str(shim.misuse_disarm()), "ascii")
     except BaseException:
         traceback.print_exc()
     finally:
@@ -114,12 +121,6 @@ def _limit(memory_mb: float) -> None:
         pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
         most = pages * resource.getpagesize() + int(memory_mb * 2**20)
         resource.setrlimit(resource.RLIMIT_AS, (most, most))
-
-
-def _arm(library: str, folder: str, at: int, lasting: bool, report: str) -> None:
-    """Has the writes to files of a folder fail, as :mod:`benchmarks.misuse.full_disk` describes."""
-    shim = ctypes.CDLL(library)
-    shim.misuse_arm(folder.encode(), ctypes.c_long(at), ctypes.c_int(lasting), report.encode())
 
 
 if __name__ == "__main__":

@@ -1,0 +1,70 @@
+"""Tells whether a file that mbkf wrote is whole, by its format."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import h5py
+import pyarrow.parquet as pq
+
+from mbkf.errors import MbkfError
+from mbkf.io.capture import read_capture
+from mbkf.io.storage import read_storage
+
+SIGNATURES = {".png": b"\x89PNG", ".gif": b"GIF8", ".mp4": b"\x00\x00\x00"}
+
+
+def torn_files(folder: Path) -> list[str]:
+    """Files below a folder that are not whole, each with the reason."""
+    found = [folder] if folder.is_file() else [path for path in folder.rglob("*") if path.is_file()]
+    return [f"{path.name}: {reason}" for path in sorted(found) if (reason := torn(path))]
+
+
+def torn(path: Path) -> str:
+    """The reason why a file is not whole; "" where it is."""
+    try:
+        if path.suffix in SIGNATURES:
+            return "" if path.read_bytes().startswith(SIGNATURES[path.suffix][:3]) else "another signature"
+        READERS.get(path.suffix, Path.read_bytes)(path)
+    except (MbkfError, OSError, ValueError, SyntaxError, AssertionError) as error:
+        return " ".join(str(error).split()) or type(error).__name__
+    return ""
+
+
+def _table(path: Path) -> None:
+    lines = path.read_text("utf-8").splitlines()
+    assert path.read_bytes().endswith(b"\n"), "the last line has no end"
+    assert len({line.count(",") for line in lines if not line.startswith("#")}) == 1, "rows of other lengths"
+
+
+def _page(path: Path) -> None:
+    assert path.read_text("utf-8").rstrip().endswith("</html>"), "the page has no end"
+
+
+def _motion(path: Path) -> None:
+    with h5py.File(path) as file:
+        assert len(file), "nothing in it"
+
+
+def _glb(path: Path) -> None:
+    content = path.read_bytes()
+    assert int.from_bytes(content[8:12], "little") == len(content), "another length than its header's"
+
+
+def _bvh(path: Path) -> None:
+    lines = path.read_text("utf-8").splitlines()
+    at = next(k for k, line in enumerate(lines) if line.startswith("Frames:"))
+    assert len(lines) - at - 2 == int(lines[at].split()[1]), "frames missing"
+
+
+READERS: Mapping[str, Callable[[Path], object]] = {
+    ".toml": lambda path: tomllib.loads(path.read_text("utf-8")),
+    ".json": lambda path: json.loads(path.read_text("utf-8")),
+    ".c3d": read_capture, ".trc": read_capture, ".mot": read_storage, ".sto": read_storage, ".h5": _motion,
+    ".parquet": pq.read_table, ".csv": _table, ".html": _page, ".xml": ET.parse, ".urdf": ET.parse, ".glb": _glb,
+    ".bvh": _bvh,
+}  # fmt: skip

@@ -1,0 +1,58 @@
+"""Torn files of each format are told from whole ones."""
+
+import pytest
+
+from benchmarks.misuse.calls import Ending
+from benchmarks.misuse.full_disk import wrong_end
+from benchmarks.misuse.whole import torn, torn_files
+from mbkf.io.results_folder import write_reconstruction
+from tests.io.reconstructions import made_up
+
+TEXTS = {
+    "a.toml": ('a = "b"\n', 'a = "b'),
+    "a.json": ('{"a": 1}\n', '{"a": '),
+    "a.csv": ("a,b\n1,2\n", "a,b\n1,"),
+    "a.html": ("<html></html>\n", "<html>"),
+    "a.xml": ("<a><b/></a>", "<a><b/>"),
+    "a.bvh": ("MOTION\nFrames: 2\nFrame Time: 0.01\n0\n0\n", "MOTION\nFrames: 2\nFrame Time: 0.01\n0\n"),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_text_without_its_end_is_torn(tmp_path, name):
+    for text, whole in zip(TEXTS[name], (True, False), strict=True):
+        (tmp_path / name).write_text(text)
+        assert (torn(tmp_path / name) == "") is whole
+
+
+def test_files_of_a_result_are_whole_until_they_are_cut(tmp_path):
+    result = made_up()
+    write_reconstruction(result, {"frames": result.frames}, tmp_path)
+    assert torn_files(tmp_path) == []
+    for name in ("motion.h5", "angles.mot", "markers.trc"):
+        content = (tmp_path / name).read_bytes()
+        (tmp_path / name).write_bytes(content[: len(content) // 2])
+    assert {line.partition(":")[0] for line in torn_files(tmp_path)} == {
+        "motion.h5",
+        "angles.mot",
+        "markers.trc",
+    }
+
+
+@pytest.mark.parametrize(
+    ("code", "err", "now", "right"),
+    [
+        (2, "mbkf: error: No space left on device", "old = 1\n", True),
+        (2, "mbkf: error: No space left on device", "new = 1\n", False),
+        (2, "", "old = 1\n", False),
+        (0, "", "new = 1\n", True),
+        (0, "", "new = ", False),
+        (1, "mbkf: error: unexpected OSError", "old = 1\n", False),
+    ],
+)
+def test_a_full_disk_leaves_the_old_whole_and_is_told(tmp_path, code, err, now, right):
+    for place, text in (("old", "old = 1\n"), ("now", now)):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "a.toml").write_text(text)
+    end = Ending(code, "", err, 1.0, 0.0)
+    assert (wrong_end(end, tmp_path / "old", tmp_path / "now") == "") is right
