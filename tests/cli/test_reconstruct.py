@@ -100,7 +100,7 @@ def test_files_keys_and_numbers(person, reconstruct, capsys):
     shown = capsys.readouterr().out
     assert "60 at 100 Hz" in shown
     kind, heading = summary["progression"]["kind"], summary["progression"]["heading_deg"]
-    assert f"{kind}, {heading:.0f}° from the x axis" in shown
+    assert f"{kind}, {heading:z.0f}° from the x axis" in shown
     assert shown.splitlines()[-1] == str(out)
 
 
