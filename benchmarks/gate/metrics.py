@@ -10,6 +10,7 @@ import numpy as np
 
 from benchmarks.dynamic.captures import load
 from mbkf.io.capture import read_capture
+from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.sensors.block import Frame
@@ -75,20 +76,30 @@ def synthetic_metrics(motion: str, seconds: float, folder: Path, changed: Change
     yield Metric(f"{motion}: labels right", 100.0 * found.correct_fraction, "%", HIGHER)
     yield Metric(f"{motion}: labels wrong", 100.0 * found.wrong_fraction, "%")
     truth = truth_beside(folder / "trial.c3d")
+    for name, settings in variants(capture, seconds).items():
+        result = reconstruct(capture, subject, settings=changed(settings))
+        yield from told(f"{motion}, {name}", result, truth)
+    streamed = live_marker_rms_mm(folder, subject, changed)
+    yield Metric(f"{motion}, live: marker RMS", streamed, "mm")
+
+
+def variants(capture: Capture, seconds: float) -> Mapping[str, ReconstructSettings]:
+    """The settings by which a synthetic capture is reconstructed, by name.
+
+    Args:
+        capture: The capture.
+        seconds: Its length.
+    """
     plain = ReconstructSettings(keep_covariance=True)
     plates = tuple(plate.name for plate in capture.plates)
     hidden = (Hidden(capture.markers.names[::4], 0.4 * seconds, 0.4 * seconds + 0.3),)
-    for name, settings in {
+    return {
         "smoothed": plain,
         "causal": replace(plain, smooth=False),
         "kinematic": replace(plain, filter="kinematic"),
         "without plates": replace(plain, without_plates=plates),
         "hidden": replace(plain, hide=hidden),
-    }.items():
-        result = reconstruct(capture, subject, settings=changed(settings))
-        yield from told(f"{motion}, {name}", result, truth)
-    streamed = live_marker_rms_mm(folder, subject, changed)
-    yield Metric(f"{motion}, live: marker RMS", streamed, "mm")
+    }
 
 
 def real_metrics(name: str, data: Path, changed: Change) -> Iterator[Metric]:

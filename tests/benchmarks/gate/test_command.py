@@ -6,17 +6,36 @@ import pytest
 from rich.console import Console
 
 from benchmarks.__main__ import main
-from benchmarks.gate import command, measured
+from benchmarks.gate import command, measured, metrics
 from benchmarks.gate.baseline import Baseline, held, write_baseline
 from mbkf.errors import InvalidInput
+from mbkf.trial.preparation.settings import ReconstructSettings
+from tests.captures import made_capture
 
 pytestmark = pytest.mark.slow
 
 
+def made_once(function):
+    """Gives its first answer again: what no setting changes is not computed for every run of the gate."""
+    answers = []
+
+    def answer(*words, **named):
+        answers[:] = answers or [function(*words, **named)]
+        return answers[0]
+
+    return answer
+
+
 @pytest.fixture
 def short(monkeypatch, tmp_path):
-    """One short squat, and a baseline of it."""
+    """One short squat, followed in two of the ways, and a baseline of it."""
     monkeypatch.setattr(measured, "TRIALS", {"squat": 1.0})
+    every = metrics.variants
+    monkeypatch.setattr(
+        metrics, "variants", lambda *made: {name: every(*made)[name] for name in ("smoothed", "hidden")}
+    )
+    for name in ("synthesise", "scale", "label"):
+        monkeypatch.setattr(metrics, name, made_once(getattr(metrics, name)))
     monkeypatch.delenv("CI", raising=False)
     monkeypatch.setattr(measured, "library", lambda: None)  # times of steps are no metrics then
     found = list(measured.measured(tmp_path / "first", None))
@@ -28,6 +47,18 @@ def worsened(settings):
     """Markers are weighed as if their noise were six times what it is."""
     markers = replace(settings.dynamic.markers, marker_noise_scale=6.0)
     return replace(settings, dynamic=replace(settings.dynamic, markers=markers))
+
+
+def test_each_way_of_reconstructing_differs_from_the_plain_one_in_what_its_name_says():
+    made = metrics.variants(made_capture(3), 1.0)
+    plain = made.pop("smoothed")
+    assert plain == ReconstructSettings(keep_covariance=True)
+    assert made.pop("causal") == replace(plain, smooth=False)
+    assert made.pop("kinematic") == replace(plain, filter="kinematic")
+    assert made.pop("without plates") == replace(plain, without_plates=("1", "2"))
+    (hidden,) = made.pop("hidden").hide
+    assert (hidden.from_s, hidden.to_s) == pytest.approx((0.4, 0.7)) and len(hidden.names) == 9
+    assert made == {}
 
 
 def run(place, change=None):
