@@ -34,7 +34,7 @@ class Call:
         environment: Variables that it gets besides.
         seconds: After which it is killed.
         memory_mb: Address space that it may take; 0 for any.
-        unprivileged: Whether it runs as the user "nobody", if this process may do that.
+        unprivileged: Whether it obeys the modes of files also where root runs it.
         fault: Writes that fail, as :meth:`benchmarks.misuse.failing_writes.FailingWrites.fault` states them.
     """
 

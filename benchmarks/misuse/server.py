@@ -32,8 +32,8 @@ POLL_S = 0.005
 TRACEBACK_CODE = 70
 """Exit code of a command whose error nothing caught."""
 
-UNPRIVILEGED = 65534
-"""The user "nobody", who may not read what only its owner may."""
+CAPABILITY_VERSION, PASS_OVER_MODES = 0x20080522, 0b110
+"""Linux's version of capabilities, and those two with which root reads and writes what modes forbid."""
 
 
 def serve() -> None:
@@ -87,12 +87,10 @@ def _be_the_command(call: dict[str, Any], out: Path, err: Path, writes: Path) ->
             made = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
             os.dup2(made, number)
             os.close(made)
-        os.chdir(call["folder"])
-        os.environ.update(call["environment"])
-        if call["unprivileged"] and os.geteuid() == 0:
-            os.setgroups([])
-            os.setresgid(UNPRIVILEGED, UNPRIVILEGED, UNPRIVILEGED)
-            os.setresuid(UNPRIVILEGED, UNPRIVILEGED, UNPRIVILEGED)
+        os.chdir(_as_given(call["folder"]))
+        os.environ.update({name: _as_given(text) for name, text in call["environment"].items()})
+        if call["unprivileged"]:
+            _obey_modes()
         if call["memory_mb"]:
             _limit(call["memory_mb"])
         if call["fault"]:
@@ -102,7 +100,7 @@ def _be_the_command(call: dict[str, Any], out: Path, err: Path, writes: Path) ->
         from mbkf.cli.main import main
 
         try:
-            code = main(call["words"])
+            code = main([_as_given(word) for word in call["words"]])
         except SystemExit as end:
             code = int(end.code or 0)
         sys.stdout.flush()
@@ -113,6 +111,23 @@ def _be_the_command(call: dict[str, Any], out: Path, err: Path, writes: Path) ->
         traceback.print_exc()
     finally:
         os._exit(code)
+
+
+def _as_given(text: str) -> str:
+    """A word as a process gets it whose system has another encoding of names."""
+    return os.fsdecode(text.encode("utf-8", "surrogateescape"))
+
+
+def _obey_modes() -> None:
+    """Gives up root's right to read and write what modes forbid, where the system is Linux."""
+    if not sys.platform.startswith("linux"):
+        return
+    header = (ctypes.c_uint32 * 2)(CAPABILITY_VERSION, 0)
+    sets = (ctypes.c_uint32 * 6)()  # effective, permitted, inheritable, twice 32 of each
+    system = ctypes.CDLL(None)
+    system.capget(header, sets)
+    sets[0], sets[1] = sets[0] & ~PASS_OVER_MODES, sets[1] & ~PASS_OVER_MODES
+    system.capset(header, sets)
 
 
 def _limit(memory_mb: float) -> None:
