@@ -42,7 +42,7 @@ def unfinished(target: Path, within: Path | None = None, *, folder: bool = False
             path.mkdir()
         else:
             path.touch(exist_ok=False)
-        with suppress(FileNotFoundError), _lock(path, wait=True):
+        with suppress(FileNotFoundError), locked(path, wait=True):
             if not path.exists():
                 continue  # swept before the lock was ours
             try:
@@ -71,14 +71,21 @@ def _remove(path: Path) -> None:
 
 
 def _remove_if_left(path: Path) -> None:
-    with suppress(OSError), _lock(path, wait=False) as ours:
+    with suppress(OSError), locked(path, wait=False) as ours:
         if ours or (ours is None and time.time() - path.stat().st_mtime > OLDEST_S):
             _remove(path)
 
 
 @contextmanager
-def _lock(path: Path, wait: bool) -> Iterator[bool | None]:
-    """True for a lock on a path that is ours; None where the system or its file system has no locks.
+def locked(path: Path, wait: bool) -> Iterator[bool | None]:
+    """Holds a lock on a file or folder that the system releases when this process ends, however it ends.
+
+    Args:
+        path: The file or folder.
+        wait: Wait for another process that holds it.
+
+    Yields:
+        True for a lock that is ours; None where the system or its file system has no locks.
 
     Raises:
         OSError: The path is not there.

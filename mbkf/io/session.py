@@ -29,7 +29,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from mbkf.errors import FileFormatError
-from mbkf.io.toml import Entries, write_toml
+from mbkf.io.atomic import write_text
+from mbkf.io.toml import Entries, toml_text
 
 SESSION_FILE = "session.toml"
 
@@ -170,7 +171,12 @@ def write_session(notes: SessionNotes, path: str | Path) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    write_toml(path, "A session, as 'mbkf app' and 'mbkf batch' read it.", plain_session(notes))
+    write_text(path, session_text(notes))
+
+
+def session_text(notes: SessionNotes) -> str:
+    """The text of a session file; empty entries are left out."""
+    return toml_text("A session, as 'mbkf app' and 'mbkf batch' read it.", plain_session(notes))
 
 
 def _plain_trial(trial: TrialNotes) -> dict[str, object]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import write_text
 from mbkf.io.plain_data import read_toml
 
 T = TypeVar("T")
@@ -34,8 +34,12 @@ def write_toml(path: str | Path, comment: str, table: Mapping[str, object]) -> N
     Raises:
         OSError: The file cannot be written.
     """
-    with replacing(path) as partial:
-        partial.write_text("\n".join([f"# {comment}", *_lines(table, "")]) + "\n", encoding="utf-8")
+    write_text(path, toml_text(comment, table))
+
+
+def toml_text(comment: str, table: Mapping[str, object]) -> str:
+    """The text of a file that :func:`write_toml` writes."""
+    return "\n".join([f"# {comment}", *_lines(table, "")]) + "\n"
 
 
 def _lines(table: Mapping[str, object], place: str) -> Iterator[str]:
