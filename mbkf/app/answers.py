@@ -1,4 +1,4 @@
-"""Sessions and runs as plain data for the page, and the statements that the page makes about a session."""
+"""Sessions and runs as plain data for the page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from mbkf.app.live_run import LiveRun
 from mbkf.app.recordings import recording_rows
 from mbkf.app.runs import Runs, RunState
 from mbkf.app.workspace import Workspace
-from mbkf.io.session import TrialKind, plain_session, session_of
+from mbkf.io.session import TrialKind, plain_session
+from mbkf.io.session_change import session_version
 from mbkf.study.survey.problems import plain_problem
 from mbkf.study.survey.session import SurveyedSession
 from mbkf.study.survey.trial import SurveyedTrial
@@ -41,28 +42,13 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
     return {
         "id": name,
         "notes": plain_session(found.notes),
+        "version": session_version(found.notes),
         "standing_kg": found.standing_kg,
         "problems": [plain_problem(one) for one in found.problems],
         "trials": [*(_trial(found, one, state) for one in found.trials), *recording_rows(workspace, name)],
         "kinds": [kind.value for kind in TrialKind],
         "run": run_state(state),
     }
-
-
-def write_notes(workspace: Workspace, name: str, entries: object) -> None:
-    """Writes the page's statements about a session.
-
-    Args:
-        workspace: The sessions.
-        name: Of the session.
-        entries: Entries of a session file.
-
-    Raises:
-        InvalidInput: The session does not exist.
-        FileFormatError: An entry is not possible.
-        OSError: The session file cannot be written.
-    """
-    workspace.note(name, session_of(entries if isinstance(entries, dict) else {"name": entries}))
 
 
 def run_state(state: RunState | None) -> Plain | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from dataclasses import replace
 from pathlib import Path
 from threading import Lock
@@ -19,9 +20,12 @@ from mbkf.viz.protocol.edit import MarkerSetEdit
 SET_FILE = "marker_set.toml"
 """File of a session's own marker set, beside its captures, unless the session file names another."""
 
+MOST_OPEN = 32
+"""Most editors at once; the oldest one has to be opened again."""
+
 
 class MarkerSets:
-    """The marker sets that are open in editors, one for each session.
+    """The marker sets that are open in editors; each page has an editor of its own, so that two merge on saving.
 
     Args:
         workspace: The sessions.
@@ -29,7 +33,7 @@ class MarkerSets:
 
     def __init__(self, workspace: Workspace) -> None:
         self._workspace = workspace
-        self._edits: dict[str, MarkerSetEdit] = {}
+        self._edits: dict[tuple[str, str], MarkerSetEdit] = {}
         self._lock = Lock()
 
     def open(self, session: str) -> str:
@@ -43,33 +47,37 @@ class MarkerSets:
         stated = self._workspace.stated(session).protocol
         protocol, capture = starting_set(read_capture(capture_to_show(found)), stated)
         edit = MarkerSetEdit(protocol, stand_beside(capture, protocol), folder / file_of_set(found.notes))
+        page = secrets.token_hex(8)
         with self._lock:
-            self._edits[session] = edit
-        return edit.text("marker_set/say?" + urlencode({"session": session}))
+            self._edits[session, page] = edit
+            while len(self._edits) > MOST_OPEN:
+                del self._edits[next(iter(self._edits))]
+        return edit.text("marker_set/say?" + urlencode({"session": session, "page": page}))
 
-    def say(self, session: str, word: str) -> str:
+    def say(self, session: str, page: str, word: str) -> str:
         """Carries out a request of an editor's page; a saved set becomes the session's.
 
         Args:
             session: Name of the session.
+            page: Name of the editor's page.
             word: The request, in JSON (:meth:`MarkerSetEdit.hear`).
 
         Returns:
             The reply, in JSON.
 
         Raises:
-            InvalidInput: No editor of this session is open.
+            InvalidInput: This editor of the session is not open.
             OSError: The session file cannot be written.
         """
         with self._lock:
-            edit = self._edits.get(session)
+            edit = self._edits.get((session, page))
             if edit is None:
                 raise InvalidInput(f"the marker editor of '{session}' is not open; open it again")
             before = edit.saved
             answer = edit.hear(word)
             if edit.saved is not before:
-                notes = self._workspace.survey(session).notes
-                self._workspace.note(session, replace(notes, protocol=file_of_set(notes)))
+                notes = self._workspace.notes(session)
+                self._workspace.change(session, notes, replace(notes, protocol=edit.file))
             return answer
 
 

@@ -11,7 +11,8 @@ from mbkf.viz.page import asset, embedded_words, fill, scripts
 from mbkf.viz.report.document import report_page
 
 SCRIPTS = (
-    "element.js", "app_words.js", "app_live.js", "app_export.js", "app_report.js", "app_session.js", "app.js",
+    "element.js", "app_words.js", "app_place.js", "app_merge.js", "app_live.js", "app_export.js", "app_report.js",
+    "app_session.js", "app.js",
 )  # fmt: skip
 """Scripts of the start page, in the order they are needed."""
 

@@ -1,8 +1,11 @@
-"""Routes whose replies are plain data as JSON, a page, or a file; a foreseen failure is replied as one sentence."""
+"""Routes whose replies are plain data as JSON, a page, or a file; a foreseen failure is replied as one sentence.
+
+Notes carry a version: a reply with an entry ``version`` repeats it as its ``ETag``, and a request that changes a note
+names the version that it began from in ``If-Match``.
+"""
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from urllib.parse import quote
@@ -12,19 +15,21 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
+from mbkf.app.bodies import plain, read_body
+from mbkf.app.failures import BAD_REQUEST, CONFLICT, NOT_FOUND, WITHOUT_VERSION, Refused, failed, failure
 from mbkf.errors import InvalidInput, MbkfError
 
 Query = Mapping[str, str]
 """Words of a request's address, e.g. "P1" for ``session`` in ``?session=P1``; empty where a word is missing."""
 
-BAD_REQUEST, NOT_FOUND, SERVER_ERROR = 400, 404, 500
+NO_VERSION = "a change must name the version that it began from; load the page again"
 
 
 def data(path: str, answer: Callable[[Query], object]) -> Route:
     """A GET request that is replied to with plain data."""
 
     async def endpoint(request: Request) -> Response:
-        return await replied(lambda: JSONResponse(answer(_query(request))))
+        return await replied(lambda: _json(answer(_query(request))))
 
     return Route(path, endpoint, methods=["GET"])
 
@@ -33,8 +38,30 @@ def action(path: str, answer: Callable[[Query, bytes], object]) -> Route:
     """A POST request with a body that is replied to with plain data."""
 
     async def endpoint(request: Request) -> Response:
-        body = await request.body()
-        return await replied(lambda: JSONResponse(answer(_query(request), body)))
+        try:
+            body = await read_body(request)
+        except MbkfError as error:
+            return failed(error)
+        return await replied(lambda: _json(answer(_query(request), body)))
+
+    return Route(path, endpoint, methods=["POST"])
+
+
+def change(path: str, answer: Callable[[Query, object, str], object]) -> Route:
+    """A POST request that changes a note; ``answer`` gets the plain data of its body and the version in ``If-Match``.
+
+    A reply with ``differences`` reports a change that somebody else's stands against.
+    """
+
+    async def endpoint(request: Request) -> Response:
+        version = request.headers.get("if-match", "").removeprefix("W/").strip('"')
+        try:
+            body = await read_body(request)
+            if not version:
+                raise Refused(WITHOUT_VERSION, NO_VERSION)
+        except MbkfError as error:
+            return failed(error)
+        return await replied(lambda: _json(answer(_query(request), plain(body), version)))
 
     return Route(path, endpoint, methods=["POST"])
 
@@ -44,9 +71,10 @@ def page(path: str, make: Callable[[Query], str]) -> Route:
 
     async def endpoint(request: Request) -> Response:
         try:
-            return HTMLResponse(await run_in_threadpool(make, _query(request)))
-        except MbkfError as error:
-            return PlainTextResponse(sentence(error), status_code=NOT_FOUND)
+            return HTMLResponse(await run_in_threadpool(lambda: make(_query(request))))
+        except (MbkfError, OSError) as error:
+            status, text = failure(error)
+            return PlainTextResponse(text, status_code=NOT_FOUND if status == BAD_REQUEST else status)
 
     return Route(path, endpoint, methods=["GET"])
 
@@ -69,28 +97,23 @@ async def replied(answer: Callable[[], Response]) -> Response:
     """The reply of a function that runs in a thread; a foreseen failure as its sentence, under "trouble"."""
     try:
         return await run_in_threadpool(answer)
-    except MbkfError as error:
-        return JSONResponse({"trouble": sentence(error)}, status_code=BAD_REQUEST)
-    except OSError as error:
-        return JSONResponse({"trouble": error.strerror or str(error)}, status_code=SERVER_ERROR)
+    except (MbkfError, OSError) as error:
+        return failed(error)
 
 
-def sentence(error: Exception) -> str:
-    """The text of an error in one line."""
-    return " ".join(str(error).split())
-
-
-def plain(body: bytes) -> object:
-    """The plain data of a request's body.
-
-    Raises:
-        InvalidInput: The body holds no JSON.
-    """
-    try:
-        return json.loads(body)
-    except (ValueError, RecursionError) as error:
-        raise InvalidInput("the page sent a request that is no JSON") from error
+def _json(answer: object) -> Response:
+    entries = answer if isinstance(answer, Mapping) else {}
+    headers = {"ETag": f'"{entries["version"]}"'} if "version" in entries else None
+    return JSONResponse(answer, CONFLICT if entries.get("differences") else 200, headers)
 
 
 def _query(request: Request) -> Query:
-    return defaultdict(str, request.query_params)
+    """The words of a request's address.
+
+    Raises:
+        InvalidInput: One holds the letter NUL.
+    """
+    words = request.query_params
+    if any("\0" in word for word in words.values()):
+        raise InvalidInput("the address holds the letter NUL")
+    return defaultdict(str, words)

@@ -11,17 +11,20 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from mbkf.app import answers, reports
+from mbkf.app.bodies import plain, stated_size, stream_body
 from mbkf.app.exports import export, session_curves
-from mbkf.app.foot_events import events_of, set_events
+from mbkf.app.failures import failed
+from mbkf.app.foot_events import set_events
 from mbkf.app.live_command import live_offer, live_options, recording_folder
 from mbkf.app.live_run import LiveRun
 from mbkf.app.marker_sets import MarkerSets
+from mbkf.app.notes import change_notes
 from mbkf.app.pages import live_frame_page, start_page, trial_report
-from mbkf.app.replies import BAD_REQUEST, Query, action, data, download, page, plain, sentence
+from mbkf.app.replies import Query, action, change, data, download, page
 from mbkf.app.runs import Runs
 from mbkf.app.trial_viewer import viewer_data, viewer_page
 from mbkf.app.workspace import Workspace
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.lsl.discovery import marker_streams
 from mbkf.viz.language import ENGLISH
 
@@ -45,9 +48,9 @@ def routes(workspace: Workspace, runs: Runs, live: LiveRun) -> list[BaseRoute]:
 
 
 def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
-    def state(query: Query, body: bytes) -> object:
-        answers.write_notes(workspace, query["session"], plain(body))
-        return answers.session(workspace, runs, query["session"])
+    def noted(query: Query, sent: object, version: str) -> object:
+        found = change_notes(workspace, query["session"], sent, version)
+        return {**answers.session(workspace, runs, query["session"]), **found}
 
     def run(query: Query, _body: bytes) -> object:
         name = query["session"]
@@ -58,17 +61,15 @@ def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
     async def put(request: Request) -> Response:
         name = request.query_params.get("file", "")
         try:
-            with workspace.putting(name) as file:
-                async for chunk in request.stream():
-                    file.write(chunk)
-        except InvalidInput as error:
-            return JSONResponse({"trouble": sentence(error)}, status_code=BAD_REQUEST)
+            await stream_body(request, workspace.putting(name, stated_size(request)))
+        except (MbkfError, OSError) as error:
+            return failed(error)
         return JSONResponse({"put": name})
 
     return [
         data("/sessions", lambda _: answers.sessions(workspace, runs)),
         data("/session", lambda query: answers.session(workspace, runs, query["session"])),
-        action("/session", state),
+        change("/session", noted),
         action("/run", run),
         Route("/put", put, methods=["POST"]),
     ]
@@ -88,8 +89,8 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         session, trial = query["session"], query["trial"]
         return trial_report(workspace.result(session, trial), workspace.events(session, trial))
 
-    def events(query: Query, body: bytes) -> object:
-        return set_events(workspace, runs, query["session"], query["trial"], events_of(plain(body)))
+    def events(query: Query, sent: object, version: str) -> object:
+        return set_events(workspace, runs, query["session"], query["trial"], sent, version)
 
     def exported(query: Query) -> tuple[str, bytes]:
         content = export(workspace.result(query["session"], query["trial"]), query["to"])
@@ -99,7 +100,7 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         page("/trial/look", viewer),
         page("/trial/report", report),
         data("/trial/recording", shown),
-        action("/trial/events", events),
+        change("/trial/events", events),
         download("/trial/export", exported),
     ]
 
@@ -125,13 +126,14 @@ def _marker_set_routes(workspace: Workspace) -> list[BaseRoute]:
     sets = MarkerSets(workspace)
 
     def say(query: Query, body: bytes) -> object:
-        return json.loads(sets.say(query["session"], body.decode("utf-8", errors="replace")))
+        text = body.decode("utf-8", errors="replace")
+        return json.loads(sets.say(query["session"], query["page"], text))
 
     return [page("/marker_set", lambda query: sets.open(query["session"])), action("/marker_set/say", say)]
 
 
 def _live_routes(workspace: Workspace, live: LiveRun) -> list[BaseRoute]:
-    def change(query: Query, body: bytes) -> object:
+    def run(query: Query, body: bytes) -> object:
         if query["do"] == "stop":
             live.stop()
         else:
@@ -148,7 +150,7 @@ def _live_routes(workspace: Workspace, live: LiveRun) -> list[BaseRoute]:
 
     return [
         data("/live", lambda query: {**live_offer(workspace, query["session"]), **answers.live_state(live)}),
-        action("/live", change),
+        action("/live", run),
         data("/live/state", lambda _: answers.live_state(live)),
         data("/live/streams", lambda _: {"streams": [asdict(one) for one in marker_streams()]}),
         page("/live/page", frame),

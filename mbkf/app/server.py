@@ -13,6 +13,7 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 
+from mbkf.app.failures import HANDLERS
 from mbkf.app.guard import Guard
 from mbkf.app.live_run import LiveRun
 from mbkf.app.routes import routes
@@ -54,7 +55,11 @@ class AppServer:
         self.runs = Runs(self.workspace, workers)
         self.live = LiveRun()
         guard = Middleware(Guard, token=self._token, cookie=COOKIE.format(port=self.port))
-        app = Starlette(routes=routes(self.workspace, self.runs, self.live), middleware=[guard])
+        app = Starlette(
+            routes=routes(self.workspace, self.runs, self.live),
+            middleware=[guard],
+            exception_handlers=HANDLERS,
+        )
         config = uvicorn.Config(app, log_level="critical", http="h11", ws="none", lifespan="off")
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(

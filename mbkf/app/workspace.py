@@ -8,16 +8,15 @@ exist, and FileFormatError for a damaged session file.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import replace
-from pathlib import Path, PurePosixPath
+from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import BinaryIO
 
+from mbkf.app.uploads import RESULTS, putting
 from mbkf.errors import InvalidInput
-from mbkf.io.atomic import replacing
 from mbkf.io.results_folder import SUMMARY_FILE
-from mbkf.io.session import SESSION_FILE, FootEvent, SessionNotes, read_session, write_session
+from mbkf.io.session import SESSION_FILE, FootEvent, SessionNotes, TrialNotes
+from mbkf.io.session_change import ChangedSession, change_session, current_session
 from mbkf.stream.run.report import LIVE_FILE
 from mbkf.study.batch.folder import (
     SUBJECT_FILE,
@@ -26,18 +25,12 @@ from mbkf.study.batch.folder import (
     session_folders,
     stated_of,
 )
-from mbkf.study.batch.plan import FORBIDDEN, Person, Plan, Trial
+from mbkf.study.batch.plan import Person, Plan, Trial
 from mbkf.study.survey.session import SurveyedSession, survey_session
 from mbkf.study.survey.trial import SurveyedTrial, survey_trial
 
 Stamp = tuple[tuple[int, int], ...]
 """Sizes and times of a capture's files."""
-
-RESULTS = "results"
-"""Folder of the results in the page's folder."""
-
-MOST_DEEP = 4
-"""Most levels of folders that dropped files may bring."""
 
 
 class Workspace:
@@ -56,7 +49,7 @@ class Workspace:
         self.root.mkdir(parents=True, exist_ok=True)
         self.out = self.root / RESULTS
         self._cached: dict[Path, tuple[Stamp, SurveyedTrial]] = {}
-        self._surveying, self._noting = threading.Lock(), threading.Lock()
+        self._surveying = threading.Lock()
 
     def sessions(self) -> tuple[str, ...]:
         """The names of its sessions."""
@@ -109,52 +102,44 @@ class Workspace:
         reports = self.place(session).glob(f"*/{LIVE_FILE}")
         return tuple(sorted(one.parent.name for one in reports if (one.parent / SUMMARY_FILE).is_file()))
 
-    def note(self, session: str, notes: SessionNotes) -> None:
-        """Writes the statements about a session; events of trials stay as they are (:meth:`note_events`)."""
-        with self._noting:
-            kept = {name: one.events for name, one in self._notes(session).trials.items()}
-            names = dict.fromkeys([*notes.trials, *kept])
-            trials = {name: replace(notes.trial(name), events=kept.get(name)) for name in names}
-            stated = {
-                name: one for name, one in trials.items() if name in notes.trials or one.events is not None
-            }
-            write_session(replace(notes, trials=stated), self.folder(session) / SESSION_FILE)
+    def notes(self, session: str) -> SessionNotes:
+        """The statements of the session's own file."""
+        return current_session(self.folder(session) / SESSION_FILE)
 
-    def note_events(self, session: str, trial: str, events: tuple[FootEvent, ...] | None) -> None:
-        """Writes a trial's events by hand, or removes them with None; other statements stay as they are.
+    def change(self, session: str, before: SessionNotes, after: SessionNotes) -> ChangedSession:
+        """Lays a change of the statements about a session over its file, field by field.
+
+        Args:
+            session: Name of the session.
+            before: The statements that the change began from.
+            after: The statements with the change.
+
+        Returns:
+            The statements now, and the fields that somebody else changed to another value meanwhile.
+        """
+        return change_session(self.folder(session) / SESSION_FILE, before, after)
+
+    def change_events(
+        self,
+        session: str,
+        trial: str,
+        before: tuple[FootEvent, ...] | None,
+        after: tuple[FootEvent, ...] | None,
+    ) -> ChangedSession:
+        """Lays a change of a trial's events by hand over the session's file; None stands for the detected ones.
 
         Args:
             session: Name of the session.
             trial: Name of the trial.
-            events: Events by hand; None for the detected ones.
+            before: The events that the change began from.
+            after: The events with the change.
         """
-        with self._noting:
-            notes = self._notes(session)
-            trials = {**notes.trials, trial: replace(notes.trial(trial), events=events)}
-            write_session(replace(notes, trials=trials), self.folder(session) / SESSION_FILE)
+        old, new = (SessionNotes(trials={trial: TrialNotes(events=events)}) for events in (before, after))
+        return self.change(session, old, new)
 
-    @contextmanager
-    def putting(self, name: str) -> Iterator[BinaryIO]:
-        """Opens a file for the content of one that is dropped on the page; it appears when the block ends.
-
-        Args:
-            name: Its path in the folder, with slashes; missing folders are made.
-
-        Yields:
-            The open file.
-
-        Raises:
-            InvalidInput: The path is not possible, or leads out of the folder.
-            OSError: The file cannot be written.
-        """
-        parts = PurePosixPath(name).parts
-        if not 1 <= len(parts) <= MOST_DEEP + 1 or any(_is_bad(part) for part in parts):
-            raise InvalidInput(f"'{name[:80]}' cannot be a file here")
-        target = self.root.joinpath(*parts)
-        if not target.parent.resolve().is_relative_to(self.root.resolve()):
-            raise InvalidInput(f"'{name[:80]}' leads out of the folder")
-        with replacing(target) as partial, partial.open("wb") as file:
-            yield file
+    def putting(self, name: str, size: int | None = None) -> AbstractContextManager[BinaryIO]:
+        """Opens a file for the content of one that is dropped on the page (:func:`mbkf.app.uploads.putting`)."""
+        return putting(self.root, name, size)
 
     def result(self, session: str, trial: str) -> Path:
         """The folder of a trial's results.
@@ -187,12 +172,7 @@ class Workspace:
 
     def events(self, session: str, trial: str) -> tuple[FootEvent, ...] | None:
         """The events by hand of a trial or recording; None without."""
-        return self._notes(session).trial(trial).events
-
-    def _notes(self, session: str) -> SessionNotes:
-        """The statements of the session's own file."""
-        file = self.folder(session) / SESSION_FILE
-        return read_session(file) if file.is_file() else SessionNotes()
+        return self.notes(session).trial(trial).events
 
     def results(self, session: str) -> list[Path]:
         """The folders of a session's results: of each trial that is done and not left out, and of live runs.
@@ -220,12 +200,3 @@ class Workspace:
         if cached is None or cached[0] != stamp:
             cached = self._cached[path] = stamp, survey_trial(path, forces)
         return cached[1]
-
-
-def _is_bad(part: str) -> bool:
-    return (
-        part in {".", "..", ""}
-        or part.startswith(".")
-        or FORBIDDEN.search(part) is not None
-        or len(part) > 200
-    )

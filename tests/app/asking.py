@@ -15,3 +15,11 @@ def asked(server, path, method="GET", body=None, **headers):
 def plain(server, cookie, path, method="GET", body=None):
     answer, text = asked(server, path, method, body, Cookie=cookie)
     return answer.status, json.loads(text)
+
+
+def changed(server, cookie, path, sent, version):
+    """The reply to a change of a note that names the version it began from."""
+    answer, text = asked(
+        server, path, "POST", json.dumps(sent), **{"Cookie": cookie, "If-Match": f'"{version}"'}
+    )
+    return answer.status, json.loads(text)

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from mbkf.app.foot_events import MOST_EVENTS, cycles_in, events_of
+from mbkf.app.foot_events import MOST_EVENTS, cycles_in, events_of, events_version
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, read_session
@@ -14,7 +14,7 @@ from mbkf.study.batch.curves import curves_of, read_curves
 from mbkf.study.batch.inputs import RECORD
 from mbkf.study.batch.trial import CURVES_FILE
 from mbkf.trial.preparation.settings import ReconstructSettings
-from tests.app.asking import asked, plain
+from tests.app.asking import asked, changed, plain
 from tests.studies import batch_here
 
 EVENTS = "/trial/events?session=P1&trial=walk1"
@@ -32,7 +32,9 @@ def run(server, cookie):
 
 
 def said(server, cookie, events, address=EVENTS):
-    return plain(server, cookie, address, "POST", json.dumps({"events": events}))
+    """The reply to a change of the present events."""
+    now = server.workspace.events("P1", "walk1")
+    return changed(server, cookie, address, {"events": events}, events_version(now))
 
 
 def starts(folder):
@@ -41,7 +43,9 @@ def starts(folder):
 
 def test_the_page_and_the_frames_are_given_out(server, cookie, run):
     _, told = run
-    assert {"scene", "rows", "found", "events", "frame_s", "span_s"} == set(told) and told["events"] is None
+    assert {"scene", "rows", "found", "events", "version", "frame_s", "span_s"} == set(told) and told[
+        "events"
+    ] is None
     kinds = {(one["side"], one["kind"]) for one in told["found"]}
     assert kinds == {(side, kind) for side in ("right", "left") for kind in ("strike", "off")}
     answer, text = asked(server, "/trial/look?session=P1&trial=walk1", Cookie=cookie)
@@ -85,16 +89,18 @@ def test_the_report_is_cut_at_events_by_hand(server, cookie, run):
 
 def test_events_and_other_notes_leave_each_other_alone(server, cookie, run):
     workspace, event = server.workspace, FootEvent("left", EventKind.OFF, 1.25)
-    workspace.note_events("P1", "walk1", (event,))
-    workspace.note("P1", SessionNotes(name="A", trials={"static": TrialNotes(TrialKind.STATIC)}))
-    workspace.note_events("P1", "other", ())
+    workspace.change_events("P1", "walk1", None, (event,))
+    workspace.change(
+        "P1", SessionNotes(), SessionNotes(name="A", trials={"static": TrialNotes(TrialKind.STATIC)})
+    )
+    workspace.change_events("P1", "other", None, ())
     notes = workspace.survey("P1").notes
     assert notes.name == "A" and notes.trial("walk1").events == (event,) and notes.trial("other").events == ()
-    workspace.note("P1", SessionNotes(trials={"walk1": TrialNotes(TrialKind.WALK, events=())}))
+    workspace.change("P1", SessionNotes(), SessionNotes(trials={"walk1": TrialNotes(TrialKind.WALK)}))
     kept = workspace.survey("P1").notes.trial("walk1")
     assert kept == TrialNotes(TrialKind.WALK, events=(event,)), "a page that knows older events loses none"
     for trial in ("walk1", "other"):
-        workspace.note_events("P1", trial, None)
+        workspace.change_events("P1", trial, workspace.events("P1", trial), None)
 
 
 def test_while_a_session_runs_its_curves_are_left_to_the_run(server, cookie, run, monkeypatch):
@@ -103,7 +109,7 @@ def test_while_a_session_runs_its_curves_are_left_to_the_run(server, cookie, run
     state = server.runs.state("P1")
     monkeypatch.setattr(state, "state", "running")
     answer = said(server, cookie, [])[1]
-    assert answer == {"events": [], "cycles": None} and starts(folder) == before
+    assert (answer["events"], answer["cycles"]) == ([], None) and starts(folder) == before
     monkeypatch.undo()
     said(server, cookie, None)
 
@@ -113,7 +119,7 @@ def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run
     record = (folder / RECORD).read_bytes()
     (folder / RECORD).write_text("{")
     status, answer = said(server, cookie, [])
-    assert status == 200 and answer == {"events": [], "cycles": None}
+    assert status == 200 and (answer["events"], answer["cycles"]) == ([], None)
     assert read_session(server.workspace.root / "P1" / "session.toml").trial("walk1").events == ()
     (folder / RECORD).write_bytes(record)
     assert said(server, cookie, None)[1]["cycles"] == cycles_in(folder / CURVES_FILE)
@@ -128,7 +134,7 @@ def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run
         (EVENTS, '{"events": 3}', "event must be a list"),
         (EVENTS, '{"events": [{"side": "right", "kind": "strike"}]}', "needs side, kind and time_s"),
         (EVENTS, '{"events": [{"side": "middle", "kind": "off", "time_s": 1}]}', "side must be"),
-        (EVENTS, '{"events": [{"side": "left", "kind": "off", "time_s": NaN}]}', "time_s must be"),
+        (EVENTS, '{"events": [{"side": "left", "kind": "off", "time_s": NaN}]}', "not finite"),
         ("/trial/events?session=P9&trial=walk1", '{"events": []}', "no session 'P9'"),
         ("/trial/events?session=P1&trial=walk9", '{"events": []}', "no result of 'walk9'"),
         ("/trial/events?session=P1&trial=static", '{"events": []}', "no result of 'static'"),
@@ -137,8 +143,9 @@ def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run
 def test_what_cannot_be_is_told_and_changes_nothing(server, cookie, run, address, body, told):
     file = server.workspace.root / "P1" / "session.toml"
     before = file.read_bytes() if file.exists() else None
-    status, answer = plain(server, cookie, address, "POST", body)
-    assert status == 400 and told in answer["trouble"]
+    version = events_version(server.workspace.events("P1", "walk1"))
+    answer, text = asked(server, address, "POST", body, **{"Cookie": cookie, "If-Match": version})
+    assert answer.status == 400 and told in json.loads(text)["trouble"]
     assert (file.read_bytes() if file.exists() else None) == before
 
 

@@ -82,7 +82,7 @@ def test_names_of_streams_are_text_and_failures_are_told(opened, lab, monkeypatc
         page.click("button.live")
         until(page, "document.querySelectorAll('select[name=stream] option').length === 1")
         assert page.text_content("select[name=stream]") == f"{HOSTILE} (on lab, 120 Hz)"
-        assert page.title() == "mbkf" and page.locator("dialog img").count() == 0
+        assert page.title() == "P1 · mbkf" and page.locator("dialog img").count() == 0
         page.select_option("select[name=source]", "natnet")
         page.fill("input[name=local]", "nowhere.invalid")
         page.click("dialog button.main")

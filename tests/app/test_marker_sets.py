@@ -1,6 +1,7 @@
 """A session's marker set: changed on its standing trial, written beside its captures, stated and then used."""
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -19,18 +20,27 @@ def workspace(tmp_path):
     return Workspace(study(tmp_path / "lab", trials=1))
 
 
+def key_of(page):
+    """The name of an editor's page, from its address for requests."""
+    return re.search(r'"say":"marker_set/say\?session=P1&page=([0-9a-f]+)"', page)[1]
+
+
 def test_what_is_saved_is_the_sessions(workspace):
     sets = MarkerSets(workspace)
     page = sets.open("P1")
-    assert '"say":"marker_set/say?session=P1"' in page and "RASI" in page
-    answer = json.loads(sets.say("P1", json.dumps({"do": "save", "choices": {"RASI": {"ignored": "loose"}}})))
+    key = key_of(page)
+    assert "RASI" in page
+    answer = json.loads(
+        sets.say("P1", key, json.dumps({"do": "save", "choices": {"RASI": {"ignored": "loose"}}}))
+    )
     assert answer["saved"] == SET_FILE and answer["ignored"] == 1
     assert workspace.survey("P1").notes.protocol == SET_FILE
     (person,) = workspace.plan("P1").persons
     assert dict(load_protocol(person.protocol).ignored) == {"RASI": "loose"}
     again = sets.open("P1")
+    key = key_of(again)
     assert "loose" in again, "the page begins with the set that is stated"
-    assert json.loads(sets.say("P1", '{"do": "done"}')) == {"done": True}
+    assert json.loads(sets.say("P1", key, '{"do": "done"}')) == {"done": True}
 
 
 def test_an_unknown_set_is_told_until_one_is_stated(workspace):
@@ -45,8 +55,8 @@ def test_an_unknown_set_is_told_until_one_is_stated(workspace):
 
     assert len(doubts()) == 2
     sets = MarkerSets(workspace)
-    sets.open("P1")
-    sets.say("P1", '{"do": "save", "choices": {}}')
+    key = key_of(sets.open("P1"))
+    sets.say("P1", key, '{"do": "save", "choices": {}}')
     assert doubts() == []
 
 
@@ -61,4 +71,4 @@ def test_the_standing_trial_is_shown(workspace):
 
 def test_nothing_is_said_before_a_page_is_open(workspace):
     with pytest.raises(InvalidInput, match="is not open; open it again"):
-        MarkerSets(workspace).say("P1", '{"do": "done"}')
+        MarkerSets(workspace).say("P1", "", '{"do": "done"}')

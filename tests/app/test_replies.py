@@ -6,7 +6,8 @@ import json
 import pytest
 from starlette.requests import Request
 
-from mbkf.app.replies import action, data, download, page, plain
+from mbkf.app.bodies import plain
+from mbkf.app.replies import action, data, download, page
 from mbkf.errors import InvalidInput
 
 KINDS = {
@@ -37,8 +38,8 @@ def failing(error):
     ("error", "status", "trouble"),
     [
         (InvalidInput("two\n lines"), 400, "two lines"),
-        (OSError(28, "No space left"), 500, "No space left"),
-        (OSError("odd"), 500, "odd"),
+        (OSError(28, "No space left"), 507, "the disk is full; free some space and try again"),
+        (OSError("odd"), 503, "the computer cannot read or write the file (odd)"),
     ],
 )
 @pytest.mark.parametrize("kind", KINDS)

@@ -36,9 +36,8 @@ def test_a_report_alone_compared_and_with_norms(workspace):
 
 def test_trials_that_are_left_out_do_not_count(workspace):
     assert len(reports.read_whole(workspace, "P1").trials) == 2
-    workspace.note(
-        "P1", SessionNotes(name="Ana", sex="female", trials={"walk2": TrialNotes(excluded="fell")})
-    )
+    notes = SessionNotes(name="Ana", sex="female", trials={"walk2": TrialNotes(excluded="fell")})
+    workspace.change("P1", SessionNotes(), notes)
     left = reports.read_whole(workspace, "P1")
     assert len(left.trials) == 1 and left.name == "Ana, P1" and left.sex == "female"
 

@@ -61,7 +61,7 @@ def quick(monkeypatch):
 def test_results_are_those_of_a_batch(tmp_path):
     study(tmp_path / "lab", trials=2)
     workspace = Workspace(tmp_path / "lab")
-    workspace.note("P1", SessionNotes(mass_kg=85.0))
+    workspace.change("P1", workspace.notes("P1"), SessionNotes(mass_kg=85.0))
     runs = Runs(workspace, 2)
     runs.start("P1")
     wait_for(lambda: runs.state("P1").state == FINISHED)

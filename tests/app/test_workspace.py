@@ -38,7 +38,7 @@ def test_captures_are_looked_at_once_until_they_change(workspace, monkeypatch):
 
 def test_what_is_stated_is_written_and_read_back(workspace):
     notes = SessionNotes(name="somebody", mass_kg=70.0)
-    workspace.note("P1", notes)
+    assert workspace.change("P1", SessionNotes(), notes).differences == ()
     assert workspace.survey("P1").notes == notes == read_session(workspace.root / "P1" / "session.toml")
 
 
@@ -60,24 +60,3 @@ def test_a_session_of_standing_trials_only_has_no_plan(workspace):
         (workspace.root / "P1" / f"{name}.c3d").unlink()
     with pytest.raises(InvalidInput, match="no moving trial"):
         workspace.plan("P1")
-
-
-def test_files_are_put_into_the_folder_only(workspace, tmp_path):
-    with workspace.putting("P3/monday/walk.c3d") as file:
-        file.write((workspace.root / "P1" / "walk1.c3d").read_bytes())
-    assert "P3/monday" in workspace.sessions()
-    (workspace.root / "out").symlink_to(tmp_path)
-    for name in (
-        "", "/etc/passwd", "../x.c3d", "a/../../x", "a/./../x", ".hidden", "a/.b/c", "a\\b", "C:x", "x\0y", "n" * 300,
-        "a/b/c/d/e/f.c3d", "out/x.c3d", "~/x\n",
-    ):  # fmt: skip
-        with pytest.raises(InvalidInput), workspace.putting(name) as file:
-            file.write(b"x")
-    assert not (tmp_path / "x.c3d").exists()
-
-
-def test_what_breaks_off_is_not_there(workspace):
-    with pytest.raises(ConnectionError), workspace.putting("P3/walk.c3d") as file:
-        file.write(b"half")
-        raise ConnectionError
-    assert list((workspace.root / "P3").iterdir()) == []

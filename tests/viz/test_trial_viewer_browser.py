@@ -46,7 +46,7 @@ def page(opened, server):
             "viewer.events.mergeMs = 60000"
         )  # keys pressed by a slow machine follow each other, too
         yield page
-        server.workspace.note_events("P1", "walk1", None)
+        server.workspace.change_events("P1", "walk1", server.workspace.events("P1", "walk1"), None)
 
 
 def by_hand(server):

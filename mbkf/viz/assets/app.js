@@ -3,18 +3,20 @@
 
 const AGAIN_MS = 1000;
 const place = (id) => document.getElementById(id);
-let chosen = null, shown = null, timer = 0;
+let chosen = null, shown = null, timer = 0, turns = 0, drawn = 0;
 
-async function ask(path, options = {}) {
+// A reply for a session that is shown no more is dropped, unless the request belongs to no session (still).
+async function ask(path, options = {}, still = here()) {
   let answer;
   try {
     answer = await fetch(path, options);
   } catch (error) {
+    await whileHere(still);
     tell(word("lost"), true);
     throw error;
   }
-  const said = await answer.json();
-  if (!answer.ok) {
+  const said = await whileHere(still, await answer.json());
+  if (!answer.ok && !said.differences) {
     tell(said.trouble, true);
     throw new Error(said.trouble);
   }
@@ -34,8 +36,17 @@ const act = {
   async save(change) {
     const notes = structuredClone(shown.notes);
     change(notes);
-    draw(await ask("session?" + query({ session: chosen }), { method: "POST", body: JSON.stringify(notes) }));
-    tell(word("saved"));
+    await act.write(shown, notes);
+  },
+  // Sends the notes with those that the change began from; the server lays the change over the notes as they are now.
+  async write(base, notes) {
+    const turn = ++turns;
+    const said = await ask("session?" + query({ session: base.id }), {
+      method: "POST", headers: { "If-Match": `"${base.version}"` }, body: JSON.stringify({ base: base.notes, notes }),
+    });
+    draw(said, turn);
+    if (!said.differences) tell(word("saved"));
+    else differencesDialog(said.differences, (kept) => { if (kept.length) act.write(said, withOwn(said.notes, kept)); }, act.dialog);
   },
   person: (values) => act.save((notes) => Object.assign(notes, values)),
   trial: (name, values) => act.save((notes) => {
@@ -46,47 +57,107 @@ const act = {
     await ask("run?" + query({ session: chosen, do: what }), { method: "POST" });
     await refresh();
   },
-  show(look, trial) {
-    act.dialog(trial, element("iframe", { src: `trial/${look}?` + query({ session: chosen, trial }), title: `${trial}: ${word(look)}` }));
+  // Opens a view of the session, and puts it into the address.
+  open(view, trial = null) {
+    history.pushState(null, "", address({ session: chosen, view, trial }));
+    act.view(view, trial);
+  },
+  view(view, trial) {
+    const frame = (path, title) => element("iframe", { src: path, title });
+    if (view === "session_report") sessionReport(chosen, act);
+    else if (view === "live") new LiveDialog(chosen, act).open();
+    else if (view === "marker_set") act.dialog(word(view), frame("marker_set?" + query({ session: chosen }), word(view)));
+    else act.dialog(trial, frame(`trial/${view}?` + query({ session: chosen, trial }), `${trial}: ${word(view)}`));
   },
   dialog(title, content, tools = []) {
-    const dialog = element("dialog", { onclose: () => { dialog.remove(); refresh(); } });
+    const dialog = element("dialog", { onclose: () => act.leave(dialog) });
     dialog.setAttribute("aria-label", title);
     const close = element("button", { type: "button", onclick: () => dialog.close() }, word("close"));
     dialog.append(element("div", { className: "bar" }, element("b", {}, title), ...tools, close), content);
     document.body.append(dialog);
     dialog.showModal();
   },
-  report: () => sessionReport(chosen, act),
-  markerSet() {
-    act.dialog(word("marker_set"), element("iframe", { src: "marker_set?" + query({ session: chosen }), title: word("marker_set") }));
+  // A dialog that the person closed leaves the address; one that the page closed has left it already.
+  leave(dialog) {
+    if (!dialog.isConnected) return;
+    dialog.remove();
+    history.replaceState(null, "", address({ session: chosen }));
+    refresh();
   },
+  report: () => act.open("session_report"),
+  markerSet: () => act.open("marker_set"),
 };
 
-function draw(data) {
+function draw(data, turn) {
+  if (turn < drawn) return; // a newer state is shown already
+  drawn = turn;
   const focused = document.activeElement, main = place("session");
   if (main.contains(focused) && focused.tagName === "INPUT" && focused.type !== "checkbox" && shown && shown.id === data.id && document.hasFocus() && data.run && data.run.state === "running") return;
   const at = [...main.querySelectorAll("input, select, button")].indexOf(focused);
   shown = data;
+  document.title = `${titleOf(data.id)} · mbkf`;
   main.replaceChildren(...sessionView(data, act));
   if (at >= 0) main.querySelectorAll("input, select, button")[at]?.focus();
   clearTimeout(timer);
   if (data.run && (data.run.state === "running" || data.run.state === "waiting")) timer = setTimeout(refresh, AGAIN_MS);
 }
 
+const titleOf = (session) => (session === "." ? "·" : session);
+
+// Shows a session as if nothing had been shown before.
+function enter(session) {
+  visit++;
+  clearTimeout(timer);
+  for (const dialog of document.querySelectorAll("dialog")) dialog.remove();
+  [chosen, shown] = [session, null];
+  place("told").textContent = "";
+  document.title = "mbkf";
+  place("session").replaceChildren();
+}
+
+function go(session) {
+  history.pushState(null, "", address({ session }));
+  enter(session);
+  return refresh();
+}
+
+// Shows the session, the view and the trial of the address: at the start, after a reload, back and forward.
+async function arrive() {
+  const { session, view, trial } = addressed();
+  enter(session);
+  await refresh();
+  if (shown && view) act.view(view, trial);
+}
+
+function lack(text) {
+  place("session").replaceChildren(element("p", { className: "lack" }, text));
+}
+
 async function refresh() {
-  const known = await ask("sessions");
+  const turn = ++turns, known = await ask("sessions");
   place("folder").textContent = known.folder;
-  if (!known.sessions.some((one) => one.id === chosen)) chosen = known.sessions.length ? known.sessions[0].id : null;
-  const list = known.sessions.map((one) => {
-    const state = one.run ? element("span", { className: `status ${one.run.state === "finished" ? "done" : one.run.state}` }, one.run.state === "finished" ? "✓" : one.run.state === "running" ? "…" : "") : "";
-    const button = element("button", { className: "session", type: "button", onclick: () => { chosen = one.id; refresh(); } }, one.id === "." ? "·" : one.id, state);
-    button.setAttribute("aria-current", String(one.id === chosen));
-    return button;
-  });
-  place("sessions").replaceChildren(dropZone(), ...list);
-  if (chosen === null) place("session").replaceChildren(element("p", {}, word("no_session")));
-  else draw(await ask("session?" + query({ session: chosen })));
+  if (chosen === null && known.sessions.length) {
+    chosen = known.sessions[0].id;
+    history.replaceState(null, "", address({ session: chosen }));
+  }
+  place("sessions").replaceChildren(dropZone(), ...known.sessions.map(sessionButton));
+  if (chosen === null) lack(word("no_session"));
+  else if (!known.sessions.some((one) => one.id === chosen)) {
+    shown = null;
+    lack(word("no_captures", chosen));
+  } else {
+    await ask("session?" + query({ session: chosen })).then((data) => draw(data, turn), (error) => {
+      shown = null;
+      lack(error.message);
+    });
+  }
+}
+
+function sessionButton(one) {
+  const state = one.run ? element("span", { className: `status ${one.run.state === "finished" ? "done" : one.run.state}` }, one.run.state === "finished" ? "✓" : one.run.state === "running" ? "…" : "") : "";
+  const button = element("button", { className: "session", type: "button", onclick: () => go(one.id) }, titleOf(one.id), state);
+  button.setAttribute("aria-current", String(one.id === chosen));
+  return button;
 }
 
 function dropZone() {
@@ -120,21 +191,33 @@ async function filesOf(entry, above) {
 
 async function take(files) {
   const kept = files.filter(([path]) => !path.split("/").some((part) => part.startsWith(".")));
-  const alone = kept.every(([path]) => !path.includes("/"));
+  const alone = kept.every(([path]) => !path.includes("/")), still = here();
   const refused = [];
   const into = alone ? `${shown && chosen !== "." ? chosen : "session"}/` : "";
   for (const [k, [path, file]] of kept.entries()) {
-    tell(word("uploading", k + 1, kept.length));
+    if (still()) tell(word("uploading", k + 1, kept.length));
     try {
-      await ask("put?" + query({ file: into + path }), { method: "POST", body: file });
+      await put(into + path, file);
     } catch (error) {
       refused.push(error.message);
     }
   }
+  if (!still()) return refresh();
+  if (kept.length) await go(await sessionOf(kept.map(([path]) => (into + path).split("/").slice(0, -1).join("/"))));
   if (refused.length) tell(word("not_taken", refused.length, refused[0]), true);
   else tell(word("uploaded", kept.length));
-  if (kept.length) chosen = (into + kept[0][0]).split("/").slice(0, -1).join("/");
-  await refresh();
+}
+
+async function put(path, file) {
+  const answer = await fetch("put?" + query({ file: path }), { method: "POST", body: file }).catch(() => null);
+  if (answer === null) throw new Error(word("lost"));
+  if (!answer.ok) throw new Error((await answer.json()).trouble);
+}
+
+// The first of the folders that holds captures; the first one without, so that the page says so.
+async function sessionOf(folders) {
+  const { sessions } = await ask("sessions");
+  return folders.find((folder) => sessions.some((one) => one.id === folder)) ?? folders[0];
 }
 
 function chooseLanguage() {
@@ -146,8 +229,11 @@ function chooseLanguage() {
 function start() {
   document.documentElement.lang = language;
   chooseLanguage();
-  refresh();
+  arrive();
 }
+
+addEventListener("popstate", arrive);
+addEventListener("pageshow", (event) => { if (event.persisted) arrive(); });
 
 addEventListener("message", (event) => {
   if (event.origin === location.origin && event.data === "marker set done") document.querySelector("dialog[open]")?.close();

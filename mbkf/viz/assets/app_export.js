@@ -18,13 +18,14 @@ function exportSelect(data, one) {
 }
 
 async function download(path, file) {
-  const answer = await fetch(path).catch(() => null);
+  const still = here(), answer = await fetch(path).catch(() => null);
   if (answer === null || !answer.ok) {
-    tell(answer === null ? word("lost") : (await answer.json()).trouble, true);
+    const trouble = answer === null ? word("lost") : (await answer.json()).trouble;
+    if (still()) tell(trouble, true);
     return;
   }
   const address = URL.createObjectURL(await answer.blob());
   element("a", { href: address, download: file }).click();
   setTimeout(() => URL.revokeObjectURL(address), 60000);
-  tell(word("exported", file));
+  if (still()) tell(word("exported", file));
 }

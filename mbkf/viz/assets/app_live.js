@@ -3,8 +3,8 @@
 
 const LIVE_AGAIN_MS = 500;
 
-function liveSection(data) {
-  const button = element("button", { type: "button", className: "live", onclick: () => new LiveDialog(data.id).open() }, `${word("live")} …`);
+function liveSection(data, act) {
+  const button = element("button", { type: "button", className: "live", onclick: () => act.open("live") }, `${word("live")} …`);
   return element("section", {}, element("div", { className: "run" }, button, element("span", {}, word("live_hint"))));
 }
 
@@ -17,8 +17,8 @@ async function askLive(path, options = {}) {
 }
 
 class LiveDialog {
-  constructor(session) {
-    this.session = session;
+  constructor(session, act) {
+    Object.assign(this, { session, act });
     this.told = element("span", { className: "told", role: "status" });
     this.stopper = element("button", { type: "button", className: "stop", hidden: true, onclick: () => this.stop() }, word("live_stop"));
     const close = element("button", { type: "button", onclick: () => this.dialog.close() }, word("close"));
@@ -37,6 +37,7 @@ class LiveDialog {
   async begin() {
     await this.trying(async () => {
       const offer = await askLive("live?" + query({ session: this.session }));
+      if (!this.dialog.isConnected) return;
       if (offer.run && offer.run.goes_on) this.follow(offer.run);
       else this.form(offer);
     });
@@ -44,7 +45,7 @@ class LiveDialog {
 
   leave() {
     clearTimeout(this.timer);
-    this.dialog.remove();
+    this.act.leave(this.dialog);
   }
 
   async trying(what) {
@@ -147,6 +148,6 @@ class LiveDialog {
     this.inside.replaceChildren(element("p", { className: "again" }, again));
     this.tell(run.state === "failed" ? word("live_failed", run.reason) : word("live_ended", run.name), run.state === "failed");
     again.focus();
-    refresh();
+    if (this.dialog.isConnected) refresh();
   }
 }

@@ -6,8 +6,8 @@ async function sessionReport(session, act) {
   const chosenBefore = choice(word("compare_with"), found.sessions, word("nothing"));
   const chosenNorms = choice(word("norms"), found.norms, word("none_of_them"));
   const frame = element("iframe", { title: word("session_report") });
-  const address = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language });
-  const show = () => { frame.src = address(); };
+  const source = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language });
+  const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
   chosenBefore.select.onchange = chosenNorms.select.onchange = show;
   const build = element("button", { type: "button", onclick: async () => {
     const made = await ask("norms", { method: "POST" });
@@ -19,7 +19,7 @@ async function sessionReport(session, act) {
   const print = element("button", { type: "button", onclick: () => frame.contentWindow.print() }, word("print"));
   const keep = (href, name, label) => element("a", { className: "button", href, download: name }, label);
   const save = keep("", `${fileName(session)}.html`, word("save"));
-  save.onclick = () => { save.href = address(); };
+  save.onclick = () => { save.href = source(); };
   const curves = ["csv", "parquet"].map((kind) => keep("report/curves?" + query({ session, as: kind }), `${fileName(session)}-curves.${kind}`, kind.toUpperCase()));
   act.dialog(session, frame, [chosenBefore.label, chosenNorms.label, build, print, save, ...curves]);
   show();

@@ -93,7 +93,7 @@ function trialRow(data, one, act) {
   if (one.status) result.append(element("span", { className: `status ${one.status}` }, word(one.status)));
   if (one.status === "failed") result.append(" " + one.reason);
   if (one.status === "done" || one.status === "unchanged") {
-    const show = (look) => element("button", { type: "button", onclick: () => act.show(look, one.name) }, word(look));
+    const show = (look) => element("button", { type: "button", onclick: () => act.open(look, one.name) }, word(look));
     result.append(element("div", { className: "buttons" }, show("look"), show("report"), exportSelect(data, one)));
   }
   if (one.live) out.replaceChildren("–");

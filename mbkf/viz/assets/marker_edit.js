@@ -7,6 +7,7 @@ class MarkerEdit extends MarkerSet {
   constructor(data) {
     super(data);
     this.choices = new Map();
+    this.kept = {}; // the choices of the last save
     this.before = new Map(this.markers.map((marker) => [marker.name, { ...marker }]));
     this.landmarks = data.landmarks;
     this.controls();
@@ -19,7 +20,7 @@ class MarkerEdit extends MarkerSet {
     this.state.setAttribute("role", "status");
     this.save = element("button", { type: "button", id: "save", className: "play", textContent: `Save ${this.data.out}` });
     this.done = element("button", { type: "button", id: "done", textContent: "Done" });
-    this.save.onclick = () => this.send({ do: "save", choices: Object.fromEntries(this.choices) });
+    this.save.onclick = () => this.keep();
     this.done.onclick = () => {
       if (this.unsaved && !confirm("There are changes that are not saved. End all the same?")) return;
       this.ended = true; // the server may be gone before it answers
@@ -38,6 +39,12 @@ class MarkerEdit extends MarkerSet {
     };
   }
 
+  // over: keep the own choices where somebody else has changed the same marker.
+  keep(over = false) {
+    this.sent = Object.fromEntries(this.choices);
+    this.send({ do: "save", choices: this.sent, before: this.kept, over });
+  }
+
   send(word) {
     if (this.data.say) {
       fetch(this.data.say, { method: "POST", body: JSON.stringify(word) }).then((answer) => answer.json()).then((said) => this.take(said), () => this.say("not connected: is mbkf still running?", "bad"));
@@ -46,18 +53,24 @@ class MarkerEdit extends MarkerSet {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(word));
   }
 
-  take({ trouble, saved, markers, done }) {
+  take({ trouble, saved, markers, done, differences }) {
     if (done && this.data.say) {
       this.say("done; this page can be closed", "good");
       window.parent.postMessage("marker set done", location.origin);
     }
-    if (trouble) {
+    if (differences && confirm(`Somebody else has changed ${differences.join(", ")} meanwhile. OK keeps your choice, Cancel the other one.`)) {
+      this.keep(true);
+      return;
+    }
+    if (differences) trouble = `The other choice for ${differences.join(", ")} is kept; open this page again to see it.`;
+    if (saved) this.kept = this.sent;
+    if (trouble && !saved) {
       this.tell(trouble);
       this.say("not saved", "bad");
     }
     if (saved) {
       this.unsaved = false;
-      this.tell("");
+      this.tell(trouble || "");
       this.say(`saved: ${markers} markers`, "good");
     }
   }

@@ -4,7 +4,7 @@
 class TrialViewer {
   constructor(player, page, trial) {
     Object.assign(this, { player, trial, ghost: null, asked: 0 });
-    const { scene, found, events, frame_s, span_s } = page;
+    const { scene, found, events, version, frame_s, span_s } = page;
     document.documentElement.lang = language;
     this.events = new FootEvents(found, events, span_s);
     this.pressure = new PressureMarks(player.view, scene.loads);
@@ -13,7 +13,7 @@ class TrialViewer {
     this.strip = new Strip(document.getElementById("strip"), player.slider, this.events, contacts, frame_s,
       () => player.recording.times[player.frame], (time) => player.seek(time));
     const address = "events?" + new URLSearchParams({ session: trial.session, trial: trial.trial });
-    this.saving = new Saving(address, (text, bad) => this.strip.say(text, bad));
+    this.saving = new Saving(address, { events, version }, (text, bad) => this.strip.say(text, bad), (theirs) => this.replace(theirs));
     this.events.onChange = () => this.changed();
     this.others();
     player.panel.other = (q) => (this.ghost ? this.ghost.series(q) : null);
@@ -35,11 +35,21 @@ class TrialViewer {
   }
 
   changed() {
+    this.redraw();
+    this.saving.soon(() => this.events.plain());
+  }
+
+  redraw() {
     this.strip.draw();
     this.marks();
     this.align();
     this.player.draw();
-    this.saving.soon(() => JSON.stringify({ events: this.events.plain() }));
+  }
+
+  // Events that somebody else has set take the place of the own ones; undo brings these back.
+  replace(theirs) {
+    this.events.put(theirs);
+    this.redraw();
   }
 
   marks() {

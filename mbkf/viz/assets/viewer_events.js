@@ -64,6 +64,13 @@ class FootEvents {
     this.set(null);
   }
 
+  // Takes events as the server gives them, without telling of a change.
+  put(list) {
+    this.past.push(this.list);
+    this.list = list && list.map((one) => ({ ...one, key: this.next++ }));
+    [this.future, this.moved] = [[], null];
+  }
+
   step(from, to) {
     if (!from.length) return;
     to.push(this.list);

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import secrets
 import threading
+from collections.abc import Mapping
 from pathlib import Path
 
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.plain_data import parse_json
-from mbkf.model.protocol import Protocol
+from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.model.protocol_file import checked_name, write_protocol
 from mbkf.trial.protocol.editing import Choice, edited
+from mbkf.trial.protocol.merging import merged_sets
 from mbkf.trial.protocol.standing import Standing
 from mbkf.viz.protocol.page import EDIT_SCRIPTS, page_text, set_data
 from mbkf.viz.server import PageServer
@@ -28,6 +30,7 @@ class MarkerSetEdit:
     Attributes:
         done: Set when the page reports that the person is done.
         saved: The newest saved set; None before.
+        file: Name of the file that saving writes.
 
     Raises:
         InvalidInput: The file's name is not possible for a marker set.
@@ -35,7 +38,8 @@ class MarkerSetEdit:
 
     def __init__(self, protocol: Protocol, standing: Standing, out: str | Path) -> None:
         self._protocol, self._standing, self._out = protocol, standing, checked_name(out)
-        self.done = threading.Event()
+        self._lock, self._before = threading.Lock(), self._content()
+        self.done, self.file = threading.Event(), self._out.name
         self.saved: Protocol | None = None
 
     def text(self, say: str = "") -> str:
@@ -46,7 +50,7 @@ class MarkerSetEdit:
         """
         data = {
             **set_data(self._protocol, self._standing),
-            "out": self._out.name,
+            "out": self.file,
             "trouble": self._standing.trouble,
             "say": say,
         }
@@ -57,12 +61,14 @@ class MarkerSetEdit:
 
         Args:
             word: ``{"do": "done"}``, or ``{"do": "save", "choices": {NAME: {WHAT: TEXT}}}`` with a field of
-                :class:`~mbkf.trial.protocol.editing.Choice` for WHAT.
+                :class:`~mbkf.trial.protocol.editing.Choice` for WHAT; ``before``: the choices of the page's last save;
+                ``over``: true to keep the page's choices where somebody else changed the same marker.
         """
         try:
             asked = parse_json(word)
             if asked.get("do") == "save":
-                return json.dumps(self._save(asked.get("choices")))
+                with self._lock:
+                    return json.dumps(self._save(asked))
             if asked.get("do") == "done":
                 self.done.set()
                 return json.dumps({"done": True})
@@ -72,14 +78,38 @@ class MarkerSetEdit:
         except ValueError:
             return json.dumps({"trouble": "the page sent a request that is no JSON"})
 
-    def _save(self, choices: object) -> dict[str, object]:
-        known = (
-            {str(name): _choice(one) for name, one in choices.items()} if isinstance(choices, dict) else {}
-        )
-        made = edited(self._protocol, self._standing, known, self._out.stem)
+    def _save(self, asked: Mapping[str, object]) -> dict[str, object]:
+        """Saves the page's choices, over those that another page or program has written into the file meanwhile.
+
+        Raises:
+            MbkfError: A choice is not possible, or the file has become damaged.
+            OSError: The file cannot be written.
+        """
+        made, over = self._chosen(asked.get("choices")), asked.get("over") is True
+        differing: tuple[str, ...] = ()
+        if self._content() not in (None, self._before):
+            base = self._chosen(asked.get("before"))
+            made, differing = merged_sets(base, made, load_protocol(self._out), over)
         write_protocol(made, self._out)
         self.saved = made
-        return {"saved": self._out.name, "markers": len(made.markers), "ignored": len(made.ignored)}
+        answer = {"saved": self.file, "markers": len(made.markers), "ignored": len(made.ignored)}
+        if not differing or over:
+            return answer
+        text = f"somebody else has changed {', '.join(differing)} meanwhile; choose which change is right"
+        return {**answer, "trouble": text, "differences": list(differing)}
+
+    def _chosen(self, choices: object) -> Protocol:
+        """The set that the editor began with, with choices."""
+        known = choices.items() if isinstance(choices, dict) else ()
+        chosen = {str(name): _choice(one) for name, one in known}
+        return edited(self._protocol, self._standing, chosen, self._out.stem)
+
+    def _content(self) -> bytes | None:
+        """The content of the file; None before it is there."""
+        try:
+            return self._out.read_bytes()
+        except FileNotFoundError:
+            return None
 
 
 class EditPage(MarkerSetEdit):

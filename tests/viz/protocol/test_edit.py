@@ -51,11 +51,33 @@ def test_saving_writes_and_done_ends(page_of, tmp_path):
     assert answer == {"saved": "mine.toml", "markers": len(PROTOCOL.markers) - 1, "ignored": 1}
     assert dict(load_protocol(tmp_path / "mine.toml").ignored) == {"RASI": "loose"}
     assert page.saved is not None and not page.done.is_set()
-    assert asked(page, do="save", choices={})["markers"] == len(
-        PROTOCOL.markers
-    )  # choices are the whole of them
+    back = asked(page, do="save", choices={}, before={"RASI": {"ignored": "loose"}})
+    assert back["markers"] == len(PROTOCOL.markers)
     assert asked(page, do="done") == {"done": True}
     assert page.done.is_set()
+
+
+def test_two_pages_and_the_file_are_merged_marker_by_marker(page_of, tmp_path):
+    one, out = page_of(), tmp_path / "mine.toml"
+    asked(one, do="save", choices={"RASI": {"ignored": "loose"}})
+    asked(one, do="save", choices={"LASI": {"ignored": "fell off"}})  # another page of the same editor
+    out.write_text(out.read_text() + '[[ignored]]\nname = "X1"\nreason = "by hand"\n')
+    asked(one, do="save", choices={"RASI": {"ignored": "loose"}, "LKNE": {"landmark": "left_ankle_lateral"}},
+          before={"RASI": {"ignored": "loose"}})  # fmt: skip
+    found = load_protocol(out)
+    assert dict(found.ignored) == {"RASI": "loose", "LASI": "fell off", "X1": "by hand"}
+    assert named(out)["LKNE"].landmark == "left_ankle_lateral"
+
+
+def test_a_marker_that_two_pages_changed_is_chosen(page_of, tmp_path):
+    page, out = page_of(), tmp_path / "mine.toml"
+    asked(page, do="save", choices={"RASI": {"ignored": "loose"}})
+    late = {"RASI": {"ignored": "wrong place"}, "LASI": {"ignored": "fell off"}}
+    answer = asked(page, do="save", choices=late)
+    assert answer["differences"] == ["RASI"] and "RASI" in answer["trouble"]
+    assert dict(load_protocol(out).ignored) == {"RASI": "loose", "LASI": "fell off"}
+    assert "differences" not in asked(page, do="save", choices=late, over=True)
+    assert dict(load_protocol(out).ignored) == {"RASI": "wrong place", "LASI": "fell off"}
 
 
 @pytest.mark.parametrize(
