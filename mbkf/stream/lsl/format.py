@@ -21,6 +21,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.axes import rotation_to_world
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.stream.identity import Columns
 from mbkf.stream.source import StreamDescription, empty_plate
 
 StreamInfo: TypeAlias = Any
@@ -34,7 +35,21 @@ Channels: TypeAlias = slice | Array
 
 _POSITION = ("positionx", "positiony", "positionz")
 _LOAD = ("forcex", "forcey", "forcez", "momentx", "momenty", "momentz")
-_METRES = {"meters": 1.0, "metres": 1.0, "m": 1.0, "millimeters": 1e-3, "millimetres": 1e-3, "mm": 1e-3}
+_NEWTONS = {"": 1.0, "newtons": 1.0, "newton": 1.0, "n": 1.0, "kilonewtons": 1e3, "kn": 1e3}
+_NEWTON_METRES = {
+    **dict.fromkeys(("", "newtonmeters", "newtonmetres", "newtonmeter", "newtonmetre", "nm"), 1.0),
+    **dict.fromkeys(("newtonmillimeters", "newtonmillimetres", "newtonmillimeter", "nmm"), 1e-3),
+}
+_METRES = {
+    "": 1.0,
+    "meters": 1.0,
+    "metres": 1.0,
+    "m": 1.0,
+    "millimeters": 1e-3,
+    "millimetres": 1e-3,
+    "mm": 1e-3,
+}
+"""Units that channels state, without spaces and signs between their parts, in newtons, newton metres and metres."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +76,10 @@ class MarkerLayout:
         points = values.reshape(-1, 3)
         return points @ self.rotation.T if self._turned else points
 
+    def reordered(self, columns: Columns) -> MarkerLayout:
+        """The layout with named markers in another order, by their (M,) places in this one."""
+        return replace(self, named=self.named[columns])
+
     @cached_property
     def _named(self) -> Channels:
         return _together(self.named)
@@ -82,17 +101,24 @@ class PlateLayout:
         loads: (K, 6) channels of each plate.
         counter: Channel that counts samples, None where there is none.
         rotation: (3, 3) from the stream's axes to the world's.
+        units: Newtons and newton metres per unit of forces and moments.
     """
 
     loads: Array
     counter: int | None
     rotation: Array
+    units: tuple[float, float] = (1.0, 1.0)
 
     def wrenches(self, samples: Array) -> Array:
         """(S, K, 6) wrenches of samples (S, channels), world axes."""
         found = samples[:, self._loads].reshape(-1, 3)
         turned = found @ self.rotation.T if self._turned else found
-        return turned.reshape(len(samples), *self.loads.shape)
+        wrenches = turned.reshape(len(samples), *self.loads.shape)
+        return wrenches if self.units == (1.0, 1.0) else wrenches * np.repeat(self.units, 3)
+
+    def reordered(self, columns: Columns) -> PlateLayout:
+        """The layout with plates in another order, by their (K,) places in this one."""
+        return replace(self, loads=self.loads[columns])
 
     @cached_property
     def _loads(self) -> Channels:
@@ -190,15 +216,14 @@ def read_marker_info(info: StreamInfo) -> tuple[StreamDescription, MarkerLayout,
             nameless.append(k)
     if not named and not nameless:
         raise InvalidInput(f"{where} has no channels of type PositionX, PositionY, PositionZ")
-    unit = channels[(named or nameless)[0][0]]["unit"].lower() or "meters"
-    if unit not in _METRES:
-        raise InvalidInput(f"{where} is in '{unit}'; meters or millimeters are understood")
+    positions = [k for group in (*named, *nameless) for k in group]
+    metres = _unit(channels, positions, _METRES, f"{where} has positions", "meters or millimeters")
     desc = info.desc()
     layout = MarkerLayout(
         np.array(named, dtype=int).reshape(-1, 3),
         np.array(nameless, dtype=int).reshape(-1, 3),
         counter_of(channels),
-        rotation_to_world(desc.child_value("up") or "z") * _METRES[unit],
+        rotation_to_world(desc.child_value("up") or "z") * metres,
     )
     description = StreamDescription(
         desc.child_value("trial") or info.name(),
@@ -219,7 +244,10 @@ def read_plates_info(info: StreamInfo) -> tuple[tuple[PlateReadings, ...], Plate
     desc, channels = info.desc(), described_channels(info)
     if not info.nominal_srate() > 0.0:
         raise InvalidInput(f"{where} states no rate; the filter needs a regular one")
-    loads = [k for k, _ in _groups(channels, _LOAD)]
+    loads, labels = [], []
+    for k, first in _groups(channels, _LOAD):
+        loads.append(k)
+        labels.append(first["plate"])
     rotation = rotation_to_world(desc.child_value("up") or "z")
     start_s = float(desc.child_value("start_time_s") or 0.0)
     rate_hz = float(desc.child_value("rate_hz") or info.nominal_srate())
@@ -242,9 +270,18 @@ def read_plates_info(info: StreamInfo) -> tuple[tuple[PlateReadings, ...], Plate
         raise InvalidInput(
             f"{where} has force channels of {len(loads)} plates and describes {len(plates)} in <plates>"
         )
-    return tuple(plates), PlateLayout(
-        np.array(loads, dtype=int).reshape(-1, 6), counter_of(channels), rotation
+    if not loads:
+        raise InvalidInput(
+            f"{where} has no channels of type ForceX, ForceY, ForceZ, MomentX, MomentY, MomentZ"
+        )
+    forces, moments = ([k for load in loads for k in load[part]] for part in (slice(0, 3), slice(3, 6)))
+    units = (
+        _unit(channels, forces, _NEWTONS, f"{where} has forces", "newtons"),
+        _unit(channels, moments, _NEWTON_METRES, f"{where} has moments", "newtonmeters"),
     )
+    places = _by_label(labels, [plate.name for plate in plates], where)
+    channels_of = np.array([loads[k] for k in places], dtype=int).reshape(-1, 6)
+    return tuple(plates), PlateLayout(channels_of, counter_of(channels), rotation, units)
 
 
 def new_info(
@@ -303,6 +340,36 @@ def _groups(channels: list[dict[str, str]], types: tuple[str, ...]) -> list[tupl
 def counter_of(channels: list[dict[str, str]]) -> int | None:
     """Number of the channel that counts, None without one."""
     return next((k for k, channel in enumerate(channels) if channel["type"].lower() == COUNTER), None)
+
+
+def _unit(
+    channels: list[dict[str, str]], chosen: Sequence[int], known: Mapping[str, float], what: str, usual: str
+) -> float:
+    """The factor of the unit of some channels.
+
+    Raises:
+        InvalidInput: It is not known, or they have several.
+    """
+    units = sorted({channels[k]["unit"] for k in chosen})
+    factors = {known.get("".join(one for one in unit.lower() if one not in " -*·."), 0.0) for unit in units}
+    if len(factors) == 1 and factors != {0.0}:
+        return factors.pop()
+    listed = ", ".join(f"'{unit}'" for unit in units)
+    raise InvalidInput(f"{what} in {listed}; {usual} are understood, one unit for all channels")
+
+
+def _by_label(labels: Sequence[str], names: Sequence[str], where: str) -> list[int]:
+    """For every described plate the number of its channels' group: that with its name, where channels name plates.
+
+    Raises:
+        InvalidInput: Channels name other plates than those described.
+    """
+    if not any(labels) or list(labels) == list(names):
+        return list(range(len(names)))
+    if sorted(labels) != sorted(names) or len(set(names)) < len(names):
+        listed, described = ", ".join(labels), ", ".join(names)
+        raise InvalidInput(f"{where} has channels of plates {listed} and describes {described} in <plates>")
+    return [labels.index(name) for name in names]
 
 
 def _numbers(values: Array) -> str:

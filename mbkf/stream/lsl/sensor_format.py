@@ -8,7 +8,7 @@ one stream of eight sensors and eight streams of one are the same. A channel of 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
@@ -17,6 +17,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.imu.channels import Channel, channel_signals
+from mbkf.stream.identity import Columns
 from mbkf.stream.lsl.format import (
     StreamInfo,
     counter_channel,
@@ -51,6 +52,12 @@ class SensorLayout:
     counter: int | None
     rate_hz: float
     trial: str
+
+    def reordered(self, places: Columns) -> SensorLayout:
+        """The layout with sensors in another order, by their (S,) places in this one."""
+        rows = self.to_readings.reshape(len(self.sensors), 6, -1)[places]
+        sensors = tuple(self.sensors[k] for k in places)
+        return replace(self, sensors=sensors, to_readings=rows.reshape(6 * len(sensors), -1))
 
     def readings(self, samples: Array) -> Array:
         """(T, S, 6) of samples (T, C); a missing channel is NaN in its own axis only."""

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl.format import StreamInfo
-from mbkf.stream.lsl.sensor_format import SENSOR_TYPES, SensorLayout, read_sensor_info, together
+from mbkf.stream.lsl.inlets import OPEN_S, inlet_of
+from mbkf.stream.lsl.sensor_format import SENSOR_TYPES, read_sensor_info, together
 from mbkf.stream.lsl.sensor_grid import SensorGrid
-from mbkf.stream.lsl.source import KEPT_S, OPEN_S
-from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, counts
+from mbkf.stream.lsl.sensor_stream import SensorStream
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 
 POLL_S = 0.002
 """Pause between two looks at several streams: short beside a frame."""
-
-CHUNK = 256
-"""Samples fetched of a stream at a time."""
 
 NO_MARKERS = np.zeros((0, 3))
 
@@ -28,7 +26,7 @@ NO_MARKERS = np.zeros((0, 3))
 class LslSensorSource:
     """A :class:`mbkf.stream.source.FrameSource` of inertial sensors.
 
-    Streams that break off are taken up again by liblsl when they return under the same identity.
+    Streams that break off are taken up again when they return with the same sensors.
     """
 
     patient = False
@@ -38,11 +36,11 @@ class LslSensorSource:
         self._lsl = lsl()
         self._names, self._units = tuple(names), dict(units or {})
         self._seen: frozenset[str] = frozenset()
-        self._inlets: list[Any] = []
-        self._layouts: list[SensorLayout] = []
+        self._streams: list[SensorStream] = []
         self._stream: StreamDescription | None = None
         self._grid: SensorGrid | None = None
-        self._first_stamp: float | None = None
+        self._ready: deque[SourceFrame] = deque()
+        self._news: list[tuple[str, str]] = []
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The streams, once all that were named, or the same ones twice in a row, are found."""
@@ -65,71 +63,66 @@ class LslSensorSource:
         return info.type().lower() in SENSOR_TYPES
 
     def _connected(self, found: Sequence[StreamInfo]) -> StreamDescription | None:
-        several = len(found) > 1
-        for info in found:
-            flags = self._lsl.proc_clocksync | (self._lsl.proc_dejitter if several else 0)
-            inlet = self._lsl.StreamInlet(info, max_buflen=KEPT_S, processing_flags=flags, as_numpy=True)
-            layout = read_sensor_info(inlet.info(OPEN_S), self._units)
-            if layout is not None:
-                inlet.open_stream(OPEN_S)
-                inlet.time_correction(OPEN_S)  # else the first samples wait for it
-                self._inlets.append(inlet)
-                self._layouts.append(layout)
-        if not self._layouts:
+        described = [(one, read_sensor_info(self._information(one), self._units)) for one in found]
+        known = [(info, layout) for info, layout in described if layout is not None]
+        if not known:
             return None
-        self._stream = together(self._layouts)
-        if len(self._layouts) > 1 or self._layouts[0].rate_hz > self._stream.rate_hz:
-            rates = [one.rate_hz for one in self._layouts]
-            self._grid = SensorGrid([len(one.sensors) for one in self._layouts], rates, self._stream.rate_hz)
+        layouts = [layout for _, layout in known]
+        self._stream = together(layouts)
+        if len(layouts) > 1 or layouts[0].rate_hz > self._stream.rate_hz:
+            rates = [one.rate_hz for one in layouts]
+            self._grid = SensorGrid([len(one.sensors) for one in layouts], rates, self._stream.rate_hz)
+        counted = self._grid is None and layouts[0].counter is not None
+        self._streams = [
+            SensorStream(self._lsl, info, layout, self._units, counted, self._tell) for info, layout in known
+        ]
         return self._stream
+
+    def _information(self, info: StreamInfo) -> StreamInfo:
+        return inlet_of(self._lsl, info, False).info(OPEN_S)
 
     def read(self, timeout_s: float) -> SourceFrame | None:
         """The next frame: a sample of a single stream, or the readings of all streams at its time."""
         assert self._stream is not None, "connect first"
-        if self._grid is None:
-            return self._sample(timeout_s)
         until = time.perf_counter() + timeout_s
+        if self._grid is None:
+            while not self._ready and time.perf_counter() <= until:
+                found = self._streams[0].take(max(0.0, until - time.perf_counter()), 1)
+                if found is not None:
+                    self._ready.extend(map(self._frame, found.numbers, found.values))
+            return self._ready.popleft() if self._ready else None
         while True:
-            found = self._grid.next(self._lsl.local_clock())
-            if found is not None:
-                return self._frame(found[0], found[1])
+            row = self._grid.next(self._lsl.local_clock())
+            if row is not None:
+                return self._frame(row[0], row[1])
             if not self._fetch(self._grid):
                 if time.perf_counter() > until:
                     return None
                 time.sleep(POLL_S)
 
-    def _sample(self, timeout_s: float) -> SourceFrame | None:
-        assert self._stream is not None
-        sample, stamp = self._inlets[0].pull_sample(timeout_s)
-        if sample is None:
-            return None
-        layout, row = self._layouts[0], np.asarray(sample, dtype=float)
-        if layout.counter is not None:
-            number = int(counts(row[layout.counter]))
-        else:
-            if self._first_stamp is None and np.isfinite(stamp):
-                self._first_stamp = float(stamp)
-            passed = float(stamp) - (self._first_stamp or 0.0)
-            number = int(counts(np.float64(passed * self._stream.rate_hz)))
-        return self._frame(number, layout.readings(row[None])[0])
-
     def _fetch(self, grid: SensorGrid) -> bool:
         """Takes the streams' new samples; true where there were any."""
         there = False
-        for k, (inlet, layout) in enumerate(zip(self._inlets, self._layouts, strict=True)):
-            samples, stamps = inlet.pull_chunk(timeout=0.0, max_samples=CHUNK)
-            if len(stamps):
+        for k, stream in enumerate(self._streams):
+            found = stream.take(0.0)
+            if found is not None:
                 there = True
-                grid.put(k, np.asarray(stamps), layout.readings(np.asarray(samples, dtype=float)))
+                grid.put(k, found.times_s, found.values)
         return there
 
     def _frame(self, number: int, imus: Array) -> SourceFrame:
-        return SourceFrame(number, time.perf_counter(), NO_MARKERS, NO_MARKERS, PlateSamples.none(0), imus)
+        return SourceFrame(
+            int(number), time.perf_counter(), NO_MARKERS, NO_MARKERS, PlateSamples.none(0), imus
+        )
+
+    def _tell(self, kind: str, sentence: str) -> None:
+        self._news.append((kind, sentence))
 
     def news(self) -> list[tuple[str, str]]:
-        """The frames show all events."""
-        return []
+        """Events of the connections since the last call."""
+        news, self._news = self._news, []
+        return news
 
     def close(self) -> None:
         """Drops the streams."""
-        self._inlets, self._layouts = [], []
+        self._streams = []

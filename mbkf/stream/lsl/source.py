@@ -3,50 +3,43 @@
 from __future__ import annotations
 
 import time
-from math import ceil
-from typing import Any
+from collections import deque
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
-from mbkf.io.resample import WHOLE
+from mbkf.stream.identity import moved_counts, named_columns, same_rate
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl.discovery import streams_of
-from mbkf.stream.lsl.format import (
-    MARKER_TYPES,
-    MarkerLayout,
-    PlateLayout,
-    read_marker_info,
-    read_plates_info,
-)
-from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, counts
-
-OPEN_S = 3.0
-"""Time in which a stream that was found has to answer."""
+from mbkf.stream.lsl.format import MARKER_TYPES, StreamInfo, read_marker_info
+from mbkf.stream.lsl.inlets import OPEN_S, Inlet, LostStream, inlet_of, opened
+from mbkf.stream.lsl.plate_stream import FoundPlates, PlateStream, described_plates, from_first_frame
+from mbkf.stream.lsl.stamp_numbering import StampedItems, StampNumbering
+from mbkf.stream.source import UNCOUNTED, PlateSamples, SourceFrame, StreamDescription, counts
 
 PLATES_S = 3.0
 """Time for which the plate stream that the markers name is looked for."""
 
-LATE_S = 0.25
-"""Plates may come later than the end of their frame by this: a busy computer pauses now and then for a part of it, and
-an answer without them stays wrong.
-"""
 
-GIVEN_UP = 4
-"""After so many frames in a row whose plates came too late, plates are not waited for until they are in time again."""
+@dataclass
+class Arrived:
+    """A frame on its way.
 
-JUMP_S = 0.5
-"""Plates that are behind their frame by more are not waited for: they cannot come in time, or a count has jumped."""
+    Attributes:
+        arrival_s: When it arrived, on the clock of ``time.perf_counter``.
+        stamp_s: Its time stamp.
+        sample: (C,) its channels.
+        number: Its number, as soon as that is known.
+        repeats: How often it came again while its number was not known.
+    """
 
-CHUNK = 64
-"""Samples of the plates fetched at a time; liblsl is given room for so many, whether they come or not."""
-
-QUIET_S = 0.1
-"""Plates without samples for this long are not waited for any more."""
-
-KEPT_S = 10
-"""Duration of samples that liblsl buffers."""
+    arrival_s: float
+    stamp_s: float
+    sample: Array
+    number: int | None = None
+    repeats: int = 0
 
 
 class LslSource:
@@ -58,18 +51,19 @@ class LslSource:
         """Args: names of the marker stream (default: the first) and of the plate stream (default: its own)."""
         self._lsl = lsl()
         self._name, self._plates_name = name, plates_name
-        self._markers: Any = None
-        self._plates: Any = None
+        self._markers: Inlet = None
+        self._plates: PlateStream | None = None
+        self._opened = False
         self._stream: StreamDescription | None = None
-        self._finders: dict[str, Any] = {}
+        self._lost: LostStream | None = None
         self._news: list[tuple[str, str]] = []
-        self._first_stamp = 0.0
-        self._newest_sample: int | None = None
-        self._heard_plates_s = 0.0
-        self._overdue = 0
+        self._stamped: StampedItems[Arrived] | None = None
+        self._ready: deque[Arrived] = deque()
+        self._newest: Arrived | None = None
+        self._ahead = 0
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
-        """The first marker stream that is found, with its plates."""
+        """The first marker stream that is found, with its plates; frames flow from the first :meth:`read` on."""
         info = self._resolve(self._name, MARKER_TYPES, timeout_s)
         if info is None:
             return None
@@ -78,43 +72,45 @@ class LslSource:
         except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
             return None
 
-    def _connected(self, info: Any) -> StreamDescription | None:
-        inlet = self._inlet(info, counted=True)
-        if inlet is None:
-            return None
-        full = inlet.info(OPEN_S)
-        description, self._layout, wanted = read_marker_info(full)
-        self._name = info.name()
+    def _connected(self, info: StreamInfo) -> StreamDescription:
+        full = inlet_of(self._lsl, info, False).info(OPEN_S)
+        stream, self._layout, wanted = read_marker_info(full)
+        self._name = str(info.name())
         self._plates_name = self._plates_name or wanted or None
-        plates = self._connect_plates(self._layout)
-        self._counted = self._layout.counter is not None and (plates is None or plates[1].counter is not None)
-        self._markers = inlet if self._counted else self._inlet(info, counted=False)
-        self._stream = StreamDescription(
-            description.trial,
-            description.marker_names,
-            description.rate_hz,
-            description.start_time_s if self._counted else 0.0,
-            () if plates is None else plates[0],
-        )
+        found = self._find_plates()
+        plates = () if found is None else found.plates
+        counted = self._layout.counter is not None and (found is None or found.layout.counter is not None)
+        if counted:
+            self._stamped = None
+            self._stream = replace(stream, plates=plates)
+        else:
+            self._stamped = StampedItems(StampNumbering(stream.rate_hz))
+            self._stream = replace(stream, start_time_s=0.0, plates=from_first_frame(plates))
+        self._markers, self._opened = inlet_of(self._lsl, info, not counted), False
+        if found is not None:
+            frames = None if self._stamped is None else self._stamped.numbering
+            self._plates = PlateStream(self._lsl, found, self._stream, frames, self._tell)
         return self._stream
 
     def read(self, timeout_s: float) -> SourceFrame | None:
         """The next marker frame with the plates' samples until its end."""
         assert self._stream is not None, "connect first"
-        self._found_plates_again()
-        if self._markers is None and not self._found_again(timeout_s):
+        if not self._opened:
+            self._open()
+        if self._plates is not None:
+            self._plates.find_again()
+        while not self._ready:
+            if self._markers is None and not self._found_again(timeout_s):
+                return None
+            if not self._take(timeout_s):
+                break
+        if not self._ready:
             return None
-        try:
-            sample, stamp = self._markers.pull_sample(timeout_s)
-        except self._lsl.util.LostError:
-            self._lose("markers")
-            return None
-        arrival_s = time.perf_counter()
-        if sample is None:
-            return None
-        number = self._number(sample, stamp)
-        markers, points = self._layout.points(sample)
-        return SourceFrame(number, arrival_s, markers, points, self._samples(number, arrival_s))
+        one = self._ready.popleft()
+        number = UNCOUNTED if one.number is None else one.number
+        markers, points = self._layout.points(one.sample)
+        plates = PlateSamples.none(0) if self._plates is None else self._plates.samples(number, one.arrival_s)
+        return SourceFrame(number, one.arrival_s, markers, points, plates)
 
     def news(self) -> list[tuple[str, str]]:
         """Events of the connection since the last call."""
@@ -123,180 +119,114 @@ class LslSource:
 
     def close(self) -> None:
         """Drops both streams."""
-        self._markers = self._plates = None
-        self._finders.clear()
+        self._markers = self._plates = self._lost = None
 
-    def _resolve(self, name: str | None, types: tuple[str, ...], timeout_s: float) -> Any:
+    def _tell(self, kind: str, sentence: str) -> None:
+        self._news.append((kind, sentence))
+
+    def _resolve(self, name: str | None, types: tuple[str, ...], timeout_s: float) -> StreamInfo | None:
         if name is not None:
             found = self._lsl.resolve_byprop("name", name, 1, timeout_s)
             return found[0] if found else None
         found = streams_of(self._lsl, types, timeout_s)
         return found[0] if found else None
 
-    def _inlet(self, info: Any, counted: bool) -> Any:
-        """An open inlet, None where the stream does not answer; stamps are corrected if numbers follow from them."""
-        flags = 0
-        if not counted:
-            # Smoothed stamps separate plate samples; those of frames stay raw, since smoothing would hide lost frames.
-            plates = self._lsl.proc_dejitter if info.name() == self._plates_name else 0
-            flags = self._lsl.proc_clocksync | plates
-        inlet = self._lsl.StreamInlet(
-            info, max_buflen=KEPT_S, recover=False, processing_flags=flags, as_numpy=True
-        )
-        try:
-            inlet.open_stream(OPEN_S)
-            if not counted:  # else the first frames wait for it
-                inlet.time_correction(OPEN_S)
-        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):
-            return None
-        return inlet
-
-    def _connect_plates(self, markers: MarkerLayout) -> tuple[tuple, PlateLayout] | None:
+    def _find_plates(self) -> FoundPlates | None:
+        """The plate stream that belongs to the markers; None without one."""
         wanted = self._plates_name
         if wanted is None:
             return None
         info = self._resolve(wanted, (), PLATES_S)
-        inlet = None if info is None else self._inlet(info, counted=markers.counter is not None)
-        if info is None or inlet is None:
-            self._news.append(("plates", f"the plate stream '{wanted}' is missing; going on without plates"))
-            return None
-        plates, self._plate_layout = read_plates_info(inlet.info(OPEN_S))
-        self._plates = inlet
-        return plates, self._plate_layout
+        found = None if info is None else described_plates(self._lsl, info)
+        if found is None:
+            self._tell("plates", f"the plate stream '{wanted}' is missing; going on without plates")
+        return found
 
-    def _number(self, sample: Array, stamp: float) -> int:
-        assert self._stream is not None
-        if self._counted:
-            return int(counts(sample[self._layout.counter]))
-        if not self._first_stamp and np.isfinite(stamp):
-            self._first_stamp = stamp
-        return int(counts(np.float64((stamp - self._first_stamp) * self._stream.rate_hz)))
+    def _open(self) -> None:
+        """Begins to receive, not before the first frame is asked for: until then frames would only pile up."""
+        self._opened = True
+        if self._plates is not None:
+            self._plates.open()
+        if not opened(self._lsl, self._markers, self._stamped is not None):
+            self._lose()
 
-    def _samples(self, number: int, arrival_s: float) -> PlateSamples:
-        """Samples of the plates since the frame before, waited for until the end of this frame."""
-        assert self._stream is not None
-        stream = self._stream
-        if self._plates is None:
-            return PlateSamples.none(len(stream.plates))
-        ratio = stream.plate_rate_hz / stream.rate_hz
-        offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
-        until = offset + (number + 0.5) * ratio - WHOLE  # long ago for a frame without a number
-        # Each wait in vain halves the next: frames go on coming meanwhile, and the filter has room for a few only.
-        patience = (0.5 / stream.rate_hz + LATE_S) * 0.5**self._overdue if self._overdue < GIVEN_UP else 0.0
-        deadline = arrival_s + patience
-        parts: list[PlateSamples] = []
-        before = self._newest_sample
-        if not self._heard_plates_s:
-            self._heard_plates_s = arrival_s
+    def _take(self, timeout_s: float) -> bool:
+        """Receives the next frame; false where none came, or the stream broke off."""
         try:
-            missing = self._missing(until)
-            while True:  # asked once at least: a source that counts anew is ahead of itself
-                heard_until = min(deadline, self._heard_plates_s + QUIET_S)
-                due = 0 < missing <= JUMP_S * stream.plate_rate_hz
-                wait = max(0.0, heard_until - time.perf_counter()) if due else 0.0
-                # All that a frame brings in one call: each return waits for the interpreter.
-                found, stamps = self._plates.pull_chunk(
-                    timeout=wait, max_samples=CHUNK, min_samples=max(1, min(missing, int(ratio), CHUNK))
-                )
-                if len(found):
-                    self._heard_plates_s = time.perf_counter()
-                    parts.append(self._placed(found, stamps))
-                    self._newest_sample = int(parts[-1].index[-1])
-                    missing = self._missing(until)
-                if missing <= 0 or not (len(found) or wait):
-                    break
-            self._judge_plates(missing, before, waited_out=time.perf_counter() >= deadline)
+            sample, stamp = self._markers.pull_sample(timeout_s)
         except self._lsl.util.LostError:
-            self._lose("plates")
-        if not parts:
-            return PlateSamples.none(len(stream.plates))
-        if len(parts) == 1:
-            return parts[0]
-        return PlateSamples(
-            np.concatenate([part.index for part in parts]), np.concatenate([part.wrench for part in parts])
-        )
-
-    def _judge_plates(self, missing: int, before: int | None, waited_out: bool) -> None:
-        """Counts frames whose plates came too late; plates that were only a little late are waited for again."""
-        assert self._stream is not None
-        comes = self._newest_sample is not None and self._newest_sample != before
-        if missing <= 0:
-            self._overdue = 0
-        elif self._overdue < GIVEN_UP:
-            self._overdue += waited_out
-        elif comes and missing < LATE_S * self._stream.plate_rate_hz:
-            self._overdue = GIVEN_UP - 1
-
-    def _missing(self, until: float) -> int:
-        """Number of samples to come until that index."""
-        return 1 if self._newest_sample is None else ceil(until) - self._newest_sample
-
-    def _placed(self, samples: Array, stamps: Array) -> PlateSamples:
-        assert self._stream is not None
-        if self._counted:
-            index = counts(samples[:, self._plate_layout.counter])
-        else:
-            index = counts((np.asarray(stamps) - self._first_stamp) * self._stream.plate_rate_hz)
-        return PlateSamples(index, self._plate_layout.wrenches(samples))
-
-    def _lose(self, kind: str) -> None:
-        """A stream broke off; it is looked for in the background."""
-        name = self._name if kind == "markers" else self._plates_name
-        self._news.append((f"{kind} gone", f"the stream '{name}' broke off and is looked for"))
-        if kind == "plates":
-            self._plates, self._newest_sample = None, None
-        else:
-            self._markers = None
-            if self._plates is not None:
-                self._lose("plates")
-        self._finders[kind] = self._lsl.ContinuousResolver("name", name, forget_after=2.0)
-
-    def _found_again(self, timeout_s: float) -> bool:
-        """True once the marker stream is back with the same markers and rate."""
-        inlet = self._again("markers", timeout_s)
-        if inlet is None:
+            self._lose()
             return False
-        assert self._stream is not None
-        try:
-            description, layout, _ = read_marker_info(inlet.info(OPEN_S))
-            same = description.marker_names == self._stream.marker_names
-            if not same or description.rate_hz != self._stream.rate_hz:
-                raise InvalidInput(f"the stream '{self._name}' came back with other markers or another rate")
-        except (MbkfError, self._lsl.util.LostError, self._lsl.util.TimeoutError) as error:
-            self._news.append(("refused", str(error)))
-            time.sleep(timeout_s)
+        if sample is None:
+            self._release([] if self._stamped is None else self._stamped.flush())
             return False
-        self._markers, self._layout = inlet, layout
-        self._news.append(("markers back", f"the stream '{self._name}' is back"))
-        del self._finders["markers"]
+        one = Arrived(time.perf_counter(), stamp, sample)
+        if self._stamped is None:
+            one.number = self._count(sample)
+            self._ready.append(one)
+        elif self._repeated(one):
+            assert self._newest is not None
+            if self._newest.number is None:
+                self._newest.repeats += 1
+            else:
+                one.number = self._newest.number
+                self._ready.append(one)
+        else:
+            self._newest, numbering = one, self._stamped.numbering
+            jumps = numbering.jumps
+            self._release(self._stamped.put(one, stamp, one.arrival_s))
+            if numbering.jumps > jumps:
+                self._tell("clock", f"the time stamps of '{self._name}' jumped; its frames follow by arrival")
         return True
 
-    def _found_plates_again(self) -> None:
-        if "plates" not in self._finders:
-            return
-        inlet = self._again("plates", 0.0)
-        if inlet is None:
-            return
-        assert self._stream is not None
-        del self._finders["plates"]
-        try:
-            plates, layout = read_plates_info(inlet.info(OPEN_S))
-            if [one.name for one in plates] != [one.name for one in self._stream.plates]:
-                raise InvalidInput(f"the stream '{self._plates_name}' came back with other plates")
-            if plates[0].rate_hz != self._stream.plate_rate_hz:
-                raise InvalidInput(f"the stream '{self._plates_name}' came back with another rate")
-        except MbkfError as error:
-            self._news.append(("plates refused", f"{error}; going on without plates"))
-            return
-        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
-            self._lose("plates")
-            return
-        self._plates, self._plate_layout, self._heard_plates_s = inlet, layout, 0.0
-        self._news.append(("plates back", f"the stream '{self._plates_name}' is back"))
+    def _release(self, found: list[tuple[int, Arrived]]) -> None:
+        """Frames whose numbers are known; one that came twice has the same number again."""
+        for number, one in found:
+            one.number = number
+            self._ready.extend([one] * (1 + one.repeats))
 
-    def _again(self, kind: str, timeout_s: float) -> Any:
-        found = self._finders[kind].results()
-        if not found:
+    def _repeated(self, one: Arrived) -> bool:
+        """True for the frame before once more: the same stamp and the same numbers."""
+        before = self._newest
+        if before is None or one.stamp_s != before.stamp_s:
+            return False
+        return np.array_equal(one.sample, before.sample, equal_nan=True)
+
+    def _count(self, sample: Array) -> int:
+        found = int(counts(sample[self._layout.counter]))
+        return found if found == UNCOUNTED else found + self._ahead
+
+    def _lose(self) -> None:
+        """The marker stream broke off; it is looked for in the background, and its plates are, too."""
+        self._tell("markers gone", f"the stream '{self._name}' broke off and is looked for")
+        self._markers, self._lost = None, LostStream(self._lsl, str(self._name))
+        self._release([] if self._stamped is None else self._stamped.flush())
+        if self._plates is not None:
+            self._plates.lose()
+
+    def _found_again(self, timeout_s: float) -> bool:
+        """True once the marker stream is back; its markers are found by their names."""
+        assert self._stream is not None and self._lost is not None
+        known, info = self._stream, self._lost.found()
+        if info is None:
             time.sleep(timeout_s)
-            return None
-        return self._inlet(found[0], counted=self._counted)
+            return False
+        inlet = inlet_of(self._lsl, info, self._stamped is not None)
+        try:
+            found, layout, _ = read_marker_info(inlet.info(OPEN_S))
+            same_rate(known.rate_hz, found.rate_hz)
+            layout = layout.reordered(named_columns("markers", known.marker_names, found.marker_names))
+            if self._stamped is None and layout.counter is None:
+                raise InvalidInput("it has no count of frames any more")
+        except MbkfError as error:
+            self._lost.refuse(info)
+            self._tell("refused", f"the stream '{self._name}' came back as another one: {error}")
+            return False
+        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
+            return False
+        if not opened(self._lsl, inlet, self._stamped is not None):
+            return False
+        self._markers, self._layout, self._lost = inlet, layout, None
+        self._ahead = moved_counts(known, found) if self._stamped is None else 0
+        self._tell("markers back", f"the stream '{self._name}' is back")
+        return True

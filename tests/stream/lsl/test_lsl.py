@@ -13,14 +13,14 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.stream.libraries import lsl
-from mbkf.stream.lsl.format import PlateLayout, plates_info, plates_name, read_marker_info, read_plates_info
+from mbkf.stream.lsl.format import plates_info, plates_name, read_marker_info, read_plates_info
 from mbkf.stream.lsl.player import LslPlayer
 from mbkf.stream.lsl.results import LslResults
-from mbkf.stream.lsl.source import GIVEN_UP, LslSource
+from mbkf.stream.lsl.source import LslSource
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
 from mbkf.stream.results.values import ResultValues
-from mbkf.stream.source import UNCOUNTED, StreamDescription
+from mbkf.stream.source import UNCOUNTED
 from tests.captures import made_capture
 from tests.stream.results.test_websocket import shown_frame
 
@@ -88,92 +88,12 @@ def test_what_is_sent_arrives_to_the_last_digit(name):
     assert (known >= np.minimum(50 + 10 * (np.arange(30) + 0.5), 299)).all()
 
 
-class Scripted:
-    """Plates whose samples are there up to an index, and after a wait up to a later one; notes the waits."""
-
-    def __init__(self):
-        self.there = self.soon = self._given = 0
-        self.waits = []
-
-    def pull_chunk(self, timeout, max_samples, min_samples):
-        self.waits.append(timeout)
-        until = self.there
-        if until <= self._given and timeout > 0.0:
-            time.sleep(timeout if self.soon <= self._given else 0.0)
-            until = self.soon
-        index = np.arange(self._given, max(until, self._given))[:max_samples]
-        self._given += len(index)
-        return np.column_stack([np.zeros((len(index), 6)), index]), 0.0 * index
-
-
-def scripted(name):
-    source, plates = LslSource(name), Scripted()
-    plate = replace(CAPTURE.plates[0], start_time_s=0.0)
-    source._stream = StreamDescription("x", ("A",), 100.0, 0.0, (plate,))
-    source._plates, source._counted = plates, True
-    source._plate_layout = PlateLayout(np.arange(6)[None], 6, np.eye(3))
-    return source, plates
-
-
-def test_a_source_that_counts_anew_goes_on_with_its_plates(name):
-    """What was read until then has higher numbers than what follows."""
-    source, plates = scripted(name)
-    source._newest_sample = 5000
-    for number in range(3):
-        plates.there = 10 * number + 6
-        samples = source._samples(number, time.perf_counter())
-        assert samples.index[-1] == 10 * number + 5
-
-
-def test_late_plates_are_waited_for_given_up_and_waited_for_again(name, monkeypatch):
-    """Four frames in vain are enough; once samples are nearly in time again, they are waited for."""
-    monkeypatch.setattr("mbkf.stream.lsl.source.LATE_S", 0.02)
-    monkeypatch.setattr("mbkf.stream.lsl.source.QUIET_S", 60.0)
-    source, plates = scripted(name)
-
-    def newest(number, there, soon):
-        plates.there, plates.soon, before = there, soon, len(plates.waits)
-        samples = source._samples(number, time.perf_counter())
-        return samples.index.max(initial=-1), any(wait > 0.0 for wait in plates.waits[before:])
-
-    assert newest(0, 0, 6) == (5, True)
-    assert newest(1, 6, 16) == (15, True)
-    for number in range(2, 2 + GIVEN_UP):
-        assert newest(number, 16, 16) == (-1, True)
-    assert newest(6, 16, 66) == (-1, False)
-    assert newest(7, 66, 76) == (65, False)
-    assert newest(8, 76, 86) == (85, True)
-
-
-def test_plates_are_not_waited_for_where_a_count_has_jumped(name):
-    source, plates = scripted(name)
-    plates.there = plates.soon = 6
-    assert source._samples(0, time.perf_counter()).index[-1] == 5
-    plates.there = plates.soon = 16
-    begin = time.perf_counter()
-    for number in (1001, UNCOUNTED, -(10**6)):
-        source._samples(number, begin)
-    assert max(plates.waits[1:]) == 0.0
-    assert source._newest_sample == 15
-
-
-@pytest.mark.parametrize("counter", [np.nan, np.inf, -np.inf, 2.0**60, -(2.0**60)])
-def test_a_count_that_is_none_is_told_as_such(name, counter):
-    source, _ = scripted(name)
-    source._layout = SimpleNamespace(counter=3)
-    assert source._number(np.array([0.0, 0.0, 0.0, counter]), 0.0) == UNCOUNTED
-    assert source._number(np.array([0.0, 0.0, 0.0, 41.0]), 0.0) == 41
-    placed = source._placed(np.array([[0, 0, 0, 0, 0, 0, 7.0], [0, 0, 0, 0, 0, 0, counter]]), np.zeros(2))
-    assert placed.index.tolist() == [7, UNCOUNTED]
-    source._counted = False
-    assert source._number(np.zeros(4), np.nan) == UNCOUNTED
-
-
 @pytest.mark.slow
 def test_plates_that_return_as_others_are_refused(name):
     made = played(CAPTURE)
     player, source = LslPlayer(made, name), LslSource(name)
     connected(source)
+    assert source.read(0.1) is None
     player._plates = None
     other = replace(made.stream, plates=made.stream.plates[:1])
     outlet = PYLSL.StreamOutlet(plates_info(PYLSL, other, name))
@@ -186,6 +106,104 @@ def test_plates_that_return_as_others_are_refused(name):
     assert news == ["plates gone", "plates refused"]
     source.close()
     del outlet
+
+
+@pytest.mark.slow
+def test_plates_and_markers_that_return_in_reverse_order_are_mapped(name):
+    """Plates that are named by their number have the same names in the new order: geometry says which is which."""
+    made = played(CAPTURE)
+    made = replace(made, wrench=made.wrench * np.array([1.0, 3.0])[:, None])
+    player, source = LslPlayer(made, name), LslSource(name)
+    connected(source)
+    thread = play(player, made, 4.0)
+    assert len(read(source, 30)) == 30
+    thread.join()
+    player.close()
+    names = [plate.name for plate in made.stream.plates]
+    plates = [replace(plate, name=own) for plate, own in zip(made.stream.plates[::-1], names, strict=True)]
+    stream = replace(made.stream, plates=tuple(plates), marker_names=made.stream.marker_names[::-1])
+    turned = replace(made, stream=stream, markers_m=made.markers_m[:, ::-1], wrench=made.wrench[:, ::-1])
+    again, back, until = LslPlayer(turned, name), [], time.monotonic() + 15.0
+    while {"markers back", "plates back"} - {kind for kind, _ in back} and time.monotonic() < until:
+        assert source.read(0.05) is None
+        back += source.news()
+    thread = play(again, turned, 4.0)
+    frames = read(source, 30, 10.0)
+    thread.join()
+    again.close()
+    source.close()
+    assert "in another order" in dict(back)["plates back"]
+    np.testing.assert_array_equal([frame.markers_m for frame in frames], made.markers_m)
+    found = np.concatenate([frame.plates.wrench for frame in frames])
+    index = np.concatenate([frame.plates.index for frame in frames])
+    np.testing.assert_array_equal(found, made.wrench[index])
+
+
+@pytest.mark.parametrize("counter", [np.nan, np.inf, -np.inf, 2.0**60, -(2.0**60)])
+def test_a_count_that_cannot_be_read_is_stated_as_such(name, counter):
+    source = LslSource(name)
+    source._layout, source._ahead = SimpleNamespace(counter=3), 50
+    assert source._count(np.array([0.0, 0.0, 0.0, counter])) == UNCOUNTED
+    assert source._count(np.array([0.0, 0.0, 0.0, 41.0])) == 91
+
+
+def test_frames_that_come_twice_have_their_number_twice(name):
+    info = foreign(name, "MoCap", positions("A"))
+    outlet, source = PYLSL.StreamOutlet(info), LslSource(name)
+    connected(source)
+    assert source.read(0.1) is None
+    begin = PYLSL.local_clock()
+    for number in (0, 1, 1, 2, 3, 3):
+        outlet.push_sample([float(number), 0.0, 0.0], begin + number / 100.0)
+    assert [frame.number for frame in read(source, 6)] == [0, 1, 1, 2, 3, 3]
+    source.close()
+    del outlet
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 1.0), ("", 1.0), ("Millimeters", 1e-3)])
+def test_markers_are_in_their_unit(name, unit, metres):
+    layout = read_marker_info(foreign(name, "MoCap", positions("A", unit)))[1]
+    np.testing.assert_allclose(
+        layout.points(np.array([1.0, 2.0, 3.0]))[0], [[metres, 2 * metres, 3 * metres]]
+    )
+
+
+def test_channels_in_several_units_are_refused(name):
+    with pytest.raises(InvalidInput, match="'meters', 'millimeters'"):
+        read_marker_info(foreign(name, "MoCap", [*positions("A"), *positions("B", "meters")]))
+
+
+def loads(plate, force="newtons", moment="newtonmeters"):
+    return [
+        {"label": f"{plate}{kind}{axis}", "type": f"{kind}{axis}", "unit": unit, "plate": plate}
+        for kind, unit in (("Force", force), ("Moment", moment))
+        for axis in "XYZ"
+    ]
+
+
+def plates_of(name, channels, *described):
+    info = foreign(plates_name(name), "ForcePlate", channels, 1000.0)
+    listed = info.desc().append_child("plates")
+    for k, plate in enumerate(described):
+        entry = listed.append_child("plate")
+        entry.append_child_value("name", plate)
+        entry.append_child_value("origin_m", f"{k} 0 0")
+    return read_plates_info(info)
+
+
+def test_channels_belong_to_the_plate_that_they_name(name):
+    plates, layout = plates_of(name, [*loads("B"), *loads("A")], "A", "B")
+    assert [plate.name for plate in plates] == ["A", "B"]
+    np.testing.assert_array_equal(layout.wrenches(np.arange(12.0)[None])[0, 0], np.arange(6, 12))
+    with pytest.raises(InvalidInput, match="channels of plates B, C and describes A, B"):
+        plates_of(name, [*loads("B"), *loads("C")], "A", "B")
+
+
+def test_plates_are_in_their_units(name):
+    _, layout = plates_of(name, loads("A", "kN", "N mm"), "A")
+    np.testing.assert_allclose(layout.wrenches(np.ones((1, 6)))[0, 0], [1e3, 1e3, 1e3, 1e-3, 1e-3, 1e-3])
+    with pytest.raises(InvalidInput, match="moments in 'pound feet'"):
+        plates_of(name, loads("A", "N", "pound feet"), "A")
 
 
 def test_points_without_names_arrive(name):
@@ -223,6 +241,7 @@ def test_a_stream_that_returns_with_other_markers_is_refused(name):
     made = played(replace(CAPTURE, plates=()))
     player, source = LslPlayer(made, name), LslSource(name)
     connected(source)
+    assert source.read(0.1) is None
     player.close()
     other = MarkerTrajectories(("A", "B"), np.zeros((5, 2, 3)), 100.0)
     again = LslPlayer(played(replace(CAPTURE, markers=other, plates=())), name)
@@ -269,6 +288,7 @@ def test_another_programs_stream_is_numbered_by_its_stamps(name):
     outlet, source = PYLSL.StreamOutlet(info), LslSource(name)
     stream = connected(source)
     assert stream.marker_names == ("A", "B")
+    assert source.read(0.1) is None  # nothing is received before
     begin = PYLSL.local_clock()
     for number in (0, 1, 2, 5, 6):
         outlet.push_sample([0.0, 1000.0, 0.0, 0.0, 0.0, 500.0 + number], begin + number / 100.0)

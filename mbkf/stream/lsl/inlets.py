@@ -1,0 +1,63 @@
+"""Inlets of Lab Streaming Layer, and the search for a stream that broke off."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any, TypeAlias
+
+from mbkf.stream.lsl.format import StreamInfo
+
+Inlet: TypeAlias = Any
+"""An inlet as pylsl holds it; the library carries no types."""
+
+OPEN_S = 3.0
+"""Time in which a stream that was found has to answer."""
+
+KEPT_S = 10
+"""Duration of samples that liblsl buffers."""
+
+
+def inlet_of(library: ModuleType, info: StreamInfo, synchronised: bool) -> Inlet:
+    """An inlet that receives nothing yet.
+
+    Args:
+        library: pylsl.
+        info: The stream.
+        synchronised: Whether its time stamps are corrected to this computer's clock.
+    """
+    flags = library.proc_clocksync if synchronised else 0
+    return library.StreamInlet(info, max_buflen=KEPT_S, recover=False, processing_flags=flags, as_numpy=True)
+
+
+def opened(library: ModuleType, inlet: Inlet, synchronised: bool) -> bool:
+    """Begins to receive; false where the stream does not answer.
+
+    Args:
+        library: pylsl.
+        inlet: The inlet.
+        synchronised: Whether its time stamps are corrected; the first correction is waited for.
+    """
+    try:
+        inlet.open_stream(OPEN_S)
+        if synchronised:  # else the first frames wait for it
+            inlet.time_correction(OPEN_S)
+    except (library.util.LostError, library.util.TimeoutError):
+        return False
+    return True
+
+
+class LostStream:
+    """Looks in the background for a stream that broke off, by its name."""
+
+    def __init__(self, library: ModuleType, name: str) -> None:
+        """Args: pylsl, and the stream's name."""
+        self._resolver = library.ContinuousResolver("name", name, forget_after=2.0)
+        self._refused: set[str] = set()
+
+    def found(self) -> StreamInfo | None:
+        """A stream of that name that was not refused; None while there is none."""
+        return next((one for one in self._resolver.results() if one.uid() not in self._refused), None)
+
+    def refuse(self, info: StreamInfo) -> None:
+        """Passes over a stream that has the name and is another one."""
+        self._refused.add(info.uid())
