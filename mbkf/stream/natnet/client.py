@@ -111,6 +111,11 @@ class NatNetClient:
         except IndexError:
             return None
 
+    def describe_again(self) -> None:
+        """Asks for the description once more; until it comes, the question is repeated."""
+        self.described.clear()
+        self._send(packets.REQUEST_DESCRIPTIONS)
+
     def refuse(self, error: InvalidPacket) -> None:
         """Counts a packet that cannot be read, and reports the first one."""
         self.unreadable += 1

@@ -22,6 +22,12 @@ from mbkf.stream.natnet.server import Version
 SIZED: Version = (4, 1)
 """From this protocol on the size of each part is sent."""
 
+MODELS_CHANGED = 2
+"""Bit of a frame's parameters: what the stream describes has changed."""
+
+_END = struct.Struct("<HI")
+"""The last fields of a frame: its parameters, and the end of data."""
+
 _RIGID_BODY_BYTES = 38
 _SUFFIX, _FIRST_PLATE = struct.Struct("<2Id"), struct.Struct("<3I")
 _COUNT, _FLOAT = np.dtype("<u4"), np.dtype("<f4")
@@ -50,6 +56,7 @@ class Frame(NamedTuple):
         points: (N, 3) points without names.
         labelled: (L,) labelled markers, as :data:`mbkf.stream.natnet.packets.LABELLED`.
         plates: The force plates' samples.
+        changed: The server states that its list of tracked models has changed.
     """
 
     number: int
@@ -58,6 +65,7 @@ class Frame(NamedTuple):
     points: NDArray[np.float32]
     labelled: NDArray[np.void]
     plates: Plates
+    changed: bool = False
 
 
 def read_frame(packet: bytes, version: Version) -> Frame:
@@ -99,7 +107,9 @@ def read_frame(packet: bytes, version: Version) -> Frame:
             cursor.take(4)
             _channels(cursor)
     time_s = float(cursor.fields(_SUFFIX)[2])
-    return Frame(number, time_s, sets, points, labelled, plates)
+    at = cursor.end - _END.size  # the fields between differ between protocols
+    changed = at >= cursor.at and bool(_END.unpack_from(packet, at)[0] & MODELS_CHANGED)
+    return Frame(number, time_s, sets, points, labelled, plates, changed)
 
 
 def _begin(cursor: Cursor, least: int, sized: bool) -> tuple[int, int]:

@@ -13,6 +13,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.plate_corners import has_area
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.stream.identity import Columns, elsewhere, plate_places
 from mbkf.stream.natnet import packets
 from mbkf.stream.natnet.descriptions import Descriptions, MarkerSet
 from mbkf.stream.natnet.frames import Frame
@@ -26,6 +27,9 @@ WHOLE_RATE = 2e-3
 EVERYTHING = "all"
 """Motive's set of all markers; it repeats the others."""
 
+NO_PLATE = -1
+"""Number of a plate that the server does not describe any more; no samples have it."""
+
 NO_POINTS = read_only(np.zeros((0, 3)))
 """The points without names of a frame that has none."""
 
@@ -34,7 +38,8 @@ class StreamLayout:
     """Turns a stream's frames into those of a :class:`mbkf.stream.source.FrameSource`.
 
     Attributes:
-        stream: The stream's description.
+        stream: The stream's description; it stays when the server describes its stream anew.
+        outdated: A frame did not fit the latest description of the server.
     """
 
     def __init__(self, described: Descriptions, frames: Sequence[Frame], rotation: Array) -> None:
@@ -49,8 +54,11 @@ class StreamLayout:
             InvalidInput: The time stamps give no rate, or plates send raw voltages.
         """
         self._rotation = rotation
-        self._sets: list[MarkerSet] = [s for s in described.sets if s.name.lower() != EVERYTHING]
-        names = [name for one in self._sets for name in one.markers]
+        self._sets = _own_sets(described)
+        self._known = _markers_of(self._sets)
+        self._columns: Columns | None = None
+        self.outdated = False
+        names = [name for _, name in self._known]
         rate_hz = _rate(frames)
         self._samples = max((samples.shape[1] for samples in frames[0].plates.samples), default=1)
         with np.errstate(invalid="ignore", over="ignore"):
@@ -67,8 +75,44 @@ class StreamLayout:
             markers, points = self._points(frame)
             return SourceFrame(frame.number, arrival_s, markers, points, self._plates(frame))
 
+    def describe(self, described: Descriptions) -> list[tuple[str, str]]:
+        """Takes a later description: markers are found by name, plates by where they lie. Returns events."""
+        self.outdated = False
+        news: list[tuple[str, str]] = []
+        sets = _own_sets(described)
+        places = [_place(one, _markers_of(sets)) for one in self._known]
+        missing = [name for (_, name), place in zip(self._known, places, strict=True) if place < 0]
+        if self._known and len(missing) == len(places):
+            return [
+                ("refused", "the camera computer describes other markers; the known ones are read as before")
+            ]
+        if missing:
+            news.append(
+                (
+                    "markers",
+                    f"{len(missing)} of {len(places)} markers are no longer described ({missing[0]} …)",
+                )
+            )
+        self._sets = sets
+        whole = places == list(range(sum(len(one.markers) for one in sets)))
+        self._columns = None if whole else np.array(places, dtype=np.int64)
+        return news + self._describe_plates(described.plates)
+
+    def _describe_plates(self, described: Sequence[ForcePlate]) -> list[tuple[str, str]]:
+        known, news = self.stream.plates, []
+        usable = [plate for plate in described if _calibrated(plate)]
+        with np.errstate(invalid="ignore", over="ignore"):
+            found = [self._plate(plate, self.stream.plate_rate_hz) for plate in usable]
+        numbers = []
+        for plate, place in zip(known, plate_places(known, found), strict=True):
+            numbers.append(NO_PLATE if place is None else usable[place].number)
+            if place is None:
+                news.append(("plates refused", f"{elsewhere(plate, found)}; it is not read any more"))
+        self._plate_numbers = numbers
+        return news
+
     def _plate(self, plate: ForcePlate, rate_hz: float) -> PlateReadings:
-        if plate.raw or len(plate.channels) < len(packets.CHANNELS):
+        if not _calibrated(plate):
             raise InvalidInput(
                 f"NatNet: force plate {plate.serial} sends raw voltages; let Motive stream calibrated forces"
             )
@@ -80,7 +124,7 @@ class StreamLayout:
 
     def _points(self, frame: Frame) -> tuple[Array, Array]:
         """(M, 3) named markers and (N, 3) points; positions that Motive only filled in count as missing."""
-        rows = [_rows(frame.sets.get(one.name), len(one.markers)) for one in self._sets]
+        rows = [self._rows(frame.sets.get(one.name), len(one.markers)) for one in self._sets]
         found = rows[0] if len(rows) == 1 else np.concatenate([*rows, packets.NO_POINTS])
         flags, points, missing = frame.labelled["flags"], frame.points, _at_nought(found)
         raised = int(np.bitwise_or.reduce(flags))
@@ -91,7 +135,19 @@ class StreamLayout:
             points = frame.labelled["position"][flags & packets.UNLABELLED != 0]
         markers = found.astype(float) @ self._rotation.T
         markers[missing] = np.nan
+        if self._columns is not None:
+            markers = np.vstack([markers, np.full(3, np.nan)])[self._columns]
         return markers, points.astype(float) @ self._rotation.T if len(points) else NO_POINTS
+
+    def _rows(self, found: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
+        """(count, 3) positions of a set's markers; NaN where their number is not that of the description.
+
+        Which marker came or went is not known then, so that no position has a name.
+        """
+        if found is not None and len(found) == count:
+            return found
+        self.outdated = self.outdated or found is not None
+        return np.full((count, 3), np.nan, dtype=np.float32)
 
     def _plates(self, frame: Frame) -> PlateSamples:
         count, each = len(self._plate_numbers), self._samples
@@ -113,14 +169,25 @@ class StreamLayout:
         return PlateSamples(np.arange(first, first + each), wrench)
 
 
-def _rows(found: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
-    """(count, 3) positions of a set's markers; those that were not sent are NaN."""
-    if found is not None and len(found) == count:
-        return found
-    rows = np.full((count, 3), np.nan, dtype=np.float32)
-    if found is not None:
-        rows[: len(found)] = found[:count]
-    return rows
+def _own_sets(described: Descriptions) -> list[MarkerSet]:
+    return [one for one in described.sets if one.name.lower() != EVERYTHING]
+
+
+def _markers_of(sets: Sequence[MarkerSet]) -> list[tuple[str, str]]:
+    """Set and name of every marker."""
+    return [(one.name, name) for one in sets for name in one.markers]
+
+
+def _place(known: tuple[str, str], found: Sequence[tuple[str, str]]) -> int:
+    """Place of a marker of a set: by both names, or by its own where only one marker has it; −1 without one."""
+    if known in found:
+        return found.index(known)
+    names = [name for _, name in found]
+    return names.index(known[1]) if names.count(known[1]) == 1 else -1
+
+
+def _calibrated(plate: ForcePlate) -> bool:
+    return not plate.raw and len(plate.channels) >= len(packets.CHANNELS)
 
 
 def _at_nought(points: NDArray[np.float32]) -> BoolArray:

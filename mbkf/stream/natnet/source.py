@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
+from dataclasses import replace
+
+import numpy as np
 
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.io.axes import rotation_to_world, up_axis
 from mbkf.stream.natnet.client import LEAST_HELD, NatNetClient
+from mbkf.stream.natnet.descriptions import Descriptions
 from mbkf.stream.natnet.frames import Frame, read_frame
 from mbkf.stream.natnet.layout import StreamLayout
 from mbkf.stream.source import SourceFrame, StreamDescription
@@ -25,6 +29,12 @@ RECONNECT_AFTER_S = 2.0
 HELD_S = 2.0
 """Received frames are held for so long until they are read."""
 
+ASK_AGAIN_S = 0.25
+"""Interval of questions for the description while frames do not fit it."""
+
+UNSURE_S = 0.5
+"""After the server states that its models changed, markers have no names until its new description is here, or for so
+long at most."""
 
 Arrived = tuple[float, Frame]
 """Time of arrival on the clock of ``time.perf_counter``, and the frame."""
@@ -51,7 +61,9 @@ class NatNetSource:
         self._early: deque[Arrived] = deque()
         self._layout: StreamLayout | None = None
         self._heard_s = 0.0
-        self._silent = False
+        self._silent = self._changed = False
+        self._described: Descriptions | None = None
+        self._asked_s = self._unsure_until_s = 0.0
         self._news: list[tuple[str, str]] = []
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
@@ -74,8 +86,9 @@ class NatNetSource:
                 return None
             self._early.append(arrived)
         assert client.descriptions is not None
+        self._described = client.descriptions
         frames = [frame for _, frame in self._early]
-        self._layout = StreamLayout(client.descriptions, frames, self._rotation)
+        self._layout = StreamLayout(self._described, frames, self._rotation)
         client.most_held = _most_held(self._layout)
         self._heard_s = time.perf_counter()
         return self._layout.stream
@@ -90,7 +103,30 @@ class NatNetSource:
             return None
         arrival_s, frame = arrived
         self._heard_s, self._silent = arrival_s, False
-        return self._layout.frame(frame, arrival_s)
+        self._follow_description(frame.changed, arrival_s)
+        found = self._layout.frame(frame, arrival_s)
+        if self._layout.outdated:
+            self._ask_again(arrival_s)
+        if arrival_s < self._unsure_until_s:
+            found = replace(found, markers_m=np.full_like(found.markers_m, np.nan))
+        return found
+
+    def _follow_description(self, changed: bool, arrival_s: float) -> None:
+        """Asks for a description that has changed, and reads frames by the newest one."""
+        assert self._layout is not None
+        if changed and not self._changed:
+            self._unsure_until_s = arrival_s + UNSURE_S
+            self._ask_again(arrival_s)
+        self._changed = changed
+        newest = None if self._client is None else self._client.descriptions
+        if newest is not None and newest is not self._described:
+            self._described, self._unsure_until_s = newest, 0.0
+            self._news += self._layout.describe(newest)
+
+    def _ask_again(self, now_s: float) -> None:
+        if self._client is not None and now_s - self._asked_s > ASK_AGAIN_S:
+            self._asked_s = now_s
+            self._client.describe_again()
 
     def news(self) -> list[tuple[str, str]]:
         """Events of the connection since the last call."""

@@ -60,9 +60,9 @@ def frame(version, number=5, time_s=0.5, sets=(), points=(), markers=(), plates=
         part(version, [labelled(*marker) for marker in markers]),
         part(version, [channels(*plate) for plate in plates]),
         part(version, [channels(1, [[1.0, 2.0], [3.0]]), channels(2, [])]),
-        struct.pack("<2Id3QH", 1, 2, time_s, 3, 4, 5, 1),
+        struct.pack("<2Id3Q", 1, 2, time_s, 3, 4, 5),
         integers(0, 0) if version >= (4, 1) else b"",  # precision time stamp
-        integers(0),
+        struct.pack("<HI", 1, 0),  # parameters, end of data
     ]
     return packets.message(packets.FRAME, b"".join(parts))
 

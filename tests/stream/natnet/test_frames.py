@@ -150,3 +150,11 @@ def test_a_damaged_frame_is_read_or_refused(version, told, changes):
 @given(payload=st.binary(max_size=200), version=st.sampled_from(layouts.VERSIONS))
 def test_noise_is_read_or_refused(payload, version):
     read_or_refused(packets.message(packets.FRAME, payload), version)
+
+
+@pytest.mark.parametrize("version", layouts.VERSIONS)
+@pytest.mark.parametrize("flags", [0, 1, 2, 3])
+def test_a_change_of_the_models_is_read_from_the_last_fields(version, flags):
+    whole = bytearray(layouts.frame(version))
+    whole[-6:-4] = struct.pack("<H", flags)
+    assert read_frame(bytes(whole), version).changed == (flags >= 2)

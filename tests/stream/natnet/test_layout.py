@@ -39,11 +39,12 @@ def layout(plates=(), first=None, sets=SETS):
 
 
 def one_by_one(described, frame):
-    """Named markers by a loop: those at nought or where an occluded one stands are missing."""
+    """Named markers by a loop: those at nought, at an occluded one, or in a set of another size are missing."""
     filled = [m["position"].tolist() for m in frame.labelled if m["flags"] & packets.OCCLUDED]
     rows = []
     for one in described:
-        found = frame.sets.get(one.name, np.zeros((0, 3)))[: len(one.markers)].tolist()
+        found = frame.sets.get(one.name, np.zeros((0, 3))).tolist()
+        found = found if len(found) == len(one.markers) else []
         found = [[math.nan] * 3 if row in filled or row == [0.0, 0.0, 0.0] else row for row in found]
         rows += found + [[math.nan] * 3] * (len(one.markers) - len(found))
     return np.array(rows).reshape(-1, 3) @ ROTATION.T
@@ -133,3 +134,69 @@ def test_numbers_that_are_none_pass_quietly():
     frame = made.frame(frames(**content)[0], 0.0)
     assert not np.isfinite(frame.markers_m).any()
     assert not np.isfinite(frame.plates.wrench).any()
+
+
+def sent_as(sets, positions):
+    """A frame of sets whose markers stand at the positions of their names."""
+    return frames(sets=[(one.name, [positions[name] for name in one.markers]) for one in sets])[0]
+
+
+POSITIONS = {name: np.full(3, 1.0 + k) for k, name in enumerate("ABCDE")}
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        (MarkerSet("one", ("B", "A")), MarkerSet("two", ("C", "D"))),
+        (MarkerSet("two", ("D", "E", "C")), MarkerSet("one", ("A", "B"))),
+        (MarkerSet("all", ("E",)), MarkerSet("new", ("D", "C", "B", "A"))),
+    ],
+)
+def test_markers_that_are_described_in_another_order_keep_their_columns(sets):
+    made = layout()
+    expected = made.frame(sent_as(SETS, POSITIONS), 0.0).markers_m
+    assert made.describe(Descriptions(sets, ())) == []
+    assert made.stream.marker_names == ("A", "B", "C", "D")
+    np.testing.assert_array_equal(made.frame(sent_as(sets, POSITIONS), 0.0).markers_m, expected)
+
+
+def test_markers_that_are_described_no_more_are_missing():
+    made, sets = layout(), (MarkerSet("one", ("B",)), MarkerSet("two", ("C", "D")))
+    ((kind, sentence),) = made.describe(Descriptions(sets, ()))
+    assert kind == "markers" and sentence.startswith("1 of 4 markers")
+    found = made.frame(sent_as(sets, POSITIONS), 0.0).markers_m
+    assert np.isnan(found).all(axis=1).tolist() == [True, False, False, False]
+    np.testing.assert_array_equal(found[1:] @ ROTATION, [POSITIONS[name] for name in "BCD"])
+
+
+def test_a_set_of_another_size_has_no_names_until_it_is_described():
+    made, sets = layout(), (MarkerSet("one", ("B",)), MarkerSet("two", ("C", "D")))
+    assert np.isnan(made.frame(sent_as(sets, POSITIONS), 0.0).markers_m[:2]).all()
+    assert made.outdated
+    made.describe(Descriptions(sets, ()))
+    assert not made.outdated
+    assert not np.isnan(made.frame(sent_as(sets, POSITIONS), 0.0).markers_m[1]).any() and not made.outdated
+
+
+def test_a_description_of_other_markers_is_refused():
+    made = layout()
+    expected = made.frame(sent_as(SETS, POSITIONS), 0.0).markers_m
+    assert made.describe(Descriptions((MarkerSet("x", ("P", "Q")),), ()))[0][0] == "refused"
+    np.testing.assert_array_equal(made.frame(sent_as(SETS, POSITIONS), 0.0).markers_m, expected)
+
+
+def test_plates_that_are_described_in_another_order_are_found_by_where_they_lie():
+    """Their numbers follow the new order; a plate that moved is not read any more."""
+    usual = [(1, np.ones((6, 4))), (2, 2.0 * np.ones((6, 4)))]
+    swapped = [(1, 2.0 * np.ones((6, 4))), (2, np.ones((6, 4)))]
+    here, there = plate(1), plate(2, CORNERS + np.array([0.7, 0.0, 0.0]))
+    made = layout([here, there], frames(plates=usual))
+    expected = made.frame(frames(plates=usual)[0], 0.0).plates.wrench
+    assert made.describe(Descriptions(SETS, (replace(there, number=1), replace(here, number=2)))) == []
+    np.testing.assert_array_equal(made.frame(frames(plates=swapped)[0], 0.0).plates.wrench, expected)
+    moved = replace(there, corners_m=there.corners_m + np.array([0.1, 0.0, 0.0]))
+    ((kind, sentence),) = made.describe(Descriptions(SETS, (here, moved)))
+    assert kind == "plates refused" and "'s2' lies 100 mm from where it was" in sentence
+    found = made.frame(frames(plates=usual)[0], 0.0).plates.wrench
+    np.testing.assert_array_equal(found[:, 0], expected[:, 0])
+    assert np.isnan(found[:, 1]).all()

@@ -1,5 +1,6 @@
 """A replay through NatNet loses nothing but digits, whatever else is sent, and the source outlives its server."""
 
+import struct
 import threading
 import time
 from dataclasses import replace
@@ -219,3 +220,30 @@ def test_what_cannot_be_served_is_refused():
     many = MarkerTrajectories(tuple(map(str, range(3000))), np.ones((2, 3000, 3)), 100.0)
     with pytest.raises(InvalidInput, match="too large"):
         NatNetPlayer(played(replace(CAPTURE, markers=many)), "127.0.0.1", 0)
+
+
+def test_a_description_that_changes_while_frames_come_is_asked_for_and_followed(server):
+    """Two markers change places: frames between the server's notice and its description have no names."""
+
+    def sent(number, first, second, flags=0):
+        positions = [np.full(3, first), np.full(3, second)]
+        whole = bytearray(layouts.frame((4, 1), number, 0.01 * number, [("one", positions)]))
+        whole[-6:-4] = struct.pack("<H", flags)
+        return bytes(whole)
+
+    source = NatNetSource("127.0.0.1", "127.0.0.1", server.port, None)
+    source.connect(0.0)
+    server.hear(packets.CONNECT)
+    server.send(layouts.answer((4, 1)), layouts.descriptions((4, 1), [("one", ("A", "B"))], ()))
+    server.send(*(sent(k, 1.0, 2.0) for k in range(10)))
+    assert connected(source).marker_names == ("A", "B")
+    assert {tuple(frame.markers_m[:, 0]) for frame in read(source, 10)} == {(1.0, 2.0)}
+    server.heard()
+    server.send(sent(10, 2.0, 1.0, flags=2))
+    assert np.isnan(read(source, 1)[0].markers_m).all()
+    server.hear(packets.REQUEST_DESCRIPTIONS)
+    server.send(layouts.descriptions((4, 1), [("one", ("B", "A"))], ()))
+    assert source._client.described.wait(5.0)
+    server.send(sent(11, 2.0, 1.0, flags=2))
+    assert read(source, 1)[0].markers_m[:, 0].tolist() == [1.0, 2.0]
+    source.close()
