@@ -18,6 +18,7 @@ import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
+from mbkf.cli.closed_streams import open_closed_streams
 from mbkf.cli.postponed import postpone
 from mbkf.errors import MbkfError, MbkfWarning
 from mbkf.version import __version__
@@ -116,6 +117,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         SystemExit: By argparse: 2 on wrong usage, 0 after ``--help`` and ``--version``.
     """
     gc.set_threshold(GARBAGE_AFTER)
+    open_closed_streams()
     words = list(sys.argv[1:] if arguments is None else arguments)
     named = words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS
     args = build_parser(named).parse_args(words)
