@@ -1,5 +1,6 @@
 """Fixtures shared by all tests."""
 
+import gc
 import os
 from pathlib import Path
 
@@ -11,6 +12,11 @@ from mbkf.kernel.loading import COMPILED, REFERENCE, SWITCH, library
 from mbkf.numerics.threads import single_threaded
 
 STUDIES = Path(__file__).parent / "benchmarks"
+
+
+def pytest_sessionstart() -> None:
+    """Looks for circles of references less often: thousands of collected tests would be gone through each time."""
+    gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

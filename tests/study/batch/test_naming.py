@@ -19,17 +19,19 @@ def captures():
     return {name: read_capture(walk_folder() / f"{name}.c3d") for name in ("trial", "raw")}
 
 
-SUBJECT = read_subject(walk_folder() / "subject.toml")
+@pytest.fixture(scope="module")
+def subject():
+    return read_subject(walk_folder() / "subject.toml")
 
 
-def test_names_are_needed_where_points_have_none(captures):
-    assert needs_names(captures["raw"], SUBJECT) and not needs_names(captures["trial"], SUBJECT)
+def test_names_are_needed_where_points_have_none(captures, subject):
+    assert needs_names(captures["raw"], subject) and not needs_names(captures["trial"], subject)
     markers = captures["trial"].markers
     few = markers.select(markers.names[:10])
-    assert not needs_names(replace(captures["trial"], markers=few), SUBJECT), (
+    assert not needs_names(replace(captures["trial"], markers=few), subject), (
         "no point without a name is left"
     )
-    assert named(captures["trial"], SUBJECT).capture is captures["trial"]
+    assert named(captures["trial"], subject).capture is captures["trial"]
 
 
 def test_a_batch_names_them_and_tells_beside_the_result_whatever_the_trial_is_called(tmp_path):
@@ -58,7 +60,7 @@ def test_a_trial_that_cannot_be_labelled_is_told_and_the_others_are_done(tmp_pat
     assert {one["trial"]: one["status"] for one in table} == {"few": "failed", "walk1": "done"}
 
 
-def test_a_person_without_any_name_is_found_from_the_points(tmp_path):
+def test_a_person_without_any_name_is_found_from_the_points(tmp_path, subject):
     folder = tmp_path / "study" / "P1"
     folder.mkdir(parents=True)
     raw = read_capture(walk_folder() / "raw.c3d")
@@ -67,7 +69,7 @@ def test_a_person_without_any_name_is_found_from_the_points(tmp_path):
     table = batch_here(folder.parent, tmp_path / "out")
     assert table["status"].to_pylist() == ["done"]
     found = read_reconstruction(tmp_path / "out" / "P1" / "raw")
-    assert found.subject.mass_kg == pytest.approx(SUBJECT.mass_kg, rel=0.05), "weighed by the plates"
-    assert found.subject.protocol != SUBJECT.protocol
+    assert found.subject.mass_kg == pytest.approx(subject.mass_kg, rel=0.05), "weighed by the plates"
+    assert found.subject.protocol != subject.protocol
     with pytest.raises(UnknownName, match="nosuch"):
-        body_of_points(raw, SUBJECT.mass_kg, SUBJECT.height_m, "nosuch")
+        body_of_points(raw, subject.mass_kg, subject.height_m, "nosuch")

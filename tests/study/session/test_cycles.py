@@ -1,6 +1,7 @@
 """Cycles of a trial: the reconstruction's numbers over each cycle, per kg, with the midline as each side sees it."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,32 +12,38 @@ from mbkf.study.session.cycles import Key, cycles_of_trial, mirrored_midline, to
 from mbkf.trial.gait.cycles import find_gait, over_cycle
 from tests.study.session.sessions import estimated, walks
 
-TRIAL = walks()[1]
-GAIT = find_gait(TRIAL)
+
+def trial():
+    return walks()[1]
+
+
+@cache
+def gait():
+    return find_gait(trial())
 
 
 @pytest.fixture(params=[0, 1], ids=["right", "left"])
 def side(request):
-    return cycles_of_trial(TRIAL, GAIT, request.param)
+    return cycles_of_trial(trial(), gait(), request.param)
 
 
 def test_every_cycle_is_there_with_the_trials_own_numbers(side):
-    own, mass = "rl"[side.side], TRIAL.subject.mass_kg
-    assert [one.cycle for one in side.cycles] == list(GAIT.of(side.side)) and side.cycles
+    own, mass = "rl"[side.side], trial().subject.mass_kg
+    assert [one.cycle for one in side.cycles] == list(gait().of(side.side)) and side.cycles
     for k, one in enumerate(side.cycles):
 
         def over(values, cycle=one.cycle):
-            return over_cycle(TRIAL.times_s, values, cycle)
+            return over_cycle(trial().times_s, values, cycle)
 
         knee = side.curves[Key("angle", "knee_angle")]
-        np.testing.assert_allclose(knee.values[k], over(np.rad2deg(TRIAL.angle(f"knee_angle_{own}"))))
+        np.testing.assert_allclose(knee.values[k], over(np.rad2deg(trial().angle(f"knee_angle_{own}"))))
         np.testing.assert_allclose(knee.sd[k], np.rad2deg(0.02))
         torque = side.curves[Key("torque", "knee_angle")]
-        np.testing.assert_allclose(torque.values[k], over(TRIAL.moment(f"knee_angle_{own}")) / mass)
+        np.testing.assert_allclose(torque.values[k], over(trial().moment(f"knee_angle_{own}")) / mass)
         upward = side.curves[Key("reaction", "upward")]
         weight = mass * GRAVITY_M_S2
         np.testing.assert_allclose(
-            upward.values[k], over(100.0 * TRIAL.foot_wrench[:, side.side, 2] / weight)
+            upward.values[k], over(100.0 * trial().foot_wrench[:, side.side, 2] / weight)
         )
     assert (knee.unit, torque.unit, upward.unit) == ("deg", "N m/kg", "% BW")
 
@@ -59,48 +66,50 @@ def test_forces_are_forward_and_towards_the_other_foot(side):
 
 
 def test_the_midline_is_mirrored_on_the_left():
-    mirrored = mirrored_midline(reference_body(TRIAL.subject))
+    mirrored = mirrored_midline(reference_body(trial().subject))
     assert {"pelvis_list", "pelvis_rotation", "lumbar_bending", "lumbar_rotation", "pelvis_tz"} <= mirrored
     assert not {"pelvis_tilt", "lumbar_extension", "pelvis_tx", "pelvis_ty"} & mirrored
     assert not any(name.endswith(("_r", "_l")) for name in mirrored)
-    left = cycles_of_trial(TRIAL, GAIT, 1)
+    left = cycles_of_trial(trial(), gait(), 1)
     cycle = left.cycles[0].cycle
     for name, sign in (("pelvis_list", -1.0), ("pelvis_tilt", 1.0)):
-        own = sign * np.rad2deg(over_cycle(TRIAL.times_s, TRIAL.angle(name), cycle))
+        own = sign * np.rad2deg(over_cycle(trial().times_s, trial().angle(name), cycle))
         np.testing.assert_allclose(left.curves[Key("angle", name)].values[0], own)
 
 
 def test_a_mirrored_walk_shows_the_same_on_either_side():
     """Both sides of the made walk do alike, half a cycle apart: pelvis curves of right and left agree in shape."""
     right, left = (
-        cycles_of_trial(TRIAL, GAIT, k).curves[Key("angle", "pelvis_list")].values.mean(axis=0)
+        cycles_of_trial(trial(), gait(), k).curves[Key("angle", "pelvis_list")].values.mean(axis=0)
         for k in (0, 1)
     )
     assert np.corrcoef(right, left)[0, 1] > 0.9
 
 
 def test_cycles_in_which_the_body_is_lost_are_left_out():
-    cycle = GAIT.of(0)[0]
-    tracked = TRIAL.tracked & ~((TRIAL.times_s > cycle.start_s + 0.2) & (TRIAL.times_s < cycle.start_s + 0.3))
-    kept = cycles_of_trial(replace(TRIAL, tracked=tracked), GAIT, 0)
+    cycle = gait().of(0)[0]
+    tracked = trial().tracked & ~(
+        (trial().times_s > cycle.start_s + 0.2) & (trial().times_s < cycle.start_s + 0.3)
+    )
+    kept = cycles_of_trial(replace(trial(), tracked=tracked), gait(), 0)
     assert cycle not in [one.cycle for one in kept.cycles]
-    assert len(kept.cycles) == len(GAIT.of(0)) - 1
-    assert cycles_of_trial(TRIAL, None, 0).cycles == ()
+    assert len(kept.cycles) == len(gait().of(0)) - 1
+    assert cycles_of_trial(trial(), None, 0).cycles == ()
 
 
 def test_measured_cycles_are_told_from_estimated_ones():
-    cycle = GAIT.of(0)[0]
-    some = estimated(TRIAL, np.flatnonzero(TRIAL.times_s > cycle.end_s + 1e-9))
-    first, *others = cycles_of_trial(some, GAIT, 0).cycles
+    cycle = gait().of(0)[0]
+    some = estimated(trial(), np.flatnonzero(trial().times_s > cycle.end_s + 1e-9))
+    first, *others = cycles_of_trial(some, gait(), 0).cycles
     assert first.measured and not any(one.measured for one in others) and all(one.valid for one in others)
 
 
 def test_a_frame_or_two_at_a_cycles_ends_do_not_matter():
-    cycle = GAIT.of(0)[0]
-    near = TRIAL.times_s - cycle.start_s
+    cycle = gait().of(0)[0]
+    near = trial().times_s - cycle.start_s
     for late_s, measured in ((0.02 * cycle.seconds, True), (0.06 * cycle.seconds, False)):
-        some = estimated(TRIAL, np.flatnonzero((near >= 0.0) & (near < late_s)))
-        assert cycles_of_trial(some, GAIT, 0).cycles[0].measured == measured
+        some = estimated(trial(), np.flatnonzero((near >= 0.0) & (near < late_s)))
+        assert cycles_of_trial(some, gait(), 0).cycles[0].measured == measured
 
 
 def test_trials_are_put_together_by_what_all_know():

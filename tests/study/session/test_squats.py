@@ -7,24 +7,23 @@ from mbkf.study.session.loading import body_path
 from mbkf.study.session.squats import repetitions, squat_measures, sunk
 from tests.recordings import recorded, walk
 
-SQUAT = recorded("squat", 5.0, 2)
-
 
 def test_measures_of_each_repetition():
-    path = body_path(SQUAT)
-    found, runs = {one.name: one for one in squat_measures(SQUAT)}, repetitions(body_path(SQUAT))
+    squat = recorded("squat", 5.0, 2)
+    path = body_path(squat)
+    found, runs = {one.name: one for one in squat_measures(squat)}, repetitions(path)
     assert runs
     depth = sunk(path)
     np.testing.assert_allclose(found["Depth"].values[""], [100.0 * depth[run].max() for run in runs])
     for side in "rl":
-        knee = np.rad2deg(SQUAT.angle(f"knee_angle_{side}"))
+        knee = np.rad2deg(squat.angle(f"knee_angle_{side}"))
         lowest = [knee[run[np.argmax(depth[run])]] for run in runs]
         np.testing.assert_allclose(found["Knee flexion at the lowest"].values[side], lowest)
-        torque = np.abs(SQUAT.moment(f"knee_angle_{side}")) / SQUAT.subject.mass_kg
+        torque = np.abs(squat.moment(f"knee_angle_{side}")) / squat.subject.mass_kg
         np.testing.assert_allclose(
             found["Greatest knee torque"].values[side], [torque[run].max() for run in runs]
         )
-    force = SQUAT.foot_wrench[:, :, 2]
+    force = squat.foot_wrench[:, :, 2]
     share = [100.0 * force[run, 0].sum() / force[run].sum() for run in runs]
     assert list(found["Share of the right leg"].values[""]) == pytest.approx(share)
 

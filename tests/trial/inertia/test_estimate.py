@@ -27,7 +27,8 @@ from tests.dynamics import trial
 HEAVY = 0.15
 
 
-SQUAT = replace(recorded("squat"), plates=plates("squat"), path="folder/squat.c3d")
+def squat_capture():
+    return replace(recorded("squat"), plates=plates("squat"), path="folder/squat.c3d")
 
 
 @pytest.fixture
@@ -106,7 +107,7 @@ def test_a_capture_that_shows_too_little_keeps_the_table():
 
 
 def test_a_capture_gives_rows(true_motion):
-    regressor, rows = rows_of(trial("squat").subject, SQUAT)
+    regressor, rows = rows_of(trial("squat").subject, squat_capture())
     np.testing.assert_allclose(regressor.table(), squat_rows()[0].table())
     np.testing.assert_allclose(rows.given, squat_rows()[1].given, atol=0.5)
 
@@ -115,7 +116,7 @@ def test_the_note_tells_what_was_found(true_motion, monkeypatch):
     """Inertial parameters from before do not count; those that the evidence is for are written."""
     monkeypatch.setattr(estimate, "estimate_from_rows", lambda *_: heavy())
     given = replace(trial("squat").subject, inertia={"torso": SegmentInertia(2.0)})
-    found = with_inertia(given, [SQUAT])
+    found = with_inertia(given, [squat_capture()])
     own, note = heavy().subject.inertia, found.report[INERTIA_KEY]
     assert found.inertia == own
     assert note["written"] is True
@@ -123,7 +124,7 @@ def test_the_note_tells_what_was_found(true_motion, monkeypatch):
         100.0 * (own["torso"].mass_factor - 1.0)
     )
     monkeypatch.setattr(estimate, "estimate_from_rows", lambda *_: table())
-    kept = with_inertia(given, [SQUAT])
+    kept = with_inertia(given, [squat_capture()])
     assert kept.report[INERTIA_KEY]["written"] is False
     assert "the table is kept" in kept.report[INERTIA_KEY]["told"]
     assert kept.inertia == {}

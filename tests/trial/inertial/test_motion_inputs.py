@@ -18,7 +18,9 @@ from mbkf.trial.inertial.motion_inputs import (
 from mbkf.trial.inertial.motion_start import first_posture
 from tests.worn import worn
 
-SEGMENTS = tuple(one.name for one in worn().moving)
+
+def segments_worn():
+    return tuple(one.name for one in worn().moving)
 
 
 def test_fast_sensors_are_thinned_out():
@@ -44,14 +46,16 @@ def test_a_root_without_a_sensor_moves_with_the_segment_nearest_to_it():
 def test_feet_rest_while_the_person_stands_and_not_while_they_swing():
     walk = worn()
     for readings, low, high in ((walk.standing, 1.0, 1.0), (walk.moving, 0.1, 0.6)):
-        recording = motion_recording(readings, SEGMENTS, walk.model, readings[0].time_s, MotionSettings())
+        recording = motion_recording(
+            readings, segments_worn(), walk.model, readings[0].time_s, MotionSettings()
+        )
         share = recording.readings[FOOT_REST].mean()
         assert low <= share <= high and recording.markers_m.shape[1:] == (0, 3)
 
 
 def test_newton_s_law_needs_both_feet():
-    walk = worn()
-    for segments, holds in ((SEGMENTS, True), (tuple(n for n in SEGMENTS if n != "left_foot"), False)):
+    walk, every = worn(), segments_worn()
+    for segments, holds in ((every, True), (tuple(n for n in every if n != "left_foot"), False)):
         chosen = [[one for one in r if one.name in segments] for r in (walk.standing, walk.moving)]
         known = worn_mounts(walk.model, segments, *chosen, walk.posture, True)
         first = first_posture(walk.model, segments, np.tile(walk.posture, (2, 1)), 0.01, True)

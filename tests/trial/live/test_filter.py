@@ -1,6 +1,7 @@
 """Frame by frame the filter takes the very steps it takes on a whole trial, and survives what it cannot digest."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -31,13 +32,17 @@ from tests.captures import MASS_KG, made_capture
 SETTINGS = ReconstructSettings(correct_markers=False)
 LAG_S = 0.06
 CAPTURE = made_capture(70)
-SUBJECT = scale(made_capture(30, 0.0), mass_kg=MASS_KG)
+
+
+@cache
+def subject():
+    return scale(made_capture(30, 0.0), mass_kg=MASS_KG)
 
 
 def recorded(positions=None):
     """What a filter is built from and reads."""
     markers = CAPTURE.markers if positions is None else replace(CAPTURE.markers, positions_m=positions)
-    return trial_inputs(subject_markers(markers, SUBJECT), CAPTURE.plates, SUBJECT, SETTINGS)
+    return trial_inputs(subject_markers(markers, subject()), CAPTURE.plates, subject(), SETTINGS)
 
 
 def steps_of(live, recording):
@@ -181,19 +186,19 @@ def test_after_a_cut_nothing_is_known():
 
 def test_columns_lead_to_the_subjects_markers():
     names = ("unknown", *CAPTURE.markers.names[::-1])
-    live = live_inputs(names, 100.0, CAPTURE.plates, SUBJECT, SETTINGS)
+    live = live_inputs(names, 100.0, CAPTURE.plates, subject(), SETTINGS)
     assert tuple(names[k] for k in live.columns) == live.names
-    assert set(live.names) == {marker.name for marker in SUBJECT.markers}
+    assert set(live.names) == {marker.name for marker in subject().markers}
     whole, _ = recorded()
     np.testing.assert_array_equal(live.inputs.unobservable, whole.unobservable)
     with pytest.raises(NotObservable):
-        live_inputs(("a", "b"), 100.0, (), SUBJECT, SETTINGS)
+        live_inputs(("a", "b"), 100.0, (), subject(), SETTINGS)
 
 
 @pytest.fixture
 def log(tmp_path):
     """A log of frames 3 to 60, two of them missing, and what made its rows."""
-    live = live_inputs(CAPTURE.markers.names, 100.0, CAPTURE.plates, SUBJECT, SETTINGS)
+    live = live_inputs(CAPTURE.markers.names, 100.0, CAPTURE.plates, subject(), SETTINGS)
     chosen = tracking_filter("dynamic", live.inputs)
     rows = FrameRecorder(chosen, len(live.names))
     plates = tuple(
@@ -203,7 +208,7 @@ def log(tmp_path):
     made = LiveLog(
         tmp_path, LiveStream("walk", 100.0, 0.5, plates), rows.dtype, {"filter": "dynamic"}, list(live.names)
     )
-    write_subject(SUBJECT, tmp_path / SUBJECT_FILE)
+    write_subject(subject(), tmp_path / SUBJECT_FILE)
     _, recording = recorded()
     filter_ = LiveFilter(chosen)
     for t in range(3, 61):
