@@ -20,8 +20,8 @@ def main() -> int:
     """Runs the command with marked secrets."""
     count, true = itertools.count(), secrets.token_urlsafe
 
-    def marked(size: int | None = None) -> str:
-        return f"{MARK}{next(count)}-{true(size)}"
+    def marked(nbytes: int | None = None) -> str:
+        return f"{MARK}{next(count)}-{true(nbytes)}"
 
     secrets.token_urlsafe = marked
     from mbkf.cli.main import main as command

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import tomllib
 import xml.etree.ElementTree as ET
@@ -36,9 +37,10 @@ def torn(path: Path) -> str:
 
 
 def _table(path: Path) -> None:
-    lines = path.read_text("utf-8").splitlines()
-    assert path.read_bytes().endswith(b"\n"), "the last line has no end"
-    assert len({line.count(",") for line in lines if not line.startswith("#")}) == 1, "rows of other lengths"
+    text = path.read_text("utf-8")
+    assert text.endswith("\n"), "the last line has no end"
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    assert len({len(row) for row in csv.reader(lines)}) == 1, "rows of other lengths"
 
 
 def _page(path: Path) -> None:

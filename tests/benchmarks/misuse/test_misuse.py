@@ -1,5 +1,7 @@
 """Parts of the misuse benchmark are found, chosen by name, and fail the benchmark when a row fails."""
 
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -31,3 +33,10 @@ def test_a_part_gets_an_empty_folder_and_names_its_rows(tmp_path, monkeypatch):
     (check,) = misuse.run(Context(None, tmp_path, only=("files",)))
     assert check.name == "files: lost"
     assert not check.passed
+
+
+def test_the_page_of_promises_names_parts_that_exist():
+    page = Path(__file__).resolve().parents[3] / "docs" / "promises.md"
+    named = set(re.findall(r"--only (\w+)`", page.read_text(encoding="utf-8")))
+    assert named >= {"files", "full_disk", "processes", "inputs", "names", "secrets"}
+    assert named <= set(misuse.parts())
