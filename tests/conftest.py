@@ -14,6 +14,12 @@ from mbkf.numerics.threads import single_threaded
 STUDIES = Path(__file__).parent / "benchmarks"
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Processes take files as they are listed: sorted by their number of tests, long files of few tests end alone."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
+
+
 def pytest_sessionstart() -> None:
     """Looks for circles of references less often: thousands of collected tests would be gone through each time."""
     gc.set_threshold(20_000, 20, 20)

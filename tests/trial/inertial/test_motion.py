@@ -25,7 +25,7 @@ def look_briefly():
 
 @pytest.fixture(scope="module")
 def walk():
-    return worn()
+    return worn(seconds=3.0)
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +86,7 @@ def test_exchanged_sides_are_told(walk):
 
 
 def test_standing_in_the_recording_is_where_the_motion_begins():
-    one = worn("squat", 2.0)
+    one = worn("squat", 1.2)
     joined = tuple(
         replace(
             still,

@@ -12,9 +12,14 @@ from mbkf.io.results_folder import write_reconstruction
 from mbkf.viz.film import film as module
 from mbkf.viz.film.film import FILMS, write_film
 from mbkf.viz.film.pictures import FilmSettings
-from tests.recordings import walk
+from tests.recordings import recorded
 
 SMALL = FilmSettings(width=320, height=180)
+
+
+def walk():
+    """A second and a half of true walking."""
+    return recorded("walk", 1.5, 5)
 
 
 def late_walk():
