@@ -6,15 +6,15 @@ the first address brings and a cookie keeps.
 
 from __future__ import annotations
 
-import hmac
 from collections.abc import Awaitable, Callable
 
 from starlette.middleware.base import BaseHTTPMiddleware
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp
 
 from mbkf.stream.loopback import own_request
+from mbkf.viz.admission import ADMITTED, Admission
 
 Next = Callable[[Request], Awaitable[Response]]
 
@@ -32,27 +32,27 @@ class Guard(BaseHTTPMiddleware):
 
     Args:
         app: The application that it protects.
-        token: Secret that every request must carry.
-        cookie: Name of the cookie that carries it.
+        admission: Token, cookie and tickets.
     """
 
-    def __init__(self, app: ASGIApp, token: str, cookie: str) -> None:
+    def __init__(self, app: ASGIApp, admission: Admission) -> None:
         super().__init__(app)
-        self._token, self._cookie = token, cookie
+        self._admission = admission
 
     async def dispatch(self, request: Request, call_next: Next) -> Response:
-        """The reply, or a refusal."""
-        if not own_request(request.headers.get("host", ""), request.headers.get("origin"), local=True):
-            return PlainTextResponse("Refused.\n", status_code=403)
-        if request.url.path == "/" and self._is_token(request.query_params.get("token", "")):
-            opened = RedirectResponse("/", status_code=303)
-            opened.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
-            return opened
-        if not self._is_token(request.cookies.get(self._cookie, "")):
-            return PlainTextResponse("Open the address that mbkf app printed.\n", status_code=403)
-        reply = await call_next(request)
+        """The reply, or a refusal; each with the headers of every reply."""
+        reply = await self._reply(request, call_next)
         reply.headers.update(HEADERS)
         return reply
 
-    def _is_token(self, given: str) -> bool:
-        return hmac.compare_digest(given.encode(), self._token.encode())
+    async def _reply(self, request: Request, call_next: Next) -> Response:
+        if not own_request(request.headers.get("host", ""), request.headers.get("origin"), local=True):
+            return PlainTextResponse("Refused.\n", status_code=403)
+        words = request.query_params
+        if request.url.path == "/" and self._admission.admit(words.get("ticket", "")):
+            return HTMLResponse(ADMITTED, headers={"Set-Cookie": self._admission.set_cookie()})
+        if request.url.path == "/" and self._admission.is_token(words.get("token", "")):
+            return RedirectResponse("/", 303, headers={"Set-Cookie": self._admission.set_cookie()})
+        if not self._admission.has_cookie(request.headers.get("cookie", "")):
+            return PlainTextResponse("Open the address that mbkf app printed.\n", status_code=403)
+        return await call_next(request)

@@ -7,6 +7,7 @@ import secrets
 import socket
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import uvicorn
@@ -21,6 +22,7 @@ from mbkf.app.runs import Runs
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
 from mbkf.stream.loopback import LOOPBACK
+from mbkf.viz.admission import Admission
 
 COOKIE = "mbkf-app-{port}"
 """Browsers share the cookies of a computer between its ports, so each port has its own."""
@@ -49,12 +51,12 @@ class AppServer:
             OSError: The folder cannot be made.
         """
         self.workspace = Workspace(folder)
-        self._token = secrets.token_urlsafe(16)
         self._socket = _listening(port)
         self.port = int(self._socket.getsockname()[1])
         self.runs = Runs(self.workspace, workers)
         self.live = LiveRun()
-        guard = Middleware(Guard, token=self._token, cookie=COOKIE.format(port=self.port))
+        self._admission = Admission(secrets.token_urlsafe(16), COOKIE.format(port=self.port))
+        guard = Middleware(Guard, admission=self._admission)
         app = Starlette(
             routes=routes(self.workspace, self.runs, self.live),
             middleware=[guard],
@@ -72,7 +74,11 @@ class AppServer:
         if not self._server.started:
             self.close()
             raise InvalidInput("the page's server did not start")
-        self.url = f"http://{LOOPBACK}:{self.port}/?token={self._token}"
+        self.url = f"http://{LOOPBACK}:{self.port}/?token={self._admission.token}"
+
+    def entrance(self, used: Callable[[], None]) -> str:
+        """An address that admits a browser once; ``used`` is called then."""
+        return f"http://{LOOPBACK}:{self.port}/?ticket={self._admission.ticket(used)}"
 
     def close(self) -> None:
         """Ends server, live run and runs; the next server continues unfinished runs."""

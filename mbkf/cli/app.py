@@ -25,19 +25,19 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Serves the page until interrupted."""
-    import webbrowser
     from pathlib import Path
 
     from mbkf.app.server import AppServer
+    from mbkf.cli.opening import open_page, printed_address
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.io.atomic import check_folder
 
     folder = check_folder(Path.home() / "mbkf" if args.folder is None else args.folder)
     server = AppServer(folder, args.port, args.workers)
     try:
-        print(f"{server.url}\nCtrl-C ends", flush=True)
+        print(f"{printed_address(server, not args.no_browser)}\nCtrl-C ends", flush=True)
         if not args.no_browser:
-            webbrowser.open(server.url)
+            open_page(server)
         with stopped_by_signal() as stop:
             stop.wait()
     finally:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -41,7 +42,9 @@ def add_following_options(parser: argparse.ArgumentParser) -> None:
     out.add_argument(
         "--token",
         metavar="TEXT",
-        help="password of page and WebSocket on another address (default: a random one)",
+        default=os.environ.get("MBKF_TOKEN"),
+        help="password of page and WebSocket on another address (default: MBKF_TOKEN in the environment, which other "
+        "users cannot read, or a random one)",
     )
     out.add_argument(
         "--end-with-input",

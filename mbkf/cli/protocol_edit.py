@@ -32,8 +32,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Serves the page until it is done, and prints the counts of the saved set."""
-    import webbrowser
-
+    from mbkf.cli.opening import open_page, printed_address
     from mbkf.cli.progress import stages
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.io.atomic import check_folder
@@ -52,11 +51,11 @@ def run(args: argparse.Namespace) -> int:
     if standing.trouble:
         print(f"warning: the set does not fit this capture yet: {standing.trouble}", file=sys.stderr)
     page = EditPage(protocol, standing, out, port=args.port)
-    print(f'{page.url}\n"Done" on the page or Ctrl-C ends', flush=True)
+    print(f'{printed_address(page, not args.no_browser)}\n"Done" on the page or Ctrl-C ends', flush=True)
     try:
         with stopped_by_signal() as stop:
             if not args.no_browser:
-                webbrowser.open(page.url)
+                open_page(page)
             while not (stop.is_set() or page.done.wait(0.2)):
                 pass
     finally:

@@ -27,8 +27,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Writes the page, or serves it until interrupted."""
-    import webbrowser
-
+    from mbkf.cli.opening import open_page, printed_address
     from mbkf.io.atomic import write_text
     from mbkf.io.results_folder import read_reconstruction
     from mbkf.viz.scene.recording import playback_page
@@ -41,9 +40,9 @@ def run(args: argparse.Namespace) -> int:
         return 0
     server = PageServer(text, address=args.address, port=args.port)
     try:
-        print(f"{server.url}\nCtrl-C ends", flush=True)
+        print(f"{printed_address(server, not args.no_browser)}\nCtrl-C ends", flush=True)
         if not args.no_browser:
-            webbrowser.open(server.url)
+            open_page(server)
         server.wait()
     except KeyboardInterrupt:
         pass

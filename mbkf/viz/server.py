@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import hmac
 import logging
 import secrets
 import socket
@@ -25,6 +24,7 @@ from websockets.http11 import Request, Response
 
 from mbkf.errors import InvalidInput
 from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
+from mbkf.viz.admission import ADMITTED, Admission
 
 HEADERS = {
     "Cache-Control": "no-store",
@@ -32,6 +32,9 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "Connection": "close",
 }
+
+COOKIE = "mbkf-page-{port}"
+"""Browsers share the cookies of a computer between its ports, so each port has its own."""
 
 SEND_PERIOD_S = 1.0 / 30.0
 LONGEST_SLEEP_S = 0.2
@@ -80,6 +83,7 @@ class PageServer:
         self._hear = hear
         self._local = is_loopback(address)
         self.token = token or ("" if self._local else secrets.token_urlsafe(16))
+        self._admission: Admission | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stop: asyncio.Event | None = None
         self._fresh = asyncio.Event()
@@ -96,8 +100,14 @@ class PageServer:
                 "choose another address or port"
             )
         host = socket.gethostname() if address in ("0.0.0.0", "::", "") else address
-        query = "?" + urlencode({"token": self.token}) if self.token else ""
-        self.url = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/{query}"
+        self._address = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
+        self.url = self._address + ("?" + urlencode({"token": self.token}) if self.token else "")
+
+    def entrance(self, used: Callable[[], None]) -> str:
+        """An address that admits a browser once; ``used`` is called then, or at once for a page without a token."""
+        if not self.token or self._admission is None:
+            return self._address
+        return self._address + "?" + urlencode({"ticket": self._admission.ticket(used)})
 
     def close(self) -> None:
         """Ends all connections and the thread."""
@@ -146,6 +156,7 @@ class PageServer:
             close_timeout=0.5,
         ) as server:  # fmt: skip
             self.port = next(iter(server.sockets)).getsockname()[1]
+            self._admission = Admission(self.token, COOKIE.format(port=self.port))
             self._listening.set()
             await self._stop.wait()
             server.close()
@@ -155,21 +166,26 @@ class PageServer:
     def _answer(self, _connection: ServerConnection, request: Request) -> Response | None:
         """The page, a refusal, or None to open the WebSocket."""
         url = urlsplit(request.path)
-        if not self._allowed(request, parse_qs(url.query).get("token", [""])[0]):
-            return _response(
-                HTTPStatus.FORBIDDEN, b"Refused: open the address that mbkf printed, with its token.\n"
-            )
+        words = parse_qs(url.query)
+        token, ticket = (words.get(name, [""])[0] for name in ("token", "ticket"))
+        admission = self._admission
+        if admission is None or not self._own(request):
+            return _refused()
+        if url.path == "/" and ticket and admission.admit(ticket):
+            return _admitted(admission)
+        if not (admission.is_token(token) or admission.has_cookie(request.headers.get("Cookie", ""))):
+            return _refused()
         if url.path == "/frames" and not (self._newest is None and self._hear is None):
             return None
+        if url.path == "/" and token and "text/html" in request.headers.get("Accept", ""):
+            return _admitted(admission)  # a browser keeps no address with the token
         if url.path == "/":
             return _response(HTTPStatus.OK, self._text, "text/html; charset=utf-8")
         return _response(HTTPStatus.NOT_FOUND, b"Nothing is here.\n")
 
-    def _allowed(self, request: Request, token: str) -> bool:
-        """True for a request with the token that no other web page caused."""
-        host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
-        own = own_request(host, origin, self._local)
-        return own and hmac.compare_digest(token.encode(), self.token.encode())
+    def _own(self, request: Request) -> bool:
+        """True for a request that no other web page caused."""
+        return own_request(request.headers.get("Host", ""), request.headers.get("Origin"), self._local)
 
     async def _stream(self, connection: ServerConnection) -> None:
         """Sends each newest row; a slow page gets fewer rows, never old ones."""
@@ -208,6 +224,16 @@ class PageServer:
         fresh: asyncio.Future[Any] = asyncio.ensure_future(self._fresh.wait())
         await asyncio.wait({closed, fresh}, timeout=LONGEST_SLEEP_S, return_when=asyncio.FIRST_COMPLETED)
         fresh.cancel()
+
+
+def _refused() -> Response:
+    return _response(HTTPStatus.FORBIDDEN, b"Refused: open the address that mbkf printed, with its token.\n")
+
+
+def _admitted(admission: Admission) -> Response:
+    reply = _response(HTTPStatus.OK, ADMITTED.encode(), "text/html; charset=utf-8")
+    reply.headers["Set-Cookie"] = admission.set_cookie()
+    return reply
 
 
 def _response(status: HTTPStatus, body: bytes, kind: str = "text/plain; charset=utf-8") -> Response:

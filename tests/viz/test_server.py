@@ -97,6 +97,25 @@ def test_without_the_token_nothing_is_shown(guarded):
         assert socket.recv(5) == b"row"
 
 
+def test_a_browser_gets_a_cookie_and_an_address_without_the_token(guarded):
+    bare, used = guarded.url.split("?")[0], []
+    for url in (guarded.url, guarded.entrance(lambda: used.append(True))):
+        status, text, headers = fetch(url, Accept="text/html")
+        assert status == 200 and "location.replace" in text and "sesame" not in str(headers) + text
+        assert "HttpOnly" in headers["Set-Cookie"] and "SameSite=strict" in headers["Set-Cookie"]
+        cookie = headers["Set-Cookie"].partition(";")[0]
+        assert fetch(bare, Cookie=cookie, Accept="text/html")[:2] == (200, "<p>secret</p>")
+        assert fetch(bare, Cookie=cookie[:-1])[0] == 403
+        assert fetch(bare, Cookie=cookie, Origin="http://evil.example")[0] == 403
+        with connect(socket_of(bare), additional_headers={"Cookie": cookie}) as socket:
+            socket.recv(5)
+    assert used == [True] and fetch(url)[0] == 403
+
+
+def test_a_page_without_a_token_needs_no_ticket(server):
+    assert server.entrance(pytest.fail) == server.url
+
+
 def test_another_address_has_a_token_of_its_own():
     server = PageServer("page", address="0.0.0.0")
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import secrets
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mbkf.errors import InvalidInput, MbkfError
@@ -132,6 +132,10 @@ class EditPage(MarkerSetEdit):
         super().__init__(protocol, standing, out)
         self._server = PageServer(self.text(), hear=self.hear, port=port, token=secrets.token_urlsafe(16))
         self.url = self._server.url
+
+    def entrance(self, used: Callable[[], None]) -> str:
+        """An address that admits a browser once; ``used`` is called then."""
+        return self._server.entrance(used)
 
     def close(self) -> None:
         """Ends the server."""
