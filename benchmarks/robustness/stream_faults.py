@@ -31,6 +31,9 @@ WORKERS = 2
 HANG_S = 40.0
 Told = dict[str, object]
 
+CHILD = "benchmarks.robustness.stream_child"
+"""The process that follows runs."""
+
 
 def stream_rows(context: Context) -> Iterator[Check]:
     """The rows of disturbed streams: each fault three times over each protocol of it; once over one when quick."""
@@ -87,27 +90,30 @@ def rows(found: dict[str, Told]) -> Iterator[Check]:
         yield from (information(f"{word}: {what}"[:200], 1.0) for word, what in listed.items())
 
 
-def follow(job: tuple[str, Sequence[str]], folder: Path) -> dict[str, Told]:
+def follow(job: tuple[str, Sequence[str]], folder: Path, module: str = CHILD) -> dict[str, Told]:
     """What becomes of runs; a process that dies or hangs is replaced for the next.
 
     Args:
         job: The protocol, and ``FAULT:SEED`` of each run.
         folder: Where capture and subject are.
+        module: The process that follows them.
     """
     protocol, words = job
     found: dict[str, Told] = {}
     left = list(words)
     while left:
-        begun = _one_process(protocol, left, folder, found)
+        begun = _one_process(protocol, left, folder, found, module)
         if begun not in found:
             found[begun or left[0]] = {"died": ["the process died or hung"]}
         left = [word for word in left if word not in found]
     return {f"{protocol} {word}": told for word, told in found.items()}
 
 
-def _one_process(protocol: str, words: Sequence[str], folder: Path, found: dict[str, Told]) -> str | None:
+def _one_process(
+    protocol: str, words: Sequence[str], folder: Path, found: dict[str, Told], module: str
+) -> str | None:
     """Follows runs until the process ends; returns the one that it began last."""
-    command = [sys.executable, "-m", "benchmarks.robustness.stream_child", str(folder), protocol, *words]
+    command = [sys.executable, "-m", module, str(folder), protocol, *words]
     begun: str | None = None
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         assert process.stdout is not None

@@ -35,12 +35,12 @@ def opened(library: ModuleType, inlet: Inlet, synchronised: bool) -> bool:
     Args:
         library: pylsl.
         inlet: The inlet.
-        synchronised: Whether its time stamps are corrected; the first correction is waited for.
+        synchronised: Whether its time stamps are corrected; the first correction is measured before frames come.
     """
     try:
-        inlet.open_stream(OPEN_S)
         if synchronised:  # else the first frames wait for it
             inlet.time_correction(OPEN_S)
+        inlet.open_stream(OPEN_S)
     except (library.util.LostError, library.util.TimeoutError):
         return False
     return True
@@ -55,8 +55,12 @@ class LostStream:
         self._refused: set[str] = set()
 
     def found(self) -> StreamInfo | None:
-        """A stream of that name that was not refused; None while there is none."""
-        return next((one for one in self._resolver.results() if one.uid() not in self._refused), None)
+        """The newest stream of that name that was not refused; None while there is none.
+
+        The one that broke off is still listed for a while.
+        """
+        others = [one for one in self._resolver.results() if one.uid() not in self._refused]
+        return max(others, key=lambda one: one.created_at(), default=None)
 
     def refuse(self, info: StreamInfo) -> None:
         """Passes over a stream that has the name and is another one."""

@@ -70,7 +70,11 @@ def described_plates(library: ModuleType, info: StreamInfo) -> FoundPlates | Non
 
 
 class PlateStream:
-    """Samples of the plates, for one frame after the other."""
+    """Samples of the plates, for one frame after the other.
+
+    Attributes:
+        frames_ahead: Added to the count of frames; that of the samples moves with it.
+    """
 
     def __init__(
         self,
@@ -95,7 +99,7 @@ class PlateStream:
         self._inlet: Inlet = inlet_of(library, found.info, frames is not None)
         self._lost: LostStream | None = None
         self._stamped: StampedItems[Array] | None = None
-        self._ahead = 0
+        self._ahead = self.frames_ahead = 0
         self._newest: int | None = None
         self._heard_s = 0.0
         self._overdue = 0
@@ -210,8 +214,10 @@ class PlateStream:
         if self._frames is not None:
             return self._by_stamps(wrenches, stamps, self._frames)
         index = counts(samples[:, self._layout.counter])
-        if self._ahead:
-            index = np.where(index == UNCOUNTED, index, index + self._ahead)
+        ratio = self._stream.plate_rate_hz / self._stream.rate_hz
+        ahead = self._ahead + round(self.frames_ahead * ratio)
+        if ahead:
+            index = np.where(index == UNCOUNTED, index, index + ahead)
         return PlateSamples(index, wrenches)
 
     def _by_stamps(self, wrenches: Array, stamps: Array, frames: StampNumbering) -> PlateSamples:

@@ -22,6 +22,9 @@ from mbkf.stream.source import UNCOUNTED, PlateSamples, SourceFrame, StreamDescr
 PLATES_S = 3.0
 """Time for which the plate stream that the markers name is looked for."""
 
+RESTARTED_S = 0.5
+"""The count of a sender that was started anew is believed where it fits the time that passed within this."""
+
 
 @dataclass
 class Arrived:
@@ -61,6 +64,8 @@ class LslSource:
         self._ready: deque[Arrived] = deque()
         self._newest: Arrived | None = None
         self._ahead = 0
+        self._counted: Arrived | None = None
+        self._uid, self._restarted = "", False
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The first marker stream that is found, with its plates; frames flow from the first :meth:`read` on."""
@@ -75,7 +80,7 @@ class LslSource:
     def _connected(self, info: StreamInfo) -> StreamDescription:
         full = inlet_of(self._lsl, info, False).info(OPEN_S)
         stream, self._layout, wanted = read_marker_info(full)
-        self._name = str(info.name())
+        self._name, self._uid = str(info.name()), str(info.uid())
         self._plates_name = self._plates_name or wanted or None
         found = self._find_plates()
         plates = () if found is None else found.plates
@@ -162,8 +167,7 @@ class LslSource:
             return False
         one = Arrived(time.perf_counter(), stamp, sample)
         if self._stamped is None:
-            one.number = self._count(sample)
-            self._ready.append(one)
+            self._take_counted(one)
         elif self._repeated(one):
             assert self._newest is not None
             if self._newest.number is None:
@@ -191,6 +195,24 @@ class LslSource:
         if before is None or one.stamp_s != before.stamp_s:
             return False
         return np.array_equal(one.sample, before.sample, equal_nan=True)
+
+    def _take_counted(self, one: Arrived) -> None:
+        """A frame with a count; that of a sender that was started anew goes on by the time that passed."""
+        one.number, before = self._count(one.sample), self._counted
+        if self._restarted and one.number != UNCOUNTED and before is not None and before.number is not None:
+            assert self._stream is not None
+            self._restarted = False
+            passed = round((one.arrival_s - before.arrival_s) * self._stream.rate_hz)
+            apart = before.number + passed - one.number
+            if abs(apart) > RESTARTED_S * self._stream.rate_hz:
+                self._ahead += apart
+                one.number += apart
+                if self._plates is not None:
+                    self._plates.frames_ahead += apart
+                self._tell("clock", f"'{self._name}' counts anew; the time here numbers its frames")
+        if one.number != UNCOUNTED:
+            self._counted = one
+        self._ready.append(one)
 
     def _count(self, sample: Array) -> int:
         found = int(counts(sample[self._layout.counter]))
@@ -227,6 +249,9 @@ class LslSource:
         if not opened(self._lsl, inlet, self._stamped is not None):
             return False
         self._markers, self._layout, self._lost = inlet, layout, None
-        self._ahead = moved_counts(known, found) if self._stamped is None else 0
+        self._restarted, self._uid = self._restarted or info.uid() != self._uid, str(info.uid())
+        self._ahead = 0 if self._stamped is not None else moved_counts(known, found)
+        if self._plates is not None:
+            self._plates.frames_ahead = 0
         self._tell("markers back", f"the stream '{self._name}' is back")
         return True

@@ -15,7 +15,7 @@ from mbkf.stream.natnet.client import LEAST_HELD, NatNetClient
 from mbkf.stream.natnet.descriptions import Descriptions
 from mbkf.stream.natnet.frames import Frame, read_frame
 from mbkf.stream.natnet.layout import StreamLayout
-from mbkf.stream.source import SourceFrame, StreamDescription
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 
 CONNECT_S = 2.0
 """Time in which a server that answered has to describe its stream and to send frames."""
@@ -33,8 +33,11 @@ ASK_AGAIN_S = 0.25
 """Interval of questions for the description while frames do not fit it."""
 
 UNSURE_S = 0.5
-"""After the server states that its models changed, markers have no names until its new description is here, or for so
-long at most."""
+"""After the server states that its models changed, markers and plates are not read until its new description is here,
+or for so long at most."""
+
+RESTART_S = 0.25
+"""After so long without a frame the server may be another one, which describes itself anew."""
 
 Arrived = tuple[float, Frame]
 """Time of arrival on the clock of ``time.perf_counter``, and the frame."""
@@ -102,13 +105,16 @@ class NatNetSource:
                 self._again()
             return None
         arrival_s, frame = arrived
+        changed = frame.changed or arrival_s - self._heard_s > RESTART_S
         self._heard_s, self._silent = arrival_s, False
-        self._follow_description(frame.changed, arrival_s)
+        self._follow_description(changed, arrival_s)
         found = self._layout.frame(frame, arrival_s)
-        if self._layout.outdated:
+        unsure = arrival_s < self._unsure_until_s
+        if unsure or self._layout.outdated:
             self._ask_again(arrival_s)
-        if arrival_s < self._unsure_until_s:
-            found = replace(found, markers_m=np.full_like(found.markers_m, np.nan))
+        if unsure:
+            unread = PlateSamples.none(len(self._layout.stream.plates))
+            found = replace(found, markers_m=np.full_like(found.markers_m, np.nan), plates=unread)
         return found
 
     def _follow_description(self, changed: bool, arrival_s: float) -> None:

@@ -49,7 +49,7 @@ def test_clocks_are_only_compared_where_stamps_number_frames(synchronised):
     assert inlet_of(library, "stream", synchronised) == "stream"
     assert library.made[0]["processing_flags"] == int(synchronised) and not library.made[0]["recover"]
     assert opened(library, inlet, synchronised)
-    assert inlet.calls == ["open", "time"][: 1 + synchronised]
+    assert inlet.calls == ["time", "open"][1 - synchronised :]
 
 
 @pytest.mark.parametrize("inlet", [Inlet(LOST), Inlet(LATE), Inlet(timing=LATE)])
@@ -57,8 +57,18 @@ def test_a_stream_that_does_not_answer_is_not_open(inlet):
     assert not opened(Library(), inlet, True)
 
 
+def stream(uid, created_s):
+    return SimpleNamespace(uid=lambda: uid, created_at=lambda: created_s)
+
+
+def test_the_newest_stream_of_a_name_is_the_one_that_is_back():
+    """The one that broke off is listed for a while."""
+    old, new = stream("a", 1.0), stream("b", 2.0)
+    assert LostStream(Library(old, new), "walk").found() is new
+
+
 def test_a_refused_stream_is_passed_over_for_the_next_of_its_name():
-    one, other = (SimpleNamespace(uid=lambda uid=uid: uid) for uid in "ab")
+    one, other = stream("a", 2.0), stream("b", 1.0)
     library = Library(one)
     lost = LostStream(library, "walk")
     assert lost.found() is one

@@ -16,11 +16,11 @@ from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl.format import plates_info, plates_name, read_marker_info, read_plates_info
 from mbkf.stream.lsl.player import LslPlayer
 from mbkf.stream.lsl.results import LslResults
-from mbkf.stream.lsl.source import LslSource
+from mbkf.stream.lsl.source import Arrived, LslSource
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
 from mbkf.stream.results.values import ResultValues
-from mbkf.stream.source import UNCOUNTED
+from mbkf.stream.source import UNCOUNTED, StreamDescription
 from tests.captures import made_capture
 from tests.stream.results.test_websocket import shown_frame
 
@@ -136,7 +136,8 @@ def test_plates_and_markers_that_return_in_reverse_order_are_mapped(name):
     np.testing.assert_array_equal([frame.markers_m for frame in frames], made.markers_m)
     found = np.concatenate([frame.plates.wrench for frame in frames])
     index = np.concatenate([frame.plates.index for frame in frames])
-    np.testing.assert_array_equal(found, made.wrench[index])
+    passed = frames[0].number  # it counts from zero, and time here numbers its frames
+    np.testing.assert_array_equal(found, made.wrench[index - 10 * passed])
 
 
 @pytest.mark.parametrize("counter", [np.nan, np.inf, -np.inf, 2.0**60, -(2.0**60)])
@@ -145,6 +146,19 @@ def test_a_count_that_cannot_be_read_is_stated_as_such(name, counter):
     source._layout, source._ahead = SimpleNamespace(counter=3), 50
     assert source._count(np.array([0.0, 0.0, 0.0, counter])) == UNCOUNTED
     assert source._count(np.array([0.0, 0.0, 0.0, 41.0])) == 91
+
+
+@pytest.mark.parametrize(("restarted", "count", "number"), [(True, 5, 200), (True, 190, 190), (False, 5, 5)])
+def test_the_count_of_a_sender_that_was_started_anew_goes_on_by_time(name, restarted, count, number):
+    """The frame before had number 100, one second ago."""
+    source = LslSource(name)
+    source._layout, source._restarted = SimpleNamespace(counter=0), restarted
+    source._stream = StreamDescription("x", ("A",), 100.0)
+    source._counted = Arrived(10.0, 0.0, np.zeros(1), 100)
+    for k in range(3):
+        source._take_counted(Arrived(11.0 + k / 100.0, 0.0, np.array([count + k])))
+    assert [one.number for one in source._ready] == [number, number + 1, number + 2]
+    assert [kind for kind, _ in source.news()] == ["clock"] * (number == 200)
 
 
 def test_frames_that_come_twice_have_their_number_twice(name):
@@ -230,7 +244,8 @@ def test_a_stream_that_dies_and_returns_is_taken_up_again(name):
     assert read(source, 1, 0.3) == []
     again = LslPlayer(made, name)
     thread = play(again, made, 4.0)
-    assert [frame.number for frame in read(source, 30, 10.0)][-1:] == [29]
+    numbers = np.array([frame.number for frame in read(source, 30, 10.0)])
+    assert numbers[0] > 29 and (numbers - numbers[0]).tolist() == list(range(30))
     thread.join()
     again.close()
     source.close()

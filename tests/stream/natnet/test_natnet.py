@@ -240,10 +240,27 @@ def test_a_description_that_changes_while_frames_come_is_asked_for_and_followed(
     assert {tuple(frame.markers_m[:, 0]) for frame in read(source, 10)} == {(1.0, 2.0)}
     server.heard()
     server.send(sent(10, 2.0, 1.0, flags=2))
-    assert np.isnan(read(source, 1)[0].markers_m).all()
+    (unsure,) = read(source, 1)
+    assert np.isnan(unsure.markers_m).all() and not len(unsure.plates.index)
     server.hear(packets.REQUEST_DESCRIPTIONS)
     server.send(layouts.descriptions((4, 1), [("one", ("B", "A"))], ()))
     assert source._client.described.wait(5.0)
     server.send(sent(11, 2.0, 1.0, flags=2))
     assert read(source, 1)[0].markers_m[:, 0].tolist() == [1.0, 2.0]
+    source.close()
+
+
+def test_a_server_that_was_silent_is_asked_again(server, monkeypatch):
+    """It may have been started anew and send its markers in another order, without a notice."""
+    source = NatNetSource("127.0.0.1", "127.0.0.1", server.port, None)
+    source.connect(0.0)
+    server.hear(packets.CONNECT)
+    server.send(layouts.answer((4, 1)), described(), *(frame(k) for k in range(10)))
+    connected(source)
+    assert len(read(source, 10)) == 10
+    server.heard()
+    monkeypatch.setattr(source_module, "RESTART_S", 0.0)  # any time at all is a silence
+    server.send(frame(10))
+    assert np.isnan(read(source, 1)[0].markers_m).all()
+    server.hear(packets.REQUEST_DESCRIPTIONS)
     source.close()
