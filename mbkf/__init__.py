@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
+    from mbkf.io.written import overwriting
     from mbkf.model.body_file import load_body
     from mbkf.model.clinical import ClinicalAngles
     from mbkf.model.human import HumanModel
@@ -72,6 +73,7 @@ _HOMES = {
     "load_body": "mbkf.model.body_file",
     "load_protocol": "mbkf.model.protocol",
     "orient": "mbkf.trial.inertial.orient",
+    "overwriting": "mbkf.io.written",
     "plate_wrenches": "mbkf.sensors.contact.plates",
     "read_capture": "mbkf.io.capture",
     "read_imu": "mbkf.io.imu.files",
@@ -121,6 +123,7 @@ __all__ = [
     "load_body",
     "load_protocol",
     "orient",
+    "overwriting",
     "plate_wrenches",
     "read_capture",
     "read_imu",

@@ -40,6 +40,19 @@ class FileFormatError(MbkfError):
         super().__init__(f"{where}: {reason}")
 
 
+class ProtectedFile(MbkfError):
+    """Writing would replace a file that was read, or one that mbkf did not write; nothing was changed.
+
+    Attributes:
+        path: The file.
+        reason: Why it stays, and the remedy.
+    """
+
+    def __init__(self, path: str | Path, reason: str) -> None:
+        self.path, self.reason = Path(path), reason
+        super().__init__(f"{path}: {reason}")
+
+
 class UnknownName(MbkfError):
     """A name (marker, segment, protocol, plate, option …) is not among the valid ones.
 

@@ -237,6 +237,61 @@ def test_the_package_has_a_public_surface():
     assert importlib.import_module("mbkf").__all__
 
 
+DOORS = {
+    "mbkf/io/atomic.py": "the door of everything that is written",
+    "mbkf/io/files_read.py": "the door of everything that is read",
+    "mbkf/io/written.py": "looks at a file before it is replaced",
+    "mbkf/io/leftovers.py": "holds a lock",
+    "mbkf/kernel/declaration.py": "files of the package",
+    "mbkf/viz/page.py": "files of installed packages",
+    "mbkf/viz/language.py": "files of the package",
+    "mbkf/model/body_file.py": "files of the package",
+    "mbkf/app/exports.py": "reads what it has just written into a folder of its own",
+    "mbkf/stream/run/report.py": "rewrites in place a file that it has opened by the door",
+    "mbkf/io/imu/movella_dot.py": "looks at a file that the door has checked",
+    "mbkf/io/imu/xsens_text.py": "looks at a file that the door has checked",
+    "mbkf/cli/main.py": "opens the null device",
+    "mbkf/cli/closed_streams.py": "opens the null device",
+}
+"""Files that open others by themselves, each with its reason."""
+
+OPENING = {"open", "read_text", "read_bytes", "write_text", "write_bytes", "touch"}
+
+
+def opened_directly(source: str) -> list[str]:
+    """Calls that open a file and pass neither door; a temporary file, which the door gave, may be opened."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in OPENING:
+            of = ast.unparse(node.func.value)
+            plain = re.fullmatch(r"(partial|temporary|Image|av|webbrowser|files_read|sets|waiting)\b.*", of)
+            if plain is None:
+                found.append(ast.unparse(node.func))
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "open":
+            found.append("open")
+    return found
+
+
+def test_files_are_read_and_written_by_two_doors():
+    found = {relative(path): opened_directly(path.read_text(encoding="utf-8")) for path in SOURCES}
+    assert {name: calls for name, calls in found.items() if calls and name not in DOORS} == {}
+    assert {name for name, calls in found.items() if calls} == set(DOORS)
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        ("path.open('wb')", ["path.open"]),
+        ("open(path)", ["open"]),
+        ("(folder / 'a').write_text('b')", ["(folder / 'a').write_text"]),
+        ("partial.write_bytes(b'')", []),
+        ("write_text(path, 'a')", []),
+    ],
+)
+def test_the_rule_of_doors_sees_what_it_should(source, found):
+    assert opened_directly(source) == found
+
+
 def test_no_drawers():
     """A file called utils holds no idea of its own."""
     drawers = re.compile(r"_*(utils?|common|misc|helpers?|tools?)")

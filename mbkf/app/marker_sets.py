@@ -46,7 +46,8 @@ class MarkerSets:
         found, folder = self._workspace.survey(session), self._workspace.folder(session)
         stated = self._workspace.stated(session).protocol
         protocol, capture = starting_set(read_capture(capture_to_show(found)), stated)
-        edit = MarkerSetEdit(protocol, stand_beside(capture, protocol), folder / file_of_set(found.notes))
+        place = folder / file_of_set(found.notes)
+        edit = MarkerSetEdit(protocol, stand_beside(capture, protocol), place, edits=True)
         page = secrets.token_hex(8)
         with self._lock:
             self._edits[session, page] = edit

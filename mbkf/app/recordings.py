@@ -8,6 +8,7 @@ from pathlib import Path
 
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
+from mbkf.io.files_read import read_state
 from mbkf.io.results_folder import SUMMARY_FILE, read_summary
 from mbkf.io.session import TrialKind
 from mbkf.stream.run.report import LIVE_FILE
@@ -47,7 +48,7 @@ def _entries(folder: Path, _stamp: int) -> Plain:
         FileFormatError: A file is damaged.
     """
     summary = read_summary(folder)
-    report = json.loads((folder / LIVE_FILE).read_text(encoding="utf-8"))
+    report = json.loads(read_state(folder / LIVE_FILE))
     lost, came = int(report.get("frames_lost", 0)), int(report.get("frames_in", 0))
     return {
         "seconds": summary["duration_s"],

@@ -18,6 +18,7 @@ from pathlib import Path
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
 from mbkf.io.atomic import write_text
+from mbkf.io.files_read import read_state
 from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task
 from mbkf.study.batch.plan import Plan
 from mbkf.study.batch.run import outcomes_of
@@ -211,7 +212,7 @@ class _Watched:
 def _read(file: Path) -> dict[str, RunState]:
     """The states in a file; empty if it is missing or damaged."""
     try:
-        plain = json.loads(file.read_text(encoding="utf-8"))
+        plain = json.loads(read_state(file))
         found = {str(name): RunState(**one) for name, one in plain.items()}
         for state in found.values():
             state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}

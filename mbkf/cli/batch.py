@@ -29,7 +29,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import add_lag_option, add_spreads_option, asked_spreads, count, lag_seconds
+from mbkf.cli.options import add_lag_option, add_out, add_spreads_option, asked_spreads, count, lag_seconds
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -56,7 +56,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     later.add_argument("--causal", action="store_true", help="use no later frames")
     add_lag_option(later)
     add_spreads_option(parser)
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -14,6 +14,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
+from mbkf.cli.options import add_out
 from mbkf.cli.synth import add_motion_options
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="write report.html beside the result (yes)",
     )
-    parser.add_argument("--out", metavar="DIR", default="mbkf-demo", help="folder to write (mbkf-demo)")
+    add_out(parser, "DIR", "folder to write (mbkf-demo)", default="mbkf-demo")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -28,6 +28,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from mbkf.cli.options import add_out
+
 _OF_SUBJECT, _OF_RESULT, _FILMS = ("urdf", "mjcf"), ("c3d", "bvh", "glb", "mp4", "gif"), ("mp4", "gif")
 
 
@@ -37,7 +39,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "source", metavar="SUBJECT.toml|DIR", help="written by 'mbkf scale', or by 'mbkf reconstruct'"
     )
     parser.add_argument("--to", required=True, choices=(*_OF_SUBJECT, *_OF_RESULT), help="format")
-    parser.add_argument("--out", required=True, metavar="FILE", help="file to write")
+    add_out(parser, "FILE", "file to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

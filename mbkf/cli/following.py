@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbkf.cli.options import add_lag_option, add_spreads_option, not_negative, port, positive
+from mbkf.cli.terminal import console
 
 if TYPE_CHECKING:
     from mbkf.stream.results.frame import FrameSink
@@ -197,6 +198,4 @@ def _ms(value: Any) -> str:
 
 def say(text: str) -> None:
     """Prints a sentence on the standard error."""
-    from rich.console import Console
-
-    Console(stderr=True, highlight=False, markup=False).print(text, soft_wrap=True)
+    console(stderr=True).print(text, soft_wrap=True)

@@ -29,6 +29,7 @@ from mbkf.cli.imu import (
     read_session,
     standing_of,
 )
+from mbkf.cli.options import add_out
 
 if TYPE_CHECKING:
     from mbkf.trial.inertial.angles import ImuAngles
@@ -53,7 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--free-headings", action="store_true", help="do not let the joints hold the headings"
     )
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -65,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.model.human import HumanModel
     from mbkf.trial.inertial.angles import AnglesSettings, imu_angles
 
-    folder = check_folder(args.out)
+    folder = check_folder(args.out, ("angles.mot", "mounts.toml", "angles.json"))
     model = HumanModel.scaled() if args.subject is None else HumanModel.of(read_subject(args.subject))
     sensors = chosen(read_session(args.files, args), args.sensor)
     settings = AnglesSettings(
@@ -102,6 +103,7 @@ def _summary(found: ImuAngles, filter_name: str) -> dict[str, Any]:
 def _write(found: ImuAngles, summary: dict[str, Any], folder: Path) -> None:
     import numpy as np
 
+    from mbkf.io.atomic import write_text
     from mbkf.io.atomic_folder import replacing_folder
     from mbkf.io.imu.mount import write_mounts
     from mbkf.io.storage import Table, write_storage
@@ -111,4 +113,4 @@ def _write(found: ImuAngles, summary: dict[str, Any], folder: Path) -> None:
     with replacing_folder(folder, last="angles.json") as partial:
         write_storage(table, partial / "angles.mot")
         write_mounts(found.mounts, partial / "mounts.toml")
-        (partial / "angles.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        write_text(partial / "angles.json", json.dumps(summary, indent=2) + "\n")

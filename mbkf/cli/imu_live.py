@@ -32,7 +32,7 @@ from mbkf.cli.imu import (
     person_of,
     posture_of,
 )
-from mbkf.cli.options import asked_spreads, lag_seconds
+from mbkf.cli.options import add_out, asked_spreads, lag_seconds
 
 if TYPE_CHECKING:
     from mbkf.stream.run.session import LiveSession
@@ -55,7 +55,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="LSL: only these streams (default: all of inertial sensors)",
     )
     add_speed_option(parser)
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
     add_following_options(parser)
 
 
@@ -63,12 +63,14 @@ def run(args: argparse.Namespace) -> int:
     """Follows the stream, writes the folder and prints the key numbers."""
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
+    from mbkf.io.results_folder import RESULT_FILES
     from mbkf.model.human import HumanModel
+    from mbkf.stream.run.report import LIVE_FILE
     from mbkf.stream.run.sensor_standing import SensorStanding
     from mbkf.stream.run.session import LiveSession
     from mbkf.trial.preparation.settings import ReconstructSettings
 
-    person, folder = person_of(args), check_folder(args.out)
+    person, folder = person_of(args), check_folder(args.out, (LIVE_FILE, *RESULT_FILES))
     model = HumanModel.of(person)
     posture = posture_of(args, model)
     settings = ReconstructSettings(

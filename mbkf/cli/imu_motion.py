@@ -30,6 +30,7 @@ from mbkf.cli.imu import (
     read_session,
     standing_of,
 )
+from mbkf.cli.options import add_out
 
 if TYPE_CHECKING:
     from mbkf.io.results import Reconstruction
@@ -47,7 +48,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     add_standing_options(parser)
     add_person_options(parser)
     parser.add_argument("--causal", action="store_true", help="use no later frames, as live")
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

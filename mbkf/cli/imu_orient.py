@@ -19,6 +19,7 @@ import json
 from typing import Any
 
 from mbkf.cli.imu import add_reading_options, read
+from mbkf.cli.options import add_out
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +43,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="read the gyroscope's bias while a sensor lies still (ekf, smooth; default: yes)",
     )
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -51,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.madgwick import MadgwickSettings
     from mbkf.imu.orientation import OrientSettings
     from mbkf.imu.orientation_ekf import OrientationSettings
-    from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic import check_folder, write_text
     from mbkf.io.atomic_folder import replacing_folder
     from mbkf.io.imu.write import write_orientation_csv
     from mbkf.trial.inertial.orient import orient, orientation_summary
@@ -64,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
         MadgwickSettings(args.beta, args.zeta),
         OrientationSettings(rest_bias=args.rest_bias),
     )
-    folder, sensors = check_folder(args.out), read(args.files, args)
+    folder, sensors = check_folder(args.out, ("orientation.json",)), read(args.files, args)
     with stages() as report:
         result = orient(
             sensors,
@@ -85,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
             )  # fmt: skip
             if result.compared:
                 write_comparison(course, result.compared[k], partial / f"{stem}_compare.png")
-        (partial / "orientation.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        write_text(partial / "orientation.json", json.dumps(summary, indent=2) + "\n")
     _print(summary)
     print(folder)
     return 0

@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbkf.cli.imu import add_reading_options, chosen, read
+from mbkf.cli.options import add_out
 
 if TYPE_CHECKING:
     from mbkf.io.imu.readings import ImuReadings
@@ -60,7 +61,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--window", type=int, metavar="N", help="key points: samples per window at 50 Hz (10)"
     )
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -68,9 +69,9 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.trial.inertial.stride import measure_strides
-    from mbkf.trial.inertial.stride_folder import write_strides
+    from mbkf.trial.inertial.stride_folder import STRIDES_FILE, SUMMARY_FILE, TRAJECTORY_FILE, write_strides
 
-    check_folder(args.out)
+    check_folder(args.out, (STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE, PICTURE_FILE))
     settings, readings = _settings(args), _feet(args)
     with stages() as report:
         measured = measure_strides(readings, settings, progress=report)
@@ -82,11 +83,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _draw(measured: StrideMeasurement, path: Path) -> None:
     from mbkf.errors import MissingDependency
+    from mbkf.io.atomic import check_file
 
     try:
         from mbkf.viz.imu.foot_path import write_foot_path
     except MissingDependency as missing:
-        path.unlink(missing_ok=True)  # an earlier run's picture shows other strides
+        check_file(path).unlink(missing_ok=True)  # an earlier run's picture shows other strides
         print(f"note: {path.name} was not drawn. {missing}", file=sys.stderr)
     else:
         write_foot_path(measured, path)

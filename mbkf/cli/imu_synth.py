@@ -17,7 +17,7 @@ import argparse
 import math
 from pathlib import Path
 
-from mbkf.cli.options import comma_separated, natural
+from mbkf.cli.options import add_out, comma_separated, natural
 
 DEGREES, SI = math.pi / 180.0, 1.0
 ERRORS = {
@@ -49,7 +49,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--neat", action="store_true", help="sensors exactly at their usual places")
     for name, (_, _, unit) in ERRORS.items():
         parser.add_argument(f"--{name}", type=float, metavar="SD", help=f"standard deviation, {unit}")
-    parser.add_argument("--out", required=True, metavar="FILE.csv", help="file to write")
+    add_out(parser, "FILE.csv", "file to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.imu.placement import EIGHT
     from mbkf.imu.virtual import ImuErrors
-    from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic import check_file
     from mbkf.io.imu.mount import read_mounts, write_mounts
     from mbkf.io.imu.write import write_imu_csv
     from mbkf.trial.inertial.synth import read_motion, synthesise_imus
@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     out = Path(args.out)
     if out.suffix.lower() != ".csv":
         raise InvalidInput(f"--out {out}: name a .csv file")
-    check_folder(out.parent)
+    check_file(out.with_suffix(".toml"))
     given = {name: getattr(args, name.replace("-", "_")) for name in ERRORS}
     errors = replace(
         ImuErrors.none() if args.perfect else ImuErrors(),

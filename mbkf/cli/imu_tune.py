@@ -15,11 +15,10 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from pathlib import Path
 from typing import Any
 
 from mbkf.cli.imu import add_reading_options, read
-from mbkf.cli.options import time_window
+from mbkf.cli.options import add_out, time_window
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -33,16 +32,14 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--frame", default="ENU", choices=("ENU", "NED", "NWU"), help="world of the comparison (ENU)"
     )
     parser.add_argument("--no-mag", action="store_true", help="ignore the magnetometer")
-    parser.add_argument("--out", metavar="FILE.json", help="file for the numbers")
+    add_out(parser, "FILE.json", "file for the numbers")
 
 
 def run(args: argparse.Namespace) -> int:
     """Finds the gains, prints and writes them."""
-    from mbkf.io.atomic import check_folder, replacing
+    from mbkf.io.atomic import write_text
     from mbkf.trial.inertial.orient import prepared
 
-    if args.out is not None:
-        check_folder(Path(args.out).parent)
     sensors, warnings = prepared(read([args.file], args), args.sensor)
     rows = []
     for one in sensors:
@@ -53,8 +50,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"note: {warning}")
     if args.out is not None:
         found = {"sensors": rows, "warnings": list(warnings)}
-        with replacing(args.out) as partial:
-            partial.write_text(json.dumps(found, indent=2) + "\n", "utf-8")
+        write_text(args.out, json.dumps(found, indent=2) + "\n")
     return 0
 
 

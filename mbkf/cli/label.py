@@ -23,7 +23,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, axes_options, body_mass
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options, body_mass
 
 if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
@@ -58,21 +58,22 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--height", metavar="M", type=float, help="body height of a person to scale")
     parser.add_argument("--truth", metavar="LABELLED.c3d", help="the same trial with labels, for comparison")
     add_axes_options(parser)
-    parser.add_argument("--out", required=True, metavar="FILE.c3d|FILE.trc", help="file to write")
+    add_out(parser, "FILE.c3d|FILE.trc", "file to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
     """Labels the capture, writes it with its summary and prints the numbers."""
     from mbkf.cli.progress import stages
-    from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic import check_file
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
     from mbkf.trial.axes.captures import turned_like_subject
     from mbkf.trial.labelling.files import write_labels
     from mbkf.trial.labelling.score import score
 
-    out = _checked(Path(args.out), Path(args.raw))
-    check_folder(out.parent)
+    out = _checked(Path(args.out))
+    for beside in (".json", *((".toml",) if args.subject is None else ())):
+        check_file(out.with_suffix(beside))
     _check_person(args)
     raw = read_capture(args.raw, **axes_options(args))
     truth = None if args.truth is None else read_capture(args.truth, **axes_options(args))
@@ -136,7 +137,7 @@ def _check_person(args: argparse.Namespace) -> None:
             )
 
 
-def _checked(out: Path, raw: Path) -> Path:
+def _checked(out: Path) -> Path:
     from mbkf.errors import FileFormatError, InvalidInput
     from mbkf.io.capture import writable_suffixes
     from mbkf.io.readers import either
@@ -145,8 +146,6 @@ def _checked(out: Path, raw: Path) -> Path:
         raise InvalidInput(f"--out {out}: name a {either(writable_suffixes())} file")
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
-    if out.resolve() == raw.resolve():
-        raise InvalidInput(f"--out {out} would overwrite the raw capture; name another file")
     return out
 
 

@@ -37,7 +37,7 @@ from mbkf.cli.following import (
     report_outcome,
     say,
 )
-from mbkf.cli.options import asked_spreads, body_mass, lag_seconds, port
+from mbkf.cli.options import add_out, asked_spreads, body_mass, lag_seconds, port
 
 if TYPE_CHECKING:
     from mbkf.io.subject import Subject
@@ -70,7 +70,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="default: dynamic")
     parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
-    parser.add_argument("--out", metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write")
     parser.add_argument(
         "--recover", metavar="DIR", help="make the results of a run that broke off, from its log in DIR"
     )
@@ -99,7 +99,9 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
+    from mbkf.io.results_folder import RESULT_FILES
     from mbkf.io.subject import Subject
+    from mbkf.stream.run.report import LIVE_FILE
     from mbkf.stream.run.session import LiveSession
     from mbkf.stream.run.standing import StandingStart
     from mbkf.trial.preparation.presets import with_preset
@@ -110,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
     for option, given in (("--from", args.source), ("--out", args.out)):
         if given is None:
             raise InvalidInput(f"{option} is missing; see mbkf live --help")
-    person, folder = _person(args), check_folder(args.out)
+    person, folder = _person(args), check_folder(args.out, (LIVE_FILE, *RESULT_FILES))
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
         lag_s=lag_seconds(args),

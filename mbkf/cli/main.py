@@ -19,7 +19,9 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from mbkf.cli.closed_streams import open_closed_streams
+from mbkf.cli.inputs import check_outputs, inputs_protected
 from mbkf.cli.postponed import postpone
+from mbkf.cli.terminal import guarded_output, show_traceback
 from mbkf.errors import MbkfError, MbkfWarning
 from mbkf.version import __version__
 
@@ -118,7 +120,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     gc.set_threshold(GARBAGE_AFTER)
     open_closed_streams()
-    words = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None:
+        sys.excepthook = show_traceback
+    with guarded_output():
+        return _run(list(sys.argv[1:] if arguments is None else arguments))
+
+
+def _run(words: list[str]) -> int:
     named = words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS
     args = build_parser(named).parse_args(words)
     out = getattr(args, "out", None)
@@ -127,7 +135,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     postpone()
     warnings.formatwarning = _formatted
     try:
-        code = args.run(args)
+        with inputs_protected(args):
+            check_outputs(args)
+            code = args.run(args)
         sys.stdout.flush()  # so that a closed pipe is noticed here
         return code
     except MbkfError as error:

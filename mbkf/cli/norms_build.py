@@ -15,11 +15,13 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from mbkf.cli.options import add_out
+
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("folders", metavar="FOLDER", nargs="+", help="results of persons, by 'mbkf batch'")
-    parser.add_argument("--out", metavar="FILE.toml", required=True, help="file to write")
+    add_out(parser, "FILE.toml", "file to write", required=True)
     parser.add_argument("--name", metavar="TEXT", help="name of the bands in reports (the file's name)")
 
 

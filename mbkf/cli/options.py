@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
@@ -15,6 +15,24 @@ CAPTURE_FILES = either((*CAPTURES.suffixes_so_far, "that of an installed reader"
 
 FORCE_FILES = either((*FORCES.suffixes_so_far, "that of an installed reader"))
 """Suffixes of files of ground reactions that can be read."""
+
+
+OUTPUTS = "outputs"
+"""Name under which a command's parsed options list its :class:`Output`."""
+
+
+class Output(NamedTuple):
+    """An option that names a file or folder to write.
+
+    Attributes:
+        dest: Its name among the parsed options.
+        folder: It names a folder.
+        edits: Name of the option whose file it may replace, since the command edits that; empty for none.
+    """
+
+    dest: str
+    folder: bool
+    edits: str
 
 
 class AxesOptions(TypedDict):
@@ -44,6 +62,45 @@ def add_axes_options(parser: argparse.ArgumentParser) -> None:
         "triple such as x,z,y mirrors the capture. Begin with --axes=-x,… if the first has a sign",
     )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+
+
+def add_out(
+    parser: argparse._ActionsContainer,
+    metavar: str,
+    text: str,
+    *,
+    required: bool = False,
+    default: str | None = None,
+    option: str = "--out",
+    edits: str = "",
+) -> None:
+    """Adds an option that names a file or folder to write, and once ``--overwrite``.
+
+    ``mbkf`` looks at all of them before the command begins (:mod:`mbkf.cli.inputs`).
+
+    Args:
+        parser: The command's parser, or a group of it.
+        metavar: "DIR" for a folder; the name of a file otherwise.
+        text: Its help.
+        required: It must be given.
+        default: Value where it is not given.
+        option: Its name.
+        edits: As for :class:`Output`.
+    """
+    before: tuple[Output, ...] = parser.get_default(OUTPUTS) or ()
+    action = parser.add_argument(option, metavar=metavar, help=text, required=required, default=default)
+    parser.set_defaults(**{OUTPUTS: (*before, Output(action.dest, metavar == "DIR", edits))})
+    if not before:
+        add_overwrite(parser)
+
+
+def add_overwrite(parser: argparse._ActionsContainer) -> None:
+    """Adds ``--overwrite``, for commands that write."""
+    parser.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="replace existing files that mbkf did not write; files that the command reads always stay",
+    )
 
 
 def add_lag_option(parser: argparse._ActionsContainer) -> None:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_page_options, axes_options
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, add_page_options, axes_options
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -25,13 +25,14 @@ def options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME|FILE",
         help="marker set to begin with (default: found from the names, or inferred)",
     )
-    parser.add_argument("--out", required=True, metavar="FILE.toml", help="file that saving writes")
+    add_out(parser, "FILE.toml", "file that saving writes", required=True, edits="protocol")
     add_axes_options(parser)
     add_page_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Serves the page until it is done, and prints the counts of the saved set."""
+    from mbkf.cli.inputs import edits_own_file, outputs_of
     from mbkf.cli.opening import open_page, printed_address
     from mbkf.cli.progress import stages
     from mbkf.cli.stopping import stopped_by_signal
@@ -50,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
         standing = stand_beside(capture, protocol, report)
     if standing.trouble:
         print(f"warning: the set does not fit this capture yet: {standing.trouble}", file=sys.stderr)
-    page = EditPage(protocol, standing, out, port=args.port)
+    page = EditPage(protocol, standing, out, port=args.port, edits=edits_own_file(args, outputs_of(args)[0]))
     print(f'{printed_address(page, not args.no_browser)}\n"Done" on the page or Ctrl-C ends', flush=True)
     try:
         with stopped_by_signal() as stop:

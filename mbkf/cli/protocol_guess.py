@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import argparse
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, axes_options
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -22,7 +22,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated"
     )
-    parser.add_argument("--out", required=True, metavar="FILE.toml", help="file to write")
+    add_out(parser, "FILE.toml", "file to write", required=True)
     add_axes_options(parser)
 
 

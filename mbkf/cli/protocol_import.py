@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import argparse
 
+from mbkf.cli.options import add_out
+
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("file", metavar="FILE", help="OpenSim model (.osim) or marker set (.xml)")
-    parser.add_argument("--out", metavar="FILE.toml", help="file to write (default: nothing is written)")
+    add_out(parser, "FILE.toml", "file to write (default: nothing is written)")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -13,11 +13,13 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from mbkf.cli.options import add_out
+
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("protocol", metavar="NAME|FILE", help="marker set: its name, or its TOML file")
-    parser.add_argument("--out", metavar="FILE.html", help="page to write")
+    add_out(parser, "FILE.html", "page to write")
     parser.add_argument("--no-browser", action="store_true", help="do not open the page")
 
 

@@ -27,6 +27,7 @@ from mbkf.cli.options import (
     FORCE_FILES,
     add_axes_options,
     add_lag_option,
+    add_out,
     add_spreads_option,
     asked_spreads,
     axes_options,
@@ -118,7 +119,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     add_spreads_option(parser)
     add_axes_options(parser)
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -19,6 +19,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbkf.cli.options import add_out
+
 if TYPE_CHECKING:
     from mbkf.study.session.records import Session
 
@@ -31,7 +33,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="written by 'mbkf reconstruct', 'mbkf live' or 'mbkf batch'; several make one session",
     )
-    parser.add_argument("--out", metavar="FILE.html", help="file to write (report.html in the first DIR)")
+    add_out(parser, "FILE.html", "file to write (report.html in the first DIR)")
     parser.add_argument(
         "--labels",
         metavar="FILE.json",
@@ -41,7 +43,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
     session.add_argument("--norms", metavar="FILE.toml", help="reference bands of 'mbkf norms build'")
     session.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
-    session.add_argument("--curves", metavar="FILE", help="write every curve, too: .csv or .parquet")
+    add_out(session, "FILE", "write every curve, too: .csv or .parquet", option="--curves")
     session.add_argument("--name", metavar="TEXT", help="heading of the page (the folder's name)")
 
 
@@ -80,6 +82,7 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
 def _session(args: argparse.Namespace, folders: list[Path]) -> int:
     from mbkf.io.atomic import write_text
     from mbkf.io.norms import read_norms
+    from mbkf.io.utf8 import storable
     from mbkf.study.session.gather import results_in, session_from
     from mbkf.viz.language import ENGLISH
     from mbkf.viz.session.document import session_page
@@ -93,7 +96,7 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
 
     def read(places: list[Path], name: str | None) -> Session:
         results = [result for place in places for result in results_in(place)]
-        return session_from(results, name or places[0].absolute().name)
+        return session_from(results, name or storable(places[0].absolute().name))
 
     before = None if args.against is None else read([Path(place) for place in args.against], None)
     session = read(folders, args.name)

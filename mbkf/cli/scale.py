@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, axes_options, body_mass
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options, body_mass
 from mbkf.cli.tables import table, terminal
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "them",
     )
     add_axes_options(parser)
-    parser.add_argument("--out", required=True, metavar="SUBJECT.toml", help="file to write")
+    add_out(parser, "SUBJECT.toml", "file to write", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 
-from mbkf.cli.options import natural
+from mbkf.cli.options import add_out, natural
 from mbkf.synthesis.motions import motion_names, registered_motion
 
 
@@ -33,7 +33,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         default=0.02,
         help="fraction of marker samples hidden (0.02)",
     )
-    parser.add_argument("--out", metavar="DIR", required=True, help="folder to write")
+    add_out(parser, "DIR", "folder to write", required=True)
 
 
 def add_motion_options(parser: argparse.ArgumentParser) -> None:
@@ -62,9 +62,9 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.synthesis.capture import CaptureSettings
-    from mbkf.trial.synth import synthesise, write_folder
+    from mbkf.trial.synth import FILES, synthesise, write_folder
 
-    check_folder(args.out)
+    check_folder(args.out, FILES)
     settings = CaptureSettings(
         markers_sd_m=args.markers_mm / 1e3,
         skin_sd_m=args.skin_mm / 1e3,

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mbkf.cli.terminal import console
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-PIPED_WIDTH = 110
-"""Characters of a line where the output is no terminal."""
-
 
 def terminal() -> Console:
     """A console that prints text as it is."""
-    from rich.console import Console
-
-    console = Console(highlight=False, markup=False)
-    return console if console.is_terminal else Console(highlight=False, markup=False, width=PIPED_WIDTH)
+    return console()
 
 
 def table(title: str, *headings: str, words: int = 1) -> Table:

@@ -32,7 +32,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, axes_options, comma_separated, count
+from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options, comma_separated, count
 
 if TYPE_CHECKING:
     from mbkf.io.preset import Preset
@@ -54,9 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--filter", choices=("dynamic", "kinematic"), default="dynamic", help="the filter (dynamic)"
     )
     parser.add_argument("--name", required=True, metavar="NAME", help="name of the preset")
-    parser.add_argument(
-        "--out", metavar="PRESET.toml", help="file to write, instead of one among the named presets"
-    )
+    add_out(parser, "PRESET.toml", "file to write, instead of one among the named presets")
     parser.add_argument(
         "--hold-out", metavar="TRIAL", action="append", default=[], help="trial that only judges; repeatable"
     )
@@ -73,7 +71,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Tunes, writes the preset and prints the settings."""
     from mbkf.cli.progress import stages
-    from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic import check_file
     from mbkf.io.capture import read_capture
     from mbkf.io.preset import write_preset
     from mbkf.io.subject import read_subject
@@ -82,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.trial.preparation.settings import ReconstructSettings
 
     out = place_of(check_name(args.name), args.out)
-    check_folder(out.parent)
+    check_file(out)
     held_out, forces = positions(args.trials, args.hold_out), forces_of(args.trials, args.forces)
     settings = TuneSettings(
         filter=args.filter,

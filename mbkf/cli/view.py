@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import argparse
 
-from mbkf.cli.options import add_page_options
+from mbkf.cli.options import add_out, add_page_options
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("folder", metavar="DIR", help="written by 'mbkf reconstruct' or 'mbkf live'")
-    parser.add_argument("--html", metavar="FILE", help="write one self-contained page and end")
+    add_out(parser, "FILE", "write one self-contained page and end", option="--html")
     parser.add_argument(
         "--address", default="127.0.0.1", metavar="IP", help="address of the page (127.0.0.1)"
     )

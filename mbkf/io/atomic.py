@@ -1,4 +1,7 @@
-"""Writing so that a reader sees the old file or the whole new one; a wrong place is refused early."""
+"""The door of everything that is written: a reader sees the old file or the whole new one, and no input is lost.
+
+A wrong place is refused early: :func:`check_folder` and :func:`check_file`.
+"""
 
 from __future__ import annotations
 
@@ -7,37 +10,99 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO, TextIO
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import files_read
 from mbkf.io.leftovers import unfinished
+from mbkf.io.utf8 import encoded
+from mbkf.io.written import check_replaceable
 
 
 @contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
+def replacing(path: str | Path, *, edits: bool = False) -> Iterator[Path]:
     """An empty temporary file beside ``path`` that takes its place when the block ends without an error.
 
     Missing folders are made. The temporary name keeps the suffix, since some writers insist on theirs. The file is on
     the disk before it takes its place, so that a power cut leaves the old one or the new one.
 
+    Args:
+        path: The file.
+        edits: It is one of the user's own that this change is meant for (:func:`check_replaceable`).
+
     Raises:
+        ProtectedFile: The file was read, or it is none of mbkf's own.
         OSError: The folder cannot be made or written to.
     """
     target = Path(path)
+    check_replaceable(target, edits=edits)
     target.parent.mkdir(parents=True, exist_ok=True)
     with unfinished(target) as temporary:
         yield temporary
         flush(temporary)
-        temporary.replace(target)
+        _take_place(temporary, target, edits)
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Writes a text file, whole or not at all.
+def _take_place(temporary: Path, target: Path, edits: bool) -> None:
+    """Gives a finished file its name; a file that came into being meanwhile is looked at like any other."""
+    if not os.path.lexists(target):
+        try:
+            os.link(temporary, target)  # in contrast to a renaming, it replaces nothing
+        except OSError:
+            pass  # a file has come into being, or the file system has one name for each
+        else:
+            files_read().wrote(target)
+            return
+    check_replaceable(target, edits=edits)
+    temporary.replace(target)
+    files_read().wrote(target)
+
+
+def write_text(path: str | Path, text: str, *, edits: bool = False) -> None:
+    """Writes a text file in UTF-8, whole or not at all; letters that UTF-8 lacks become their codes.
+
+    Args:
+        path: The file.
+        text: Its content.
+        edits: As for :func:`replacing`.
 
     Raises:
+        ProtectedFile: The file was read, or it is none of mbkf's own.
         OSError: The file cannot be written.
     """
-    with replacing(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+    with replacing(path, edits=edits) as partial:
+        partial.write_bytes(encoded(text))
+
+
+@contextmanager
+def replacing_text(path: str | Path) -> Iterator[TextIO]:
+    """As :func:`replacing`, with the temporary file open for text, as :func:`write_text` writes it.
+
+    Raises:
+        ProtectedFile: The file was read, or it is none of mbkf's own.
+        OSError: The file cannot be written.
+    """
+    unstorable = "backslashreplace"
+    with (
+        replacing(path) as partial,
+        partial.open("w", encoding="utf-8", errors=unstorable, newline="\n") as file,
+    ):
+        yield file
+
+
+def new_file(path: str | Path) -> BinaryIO:
+    """Opens a file that grows while it can be read already, such as a log; whatever stands there is checked first.
+
+    Raises:
+        ProtectedFile: The file was read, or it is none of mbkf's own.
+        OSError: It cannot be written.
+    """
+    target = Path(path)
+    check_replaceable(target)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    file = target.open("wb", buffering=0)
+    files_read().wrote(target)
+    return file
 
 
 def flush(path: Path) -> None:
@@ -55,6 +120,21 @@ def flush(path: Path) -> None:
         os.close(descriptor)
 
 
+def check_file(path: str | Path, *, edits: bool = False) -> Path:
+    """The absolute path of a file that can be written, in a folder that can be made. Commands call it before long work.
+
+    Raises:
+        FileFormatError: A folder stands there, or a file in the place of its folder.
+        ProtectedFile: The file was read, or it is none of mbkf's own.
+        PermissionError: Its folder may not be written to, or not be made.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise FileFormatError(target, "is a folder; name a file for --out")
+    check_replaceable(target, edits=edits)
+    return check_folder(target.parent) / target.name
+
+
 def check_folder(folder: str | Path, files: Sequence[str] = ()) -> Path:
     """The absolute path of a folder that can be written to, with files of these names in it.
 
@@ -63,6 +143,7 @@ def check_folder(folder: str | Path, files: Sequence[str] = ()) -> Path:
 
     Raises:
         FileFormatError: A file stands there or on the way, or a folder in the place of a file.
+        ProtectedFile: One of the files was read, or is none of mbkf's own.
         PermissionError: It may not be written to, or not be made.
     """
     target = Path(folder).absolute()
@@ -76,6 +157,7 @@ def check_folder(folder: str | Path, files: Sequence[str] = ()) -> Path:
             raise FileFormatError(
                 place, "a folder stands where a file is needed; move it, or name another folder with --out"
             )
+        check_replaceable(place)
     nearest = next(place for place in (target, *target.parents) if place.exists())
     if not os.access(nearest, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(nearest))

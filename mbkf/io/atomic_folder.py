@@ -17,6 +17,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from mbkf.io.atomic import check_folder, flush
+from mbkf.io.files_read import files_read
 from mbkf.io.leftovers import unfinished
 
 _AT_FDCWD = -100
@@ -34,6 +35,7 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
 
     Raises:
         FileFormatError: A file stands where a folder is needed, or a folder where a file is.
+        ProtectedFile: A file that would be replaced was read, or is none of mbkf's own.
         OSError: The folder cannot be made or written to.
     """
     target = check_folder(folder).resolve()
@@ -51,6 +53,8 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
         elif not as_one or not _exchanged(target, partial):
             for name in sorted(files, key=lambda name: name == last):
                 (partial / name).replace(target / name)
+        for name in files:
+            files_read().wrote(target / name)
 
 
 def _can_be_renamed(target: Path) -> bool:
@@ -65,6 +69,7 @@ def _can_be_renamed(target: Path) -> bool:
 
 def _exchanged(target: Path, partial: Path) -> bool:
     """Exchanges a finished folder with an old one, whose other files it gets; false if the system cannot."""
+    written = frozenset(path.name for path in partial.iterdir())
     for old in target.iterdir():
         new = partial / old.name
         if new.exists() or new.is_symlink():
@@ -74,7 +79,29 @@ def _exchanged(target: Path, partial: Path) -> bool:
         else:
             _linked(old, new)
     shutil.copymode(target, partial)
-    return _exchange(target, partial)
+    if not _exchange(target, partial):
+        return False
+    _keep_latecomers(partial, target, written)
+    return True
+
+
+def _keep_latecomers(old: Path, new: Path, written: frozenset[str]) -> None:
+    """Moves files into the new folder that others put into the old one while the two were exchanged."""
+    for folder, _, names in os.walk(old):
+        for name in names:
+            place = Path(folder, name)
+            beside = new / place.relative_to(old)
+            if str(place.relative_to(old)) in written or (os.path.lexists(beside) and _same(place, beside)):
+                continue
+            with suppress(OSError):
+                beside.parent.mkdir(parents=True, exist_ok=True)
+                place.replace(beside)
+
+
+def _same(first: Path, second: Path) -> bool:
+    """True for two names of one file, and for a copy, which has size and time of its original."""
+    a, b = first.lstat(), second.lstat()
+    return os.path.samestat(a, b) or (a.st_size, a.st_mtime_ns) == (b.st_size, b.st_mtime_ns)
 
 
 def _linked(old: str | Path, new: str | Path) -> str:

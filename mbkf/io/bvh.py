@@ -14,6 +14,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, ShapeError
+from mbkf.io.written import BVH_BLANKS
 from mbkf.numerics.cardan import cardan_angles, follow
 
 ROTATIONS = "Zrotation Xrotation Yrotation"
@@ -60,7 +61,7 @@ def bvh_text(joints: Sequence[BvhJoint], root_m: Array, rotations: Array, rate_h
     if root_m.shape != (len(rotations), 3):
         raise ShapeError("root_m", f"({len(rotations)}, 3)", root_m.shape)
     _check_tree(joints)
-    lines = ["HIERARCHY", *_tree(joints, 0, 0), "MOTION", f"Frames: {len(rotations)}"]
+    lines = ["HIERARCHY" + BVH_BLANKS, *_tree(joints, 0, 0), "MOTION", f"Frames: {len(rotations)}"]
     lines.append(f"Frame Time: {1.0 / rate_hz:.9g}")
     numbers = np.round(np.hstack([_CM * root_m, _angles_deg(rotations)]), 6) + 0.0  # no "-0.000000"
     lines += [" ".join(f"{number:.6f}" for number in row) for row in numbers.tolist()]

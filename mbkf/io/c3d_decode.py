@@ -21,6 +21,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_records import ParameterRecord
+from mbkf.io.files_read import opened
 
 EVENTS_KEY = 12345
 """Stands in word 150 of a header whose events have four letters."""
@@ -101,7 +102,7 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
     parameters = C3dParameters(values_of(layout.groups, layout.records, processor))
     shape = data_layout(path, layout, parameters)
     frames, width = shape.frames, 4 * layout.points + shape.analog_per_frame
-    with path.open("rb") as file:
+    with opened(path) as file:
         header = file.read(BLOCK_BYTES)
         file.seek((layout.data_block - 1) * BLOCK_BYTES)
         data = file.read(frames * width * layout.bytes_per_number)

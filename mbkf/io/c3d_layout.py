@@ -13,6 +13,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d_records import DamagedParameters, ParameterRecord, first_integer, walk_parameters
+from mbkf.io.files_read import check_input, opened
 
 BLOCK_BYTES = 512
 """Header, parameters and data begin at multiples of it."""
@@ -81,13 +82,11 @@ def check_layout(path: Path) -> C3dLayout:
     Raises:
         FileFormatError: The file is missing, empty, not a C3D file or cut short.
     """
-    if not path.is_file():
-        kind = "is a folder" if path.is_dir() else "no such file"
-        raise FileFormatError(path, f"{kind}; name a C3D file")
+    check_input(path, "name a C3D file")
     size = path.stat().st_size
     if size == 0:
         raise FileFormatError(path, "the file is empty; copy or export it again")
-    with path.open("rb") as file:
+    with opened(path) as file:
         header = file.read(BLOCK_BYTES)
         if len(header) < 2 or header[1] != _KEY:
             raise FileFormatError(path, "not a C3D file (its second byte is not 0x50); export it as C3D")
@@ -109,7 +108,7 @@ def check_layout(path: Path) -> C3dLayout:
 def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> C3dLayout:
     """The layout with the parameters' records, after comparing the number of points with the header's."""
     end = max(start + blocks * BLOCK_BYTES, (layout.data_block - 1) * BLOCK_BYTES)
-    with path.open("rb") as file:
+    with opened(path) as file:
         file.seek(start + 4)
         section = file.read(end - start - 4)
     try:

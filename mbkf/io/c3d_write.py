@@ -16,6 +16,7 @@ from mbkf.io.c3d_encode import MOST_ENTRIES, Value, encoded
 from mbkf.io.derived import COMPUTED_PLACES, GROUP_KINDS, TYPE_WORDS, UNIT_PARAMETERS
 from mbkf.io.plate_corners import plate_axes
 from mbkf.io.records import Capture, DerivedPoint, PlateReadings
+from mbkf.io.written import MARK
 
 Parameters: TypeAlias = dict[str, Value]
 """Parameters of a group by their names."""
@@ -55,6 +56,7 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
     if capture.subject_mass_kg is not None:
         groups["PROCESSING"] = {"BODYMASS": float(capture.subject_mass_kg)}
     first_frame = max(round(markers.start_time_s * markers.rate_hz), 0) + 1
+    groups["MANUFACTURER"] = {"SOFTWARE": [MARK]}
     content = encoded(groups, points, np.where(missing, -1.0, 0.0), analogs, markers.rate_hz, first_frame)
     with replacing(path.with_suffix(".c3d")) as temporary:
         temporary.write_bytes(content)

@@ -13,8 +13,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.atomic import check_file
 from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.files_read import check_regular, files_read
 from mbkf.io.plausible import plausible
 from mbkf.io.readers import FileFormat, FormatRegistry, either, lazily
 from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
@@ -145,7 +147,7 @@ def read_capture(
             no axes, or contradict ``up``.
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
-    path = Path(path)
+    path = _input(Path(path))
     kind = CAPTURES.format_of(path)
     matrix = None if axes is None else axes_matrix(axes)
     if matrix is not None:
@@ -167,6 +169,11 @@ def read_capture(
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)
 
 
+def _input(path: Path) -> Path:
+    """The file, checked if it is there; a reader states which kind of file is missing."""
+    return check_regular(path) if path.exists() and not path.is_dir() else path
+
+
 def _declared(capture: Capture, up: str | None) -> Capture:
     """The capture of a reader that leaves ``axes`` alone, with those that its ``up_axis`` means."""
     if capture.axes_source is not AxesSource.MADE:
@@ -185,7 +192,7 @@ def _with_forces(capture: Capture, forces: Path, kind: CaptureFormat, options: C
         trial_end_s=markers.start_time_s + (markers.frames - 2) / markers.rate_hz,  # but for the last frame
         notes=[],
     )
-    plates = FORCES.format_of(forces).read(forces, options)
+    plates = FORCES.format_of(_input(forces)).read(forces, options)
     notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]
     notes += [*_coverage(plates, markers), *offset_remarks(plates)]
     return replace(capture, plates=plates, notes=tuple(notes))
@@ -222,7 +229,9 @@ def write_capture(capture: Capture, path: str | Path) -> None:
     kind = CAPTURES.format_of(path)
     if kind.write is None:
         raise FileFormatError(path, f"{kind.title} is not written; name a {either(writable_suffixes())} file")
+    check_file(path)
     kind.write(capture, path)
+    files_read().wrote(path)
 
 
 def writable_suffixes() -> tuple[str, ...]:

@@ -19,6 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.errors import FileFormatError
+from mbkf.io.atomic import new_file
+from mbkf.io.files_read import opened
 from mbkf.io.plain_data import parse_json
 
 FORMAT = "mbkf frame log"
@@ -66,7 +68,7 @@ class FrameLogWriter:
         self.dtype = dtype
         self._size = dtype.itemsize + _CHECKSUM.itemsize
         first = {"format": FORMAT, "format_version": FORMAT_VERSION, "dtype": _plain(dtype), "header": header}
-        self._file = self.path.open("wb", buffering=0)
+        self._file = new_file(self.path)
         line = (json.dumps(first) + "\n").encode()
         line += _line_checksum(line)
         self._start = len(line)
@@ -117,7 +119,7 @@ def read_frame_log(path: str | Path) -> FrameLog:
     """
     source = Path(path)
     try:
-        with source.open("rb") as file:
+        with opened(source) as file:
             line = file.readline()
             first = parse_json(line)
             version = first["format_version"]

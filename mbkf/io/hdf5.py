@@ -14,6 +14,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mbkf.io.files_read import opened, read_bytes
+
 DAMAGED = (
     OSError, RuntimeError, KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError, MemoryError,
 )  # fmt: skip
@@ -63,7 +65,7 @@ def run_of(path: Path) -> str:
     Raises:
         OSError: The file cannot be read.
     """
-    with path.open("rb") as file:
+    with opened(path) as file:
         lines = file.read(USER_BLOCK).split(b"\n")
     line = lines[1] if len(lines) > 1 else b""
     return line.removeprefix(RUN).decode("ascii", "replace") if line.startswith(RUN) else ""
@@ -76,7 +78,7 @@ def check_seal(path: Path) -> None:
         ValueError: It is not.
         OSError: It cannot be read.
     """
-    content = path.read_bytes()
+    content = read_bytes(path)
     body = content[USER_BLOCK:]
     if content.startswith(HDF5) or (content.startswith(bytes(USER_BLOCK)) and body.startswith(HDF5)):
         return  # written before there were seals, or by another program

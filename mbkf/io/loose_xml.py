@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import check_input, read_bytes
 
 _TOKEN = re.compile(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<raw>.*?)(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)"
@@ -84,9 +85,8 @@ def read_loose_xml(path: str | Path, never_nested: frozenset[str] = frozenset())
         FileFormatError: The file does not exist, or no element in it.
     """
     path = Path(path)
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name an OpenSim model (.osim) or a marker set (.xml)")
-    root = parse_loose_xml(_decoded(path.read_bytes()), never_nested)
+    check_input(path, "name an OpenSim model (.osim) or a marker set (.xml)")
+    root = parse_loose_xml(_decoded(read_bytes(path)), never_nested)
     if not root.children:
         raise FileFormatError(path, "not XML: it holds no element")
     return root

@@ -20,6 +20,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.io.files_read import read_bytes
 
 Variable: TypeAlias = "Array | Mapping[str, Array]"
 """An array, or a struct's arrays by field."""
@@ -51,7 +52,7 @@ def read_mat5(path: Path) -> dict[str, Variable]:
         OSError: The file cannot be read.
         ValueError: It is another kind of file, or a size in it does not fit.
     """
-    content = path.read_bytes()
+    content = read_bytes(path)
     if len(content) < _HEADER or content[126:128] not in (b"IM", b"MI"):
         raise ValueError("not a MATLAB 5 file")
     order = "<" if content[126:128] == b"IM" else ">"

@@ -71,7 +71,11 @@ def write_norms(norms: Norms, path: str | Path) -> None:
         {"kind": kind, "name": name, **_band_table(band)} for (kind, name), band in norms.measures.items()
     ]
     head = {"format": FORMAT, "format_version": FORMAT_VERSION, "name": norms.name}
-    write_toml(path, "Reference bands of a laboratory.", {**head, "curve": curves, "measure": measures})
+    write_toml(
+        path,
+        "Reference bands of a laboratory, written by mbkf.",
+        {**head, "curve": curves, "measure": measures},
+    )
 
 
 def read_norms(path: str | Path) -> Norms:

@@ -12,9 +12,7 @@ import tomllib
 from pathlib import Path
 
 from mbkf.conventions import JsonTable, TomlTable
-
-MOST_BYTES = 1 << 25
-"""Size of the largest file that is parsed; those of a person with all covariances have a hundredth of it."""
+from mbkf.io.files_read import SETTINGS_BYTES, read_bytes
 
 MOST_PARTS = 32
 """Parts of the longest key between dots."""
@@ -33,11 +31,10 @@ def read_toml(path: Path) -> TomlTable:
 
     Raises:
         OSError: The file does not exist, or it cannot be read.
-        ValueError: It is too large, not in UTF-8, or as for :func:`parse_toml`.
+        FileFormatError: It is a folder, pipe, socket or device, or too large.
+        ValueError: It is not in UTF-8, or as for :func:`parse_toml`.
     """
-    if path.stat().st_size > MOST_BYTES:
-        raise ValueError(f"it is larger than {MOST_BYTES >> 20} MB")
-    content = path.read_bytes()
+    content = read_bytes(path, SETTINGS_BYTES)
     if content.startswith(_UTF_16):
         raise UnicodeError("it is in UTF-16; save it in UTF-8")
     return parse_toml(content.decode("utf-8-sig"))

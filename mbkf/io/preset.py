@@ -64,7 +64,9 @@ def write_preset(preset: Preset, path: str | Path) -> None:
     table = asdict(preset)
     values = {key: table.pop(key) for key in ("values", "found", "likelihood")}
     full = {**table, **{key: value for key, value in values.items() if value or key == "values"}}
-    write_toml(path, "Settings of a filter of mbkf; use them with 'mbkf reconstruct --preset'.", full)
+    write_toml(
+        path, "Settings of a filter, written by mbkf; use them with 'mbkf reconstruct --preset'.", full
+    )
 
 
 def read_preset(path: str | Path) -> Preset:

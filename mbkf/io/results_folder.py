@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any, NotRequired, TypedDict, cast
 
 from mbkf.errors import FileFormatError
+from mbkf.io.atomic import write_text
 from mbkf.io.atomic_folder import replacing_folder
+from mbkf.io.files_read import SETTINGS_BYTES, read_text
 from mbkf.io.hdf5 import run_of
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
@@ -188,7 +190,7 @@ def write_result_files(reconstruction: Reconstruction, summary: Mapping[str, obj
     write_opensim(reconstruction, folder, run_id)
     plain = _without_nan({RUN_ID: run_id, **summary})
     text = json.dumps(plain, indent=2, allow_nan=False, ensure_ascii=False)
-    (folder / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+    write_text(folder / SUMMARY_FILE, text + "\n")
 
 
 def read_reconstruction(path: str | Path) -> Reconstruction:
@@ -215,7 +217,7 @@ def read_summary(folder: str | Path) -> Summary:
     """
     path, motion = Path(folder) / SUMMARY_FILE, Path(folder) / MOTION_FILE
     try:
-        summary = parse_json(path.read_text(encoding="utf-8"))
+        summary = parse_json(read_text(path, SETTINGS_BYTES))
         of_another_run = motion.is_file() and run_of(motion) != summary.get(RUN_ID, "")
     except (OSError, ValueError) as error:
         raise FileFormatError(path, f"cannot be read ({error}); make it with 'mbkf reconstruct'") from error

@@ -17,6 +17,7 @@ from mbkf.io.atomic import replacing
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
 from mbkf.io.dimensions import AXES, Unit, numbered
+from mbkf.io.files_read import check_input
 from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
 from mbkf.io.quantities import Quantity
 from mbkf.io.quantities_h5 import plain_json, read_record, write_array, write_labels, write_record
@@ -68,8 +69,7 @@ def read_h5(path: str | Path) -> Reconstruction:
         FileFormatError: The file is missing, damaged or something else.
     """
     source = Path(path)
-    if not source.is_file():
-        raise FileFormatError(source, "no such file; make it with 'mbkf reconstruct'")
+    check_input(source, "make it with 'mbkf reconstruct'")
     try:
         check_seal(source)
         with h5py.File(source, "r") as file:

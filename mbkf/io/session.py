@@ -166,12 +166,12 @@ def plain_events(events: Iterable[FootEvent]) -> list[dict[str, object]]:
 
 
 def write_session(notes: SessionNotes, path: str | Path) -> None:
-    """Writes a session file, whole or not at all; empty entries are left out.
+    """Writes a session file, whole or not at all, over a user's own; empty entries are left out.
 
     Raises:
         OSError: It cannot be written.
     """
-    write_text(path, session_text(notes))
+    write_text(path, session_text(notes), edits=True)
 
 
 def session_text(notes: SessionNotes) -> str:

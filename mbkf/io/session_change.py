@@ -13,9 +13,11 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import flush, replacing
+from mbkf.io.files_read import read_state_bytes
 from mbkf.io.leftovers import locked
 from mbkf.io.merging import Difference, merged
 from mbkf.io.session import SessionNotes, plain_session, read_session, session_of, session_text
+from mbkf.io.utf8 import encoded
 
 MOST_TRIES = 20
 """Tries against a program that writes the file again and again."""
@@ -83,8 +85,8 @@ def change_session(path: Path, before: SessionNotes, after: SessionNotes) -> Cha
 def _written(path: Path, text: str, seen: bytes | None) -> bool:
     """Writes the text, unless the file holds another content than the one seen; False then."""
     try:
-        with replacing(path) as partial:
-            partial.write_text(text, encoding="utf-8")
+        with replacing(path, edits=True) as partial:
+            partial.write_bytes(encoded(text))
             flush(partial)  # before the last look, so that little time lies between that and the exchange
             if _content(path) != seen:
                 raise _Overtaken
@@ -99,6 +101,6 @@ class _Overtaken(Exception):
 
 def _content(path: Path) -> bytes | None:
     try:
-        return path.read_bytes()
+        return read_state_bytes(path)
     except FileNotFoundError:
         return None

@@ -11,10 +11,22 @@ import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, ShapeError, UnknownName
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import replacing_text
+from mbkf.io.files_read import check_input, read_text
 from mbkf.io.text import blank_separated
+from mbkf.io.written import MARK
 
-_WRITTEN_BY_US = {"nrows", "ncolumns", "indegrees", "version", "datarows", "datacolumns", "range", "name"}
+_WRITTEN_BY_US = {
+    "nrows",
+    "ncolumns",
+    "indegrees",
+    "version",
+    "datarows",
+    "datacolumns",
+    "range",
+    "name",
+    "source",
+}
 _MOST_DIGITS = 16
 _MOST_HEADER_LINES = 500
 
@@ -69,9 +81,8 @@ def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
             names the line.
     """
     path = Path(path)
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name a MOT or STO file")
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    check_input(path, "name a MOT or STO file")
+    lines = read_text(path, errors="replace").splitlines()
     end = next((i for i, line in enumerate(lines[:_MOST_HEADER_LINES]) if _is_end(line)), None)
     if end is None:
         raise FileFormatError(path, "not a MOT or STO file (no line 'endheader')")
@@ -113,9 +124,10 @@ def write_storage(table: Table, path: str | Path) -> None:
     degrees = "yes" if table.in_degrees else "no"
     lines = [table.title or path.stem, "version=1", f"nRows={len(table.times_s)}"]
     lines += [f"nColumns={len(table.names) + 1}", f"inDegrees={degrees}"]
+    lines += [f"Source={MARK}"]
     lines += [f"{name}={text}" for name, text in table.header.items() if name.lower() not in _WRITTEN_BY_US]
     lines += ["endheader", "\t".join(["time", *table.names])]
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
+    with replacing_text(path) as file:
         file.write("\n".join(lines) + "\n")
         line = "\t".join(["%.10g", *["%.12g"] * len(table.names)]) + "\n"
         for time_s, row in zip(table.times_s.tolist(), table.columns.tolist(), strict=True):

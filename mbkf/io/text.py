@@ -12,6 +12,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
+from mbkf.io import files_read
 
 RATE_TOLERANCE = 0.005
 _EVEN_TOLERANCE = 0.5
@@ -38,9 +39,8 @@ def read_text(path: Path, kind: str) -> TextFile:
     Raises:
         FileFormatError: The file does not exist.
     """
-    if not path.is_file():
-        raise FileFormatError(path, f"no such file; name {kind}")
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    files_read.check_input(path, f"name {kind}")
+    text = files_read.read_text(path, errors="replace")
     return TextFile(path, text.splitlines(), text.endswith(("\n", "\r")))
 
 

@@ -16,6 +16,7 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import write_text
 from mbkf.io.plain_data import read_toml
+from mbkf.io.utf8 import storable
 
 T = TypeVar("T")
 
@@ -23,18 +24,20 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _SHOWN = 40
 
 
-def write_toml(path: str | Path, comment: str, table: Mapping[str, object]) -> None:
+def write_toml(path: str | Path, comment: str, table: Mapping[str, object], *, edits: bool = False) -> None:
     """Writes a table as a file, whole or not at all; entries that are None are left out.
 
     Args:
         path: The file.
         comment: First line of the file.
         table: Texts, numbers, arrays, tables and lists of tables, in any depth.
+        edits: The file is a user's own that is changed on purpose.
 
     Raises:
+        ProtectedFile: The file was read, or it is none of mbkf's own.
         OSError: The file cannot be written.
     """
-    write_text(path, toml_text(comment, table))
+    write_text(path, toml_text(comment, table), edits=edits)
 
 
 def toml_text(comment: str, table: Mapping[str, object]) -> str:
@@ -82,7 +85,7 @@ def _value(value: object) -> str:
 
 def _text(value: str) -> str:
     """A TOML basic string: JSON's, with DEL escaped, too."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(storable(value), ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 @contextmanager

@@ -10,13 +10,14 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import replacing_text
 from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.labels import unique_labels
 from mbkf.io.marker_capture import StatedUnit, marker_capture
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
+from mbkf.io.written import MARK
 
 _TITLES = (
     "DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units", "OrigDataRate", "OrigDataStartFrame",
@@ -126,8 +127,8 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
     values = markers.positions_m @ rotation_to_world("y") / METRES_PER_UNIT["mm"]
     rate, frames, count = repr(float(markers.rate_hz)), markers.frames, len(markers.names)
     table = values.reshape(frames, 3 * count)
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
-        file.write(f"PathFileType\t4\t(X/Y/Z)\t{Path(path).name}\n")
+    with replacing_text(path) as file:
+        file.write(f"PathFileType\t4\t(X/Y/Z)\t{Path(path).name}\t{MARK}\n")
         file.write("\t".join(_TITLES) + "\n")
         file.write(f"{rate}\t{rate}\t{frames}\t{count}\tmm\t{rate}\t1\t{frames}\n")
         file.write("Frame#\tTime\t" + "\t\t\t".join(markers.names) + "\t\t\n")

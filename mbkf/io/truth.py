@@ -15,6 +15,7 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, ShapeError
 from mbkf.io.atomic import replacing
 from mbkf.io.dimensions import ACCELERATION, CONFIGURATION, FORCE, METRE, RATE, SECOND, WRENCH
+from mbkf.io.files_read import check_input
 from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, check_seal, sealed
 from mbkf.io.quantities import attribute, check, quantity, texts
 from mbkf.io.quantities_h5 import read_record, write_record
@@ -93,8 +94,7 @@ def read_truth(path: str | Path) -> Truth:
         FileFormatError: The file is missing, damaged or something else.
     """
     source = Path(path)
-    if not source.is_file():
-        raise FileFormatError(source, "no such file; make it with 'mbkf synth'")
+    check_input(source, "make it with 'mbkf synth'")
     try:
         check_seal(source)
         with h5py.File(source, "r") as file:

@@ -18,6 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, MbkfError, UnknownName
+from mbkf.io.files_read import SETTINGS_BYTES, read_text
 from mbkf.io.plain_data import parse_toml
 from mbkf.model.body_checks import check_body
 from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
@@ -60,7 +61,7 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
     path = Path(body)
     if path.suffix == ".toml":
         try:
-            text = path.read_text(encoding="utf-8")
+            text = read_text(path, SETTINGS_BYTES)
         except (OSError, UnicodeDecodeError) as error:
             raise FileFormatError(
                 path, f"cannot be read ({error}); give the name of a body or the path of a body file"

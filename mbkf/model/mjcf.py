@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.subject import SubjectMarker
+from mbkf.io.written import MARK
 from mbkf.model.body import Body
 from mbkf.model.description import Segment
 from mbkf.model.skeleton import joint_origin
@@ -70,7 +71,11 @@ def to_mjcf(model: Body, markers: Sequence[SubjectMarker] = ()) -> str:
             size=_number(_SITE_RADIUS_M),
         )
     ET.indent(root)
-    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+    return (
+        f'<?xml version="1.0" encoding="utf-8"?>\n<!-- {MARK} -->\n'
+        + ET.tostring(root, encoding="unicode")
+        + "\n"
+    )
 
 
 def _add_joints(body: ET.Element, segment: Segment) -> None:

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import InvalidInput
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import write_text
+from mbkf.io.files_read import read_state
 from mbkf.model.protocol import Protocol, ProtocolMarker
 
 _HEADING = (
@@ -44,29 +45,29 @@ def protocol_text(protocol: Protocol, body: str = "") -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_protocol(protocol: Protocol, path: str | Path) -> None:
+def write_protocol(protocol: Protocol, path: str | Path, *, edits: bool = False) -> None:
     """Writes a protocol, whole or not at all; a user's own body is written beside it, as ``STEM_body.toml``.
 
     Args:
         protocol: The protocol.
         path: The file, which must end in ``.toml`` to be read again.
+        edits: The file is the marker set that was changed, and may be a user's own.
 
     Raises:
+        ProtectedFile: The file was read, or it is none of mbkf's own.
         InvalidInput: The file does not end in ``.toml``, or the body's file exists and holds another body.
         OSError: It cannot be written.
     """
     target = checked_name(path)
     text = protocol.body.text
     beside = target.with_name(f"{target.stem}_body.toml")
-    if text and not (beside.is_file() and beside.read_text(encoding="utf-8") == text):
+    if text and not (beside.is_file() and read_state(beside) == text):
         if beside.exists():
             raise InvalidInput(
                 f"{beside} exists and holds another body; remove it, or choose another name for the marker set"
             )
-        with replacing(beside) as partial:
-            partial.write_text(text, encoding="utf-8")
-    with replacing(target) as partial:
-        partial.write_text(protocol_text(protocol, beside.name if text else ""), encoding="utf-8")
+        write_text(beside, text)
+    write_text(target, protocol_text(protocol, beside.name if text else ""), edits=edits)
 
 
 def checked_name(path: str | Path) -> Path:

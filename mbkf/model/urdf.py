@@ -18,6 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.subject import SubjectMarker
+from mbkf.io.written import MARK
 from mbkf.model.body import Body
 from mbkf.model.clinical import AXES, ClinicalAngles
 from mbkf.model.clinical_table import Angle
@@ -71,7 +72,11 @@ def to_urdf(model: Body, markers: Sequence[SubjectMarker] = ()) -> str:
     urdf = yourdfpy.URDF(robot=robot, build_scene_graph=False, load_meshes=False)
     root = ET.fromstring(urdf.write_xml_string())
     ET.indent(root)
-    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+    return (
+        f'<?xml version="1.0" encoding="utf-8"?>\n<!-- {MARK} -->\n'
+        + ET.tostring(root, encoding="unicode")
+        + "\n"
+    )
 
 
 def _link(model: Body, segment: str) -> yourdfpy.Link:

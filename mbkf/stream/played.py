@@ -13,6 +13,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.resample import WHOLE
+from mbkf.io.utf8 import storable
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
 from mbkf.trial.inertial.motion_inputs import frame_times
 from mbkf.trial.inertial.on_body import frame_readings
@@ -101,7 +102,7 @@ def played(capture: Capture, unlabelled: bool = False, seed: int = 0) -> Played:
     for k, plate in enumerate(plates):
         wrench[:, k] = np.hstack([plate.force_n, plate.moment_nm])[:length]
     stream = StreamDescription(
-        Path(capture.path).stem or "capture",
+        storable(Path(capture.path).stem) or "capture",
         () if unlabelled else markers.names,
         markers.rate_hz,
         markers.start_time_s,

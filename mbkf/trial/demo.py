@@ -11,7 +11,7 @@ from mbkf.conventions import StageCallback
 from mbkf.io.atomic import check_folder
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_folder import Summary, write_reconstruction
+from mbkf.io.results_folder import RESULT_FILES, Summary, write_reconstruction
 from mbkf.io.subject import write_subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
@@ -24,7 +24,7 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.scale import scale
-from mbkf.trial.synth import synthesise, write_folder
+from mbkf.trial.synth import FILES, synthesise, write_folder
 
 COORDINATES = (
     "hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l",
@@ -89,7 +89,8 @@ def run_demo(
     Raises:
         MbkfError: The folder is a file, or motion, duration or filter is impossible.
     """
-    folder = check_folder(folder)
+    folder = check_folder(folder, (*FILES, "scaled.toml", LABELLED))
+    check_folder(folder / "result", RESULT_FILES)
     person, capture = synthesise(motion, seconds=seconds, seed=seed, progress=progress)
     write_folder(person, capture, folder)
     static = read_capture(folder / "static.c3d")

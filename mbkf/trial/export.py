@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import write_text
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
@@ -39,8 +39,7 @@ def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
     _check(kind, FORMATS, path)
     model = HumanModel.of(subject)
     text = FORMATS[kind](model, subject.markers)
-    with replacing(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+    write_text(path, text)
 
 
 def export_result(reconstruction: Reconstruction, kind: str, path: str | Path) -> None:

@@ -23,6 +23,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from mbkf.errors import InvalidInput
+from mbkf.io.utf8 import encoded
 from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 from mbkf.viz.admission import ADMITTED, Admission
 
@@ -79,7 +80,7 @@ class PageServer:
         port: int = 0,
         token: str | None = None,
     ) -> None:
-        self._text, self._greeting, self._newest = text.encode("utf-8"), greeting, newest
+        self._text, self._greeting, self._newest = encoded(text), greeting, newest
         self._hear = hear
         self._local = is_loopback(address)
         self.token = token or ("" if self._local else secrets.token_urlsafe(16))

@@ -51,7 +51,7 @@ def test_without_truth_nothing_is_compared(folder, tmp_path):
 def test_bad_input_is_refused(folder, tmp_path, refused):
     raw, subject = folder / "raw.c3d", folder / "subject.toml"
     refused(["label", raw, "--subject", subject, "--out", tmp_path / "x.csv"], "--out", ".c3d or .trc")
-    refused(["label", raw, "--subject", subject, "--out", raw], "would overwrite the raw capture")
+    refused(["label", raw, "--subject", subject, "--out", raw], "inputs are never replaced")
     refused(["label", tmp_path / "no.c3d", "--subject", subject, "--out", tmp_path / "x.c3d"], "no.c3d")
     refused(["label", raw, "--subject", tmp_path / "no.toml", "--out", tmp_path / "x.c3d"], "mbkf scale")
     refused(["label", raw, "--subject", subject], "--out")

@@ -1,6 +1,7 @@
 """Text is printed as it is, and numbers of a table are aligned right."""
 
-from mbkf.cli.tables import PIPED_WIDTH, table, terminal
+from mbkf.cli.tables import table, terminal
+from mbkf.cli.terminal import PIPED_WIDTH
 
 
 def test_markers_named_like_markup_are_printed_as_they_are(capsys):

@@ -4,6 +4,14 @@ import pytest
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import check_folder, replacing, write_text
+from mbkf.io.written import overwriting
+
+
+@pytest.fixture(autouse=True)
+def of_anyone():
+    """Replaces whatever stands there; tests/io/test_written.py is about files of others."""
+    with overwriting():
+        yield
 
 
 def test_new_content_takes_the_place_of_the_old_and_folders_are_made(tmp_path):

@@ -10,8 +10,16 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io import atomic_folder
 from mbkf.io.atomic_folder import replacing_folder
+from mbkf.io.written import overwriting
 
 NAMES = ("a.txt", "b.txt", "last.txt")
+
+
+@pytest.fixture(autouse=True)
+def of_anyone():
+    """Replaces whatever stands there; tests/io/test_written.py is about files of others."""
+    with overwriting():
+        yield
 
 
 def write(folder, text, names=NAMES):

@@ -2,6 +2,7 @@
 
 import pytest
 
+from mbkf.errors import FileFormatError
 from mbkf.io import plain_data
 from mbkf.io.plain_data import MOST_PARTS, parse_json, parse_toml, read_toml
 
@@ -66,7 +67,7 @@ def test_large_files_and_other_encodings_are_refused(tmp_path, monkeypatch):
     path.write_bytes("a = 1".encode("utf-16"))
     with pytest.raises(UnicodeError, match="UTF-16"):
         read_toml(path)
-    monkeypatch.setattr(plain_data, "MOST_BYTES", 4)
+    monkeypatch.setattr(plain_data, "SETTINGS_BYTES", 4)
     path.write_text("a = 1")
-    with pytest.raises(ValueError, match="larger than"):
+    with pytest.raises(FileFormatError, match="larger than"):
         read_toml(path)

@@ -24,6 +24,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput, ShapeError
+from mbkf.io.files_read import check_input, opened
 from mbkf.io.hdf5 import DAMAGED, HDF5, array
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
@@ -34,7 +35,7 @@ _NAMES = {"Accelerometer": "acc", "Gyroscope": "gyr", "Magnetometer": "mag"}
 
 def is_apdm(path: Path) -> bool:
     """True for an HDF5 file of such a recording."""
-    with path.open("rb") as file:
+    with opened(path) as file:
         if file.read(len(HDF5)) != HDF5:
             return False
     try:
@@ -50,8 +51,7 @@ def read_apdm(path: Path) -> tuple[ImuReadings, ...]:
     Raises:
         FileFormatError: The file is missing, damaged or no such recording.
     """
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name a recording of APDM's sensors (.h5)")
+    check_input(path, "name a recording of APDM's sensors (.h5)")
     try:
         with h5py.File(path, "r") as file:
             signals = _mobility_lab(file) if "Sensors" in file else _motion_studio(file)

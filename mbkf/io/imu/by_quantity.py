@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import check_regular, read_bytes
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
 from mbkf.io.imu.table import TableDefaults, table_signals
@@ -40,7 +41,7 @@ def is_by_quantity(path: Path) -> bool:
     if not zipfile.is_zipfile(path):
         return False
     try:
-        with zipfile.ZipFile(path) as archive:
+        with zipfile.ZipFile(check_regular(path)) as archive:
             return any(_kind(Path(name)) is not None for name in archive.namelist() if name.endswith(".csv"))
     except (zipfile.BadZipFile, ValueError):
         return False
@@ -95,10 +96,10 @@ def _tables(path: Path) -> Iterator[tuple[str, str, str]]:
         names = [one for one in sorted(path.glob("*.csv")) if _kind(one) is not None]
         for one in sorted(names, key=lambda one: _kind(one) == "free"):
             read_table_text(one)  # so that an error names this file
-            yield one.name, _kind(one) or "", decoded(one.read_bytes())
+            yield one.name, _kind(one) or "", decoded(read_bytes(one))
         return
     try:
-        with zipfile.ZipFile(path) as archive:
+        with zipfile.ZipFile(check_regular(path)) as archive:
             for entry in archive.infolist():
                 kind = _kind(Path(entry.filename)) if entry.filename.endswith(".csv") else None
                 if kind is not None and "/" not in entry.filename.removeprefix(f"{path.stem}/"):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import check_regular
 from mbkf.io.imu.by_quantity import is_by_quantity, read_by_quantity
 from mbkf.io.imu.clocks import on_one_clock
 from mbkf.io.imu.movella_dot import is_movella_dot, read_movella_dot
@@ -90,6 +91,8 @@ def read_imu(
     path = Path(path)
     if not path.exists():
         raise FileFormatError(path, "no such file; name a table of inertial readings")
+    if not path.is_dir():
+        check_regular(path)
     return plausible_readings(IMUS.format_of(path).read(path, ImuOptions(units, rate_hz)), str(path))
 
 
@@ -169,4 +172,4 @@ def _read_xsens_folder(path: Path, options: ImuOptions) -> tuple[ImuReadings, ..
 
 @register_imu_reader(FOLDER, title="folder of sensors' files")
 def _read_folder(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
-    return read_folder(path, IMUS.suffixes, lambda one: IMUS.format_of(one).read(one, options))
+    return read_folder(path, IMUS.suffixes, lambda one: IMUS.format_of(check_regular(one)).read(one, options))

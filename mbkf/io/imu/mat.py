@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, ShapeError
+from mbkf.io.files_read import check_input
 from mbkf.io.imu.readings import ImuReadings, rate_of
 from mbkf.io.mat5 import Variable, read_mat5
 
@@ -26,8 +27,7 @@ def read_imu_mat(path: str | Path) -> tuple[ImuReadings, ...]:
         FileFormatError: The file is missing, no MATLAB file, or neither set.
     """
     path = Path(path)
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name a MATLAB file of BROAD or qmt")
+    check_input(path, "name a MATLAB file of BROAD or qmt")
     try:
         return _sensors(path, read_mat5(path))
     except (ShapeError, ValueError, IndexError) as error:

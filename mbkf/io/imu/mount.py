@@ -60,7 +60,7 @@ def write_mounts(mounts: Sequence[ImuMount], path: str | Path) -> None:
         for one in mounts
     ]
     frames = "positions in the segment's frame, quaternions sensor -> segment (x, y, z, w)"
-    write_toml(path, f"Inertial sensors on a body; {frames}.", {"imu": entries})
+    write_toml(path, f"Inertial sensors on a body, written by mbkf; {frames}.", {"imu": entries})
 
 
 def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:

@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.files_read import check_input
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
 
@@ -60,8 +61,7 @@ def _parsed(
     path: Path,
 ) -> tuple[list[str], list[str], float, dict[str, list[str]], Array]:
     """Names of sensors and segments, rate, the texts of each quantity and the times of the frames."""
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name an MVN file (.mvnx)")
+    check_input(path, "name an MVN file (.mvnx)")
     sensors, segments, rate = list[str](), list[str](), 0.0
     rows: dict[str, list[str]] = {tag: [] for tag in _WANTED}
     stamps: list[str] = []

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import opened
 from mbkf.io.imu.clocks import on_one_clock
 from mbkf.io.imu.column_names import parse_column_name
 from mbkf.io.imu.readings import ImuReadings
@@ -79,7 +80,7 @@ def read_folder(
 
 def _names_readings(path: Path) -> bool:
     """True for a text with a row near its beginning that names three or more columns of readings."""
-    with path.open("rb") as file:
+    with opened(path) as file:
         head = decoded(file.read(_HEAD_BYTES))
     rows = (line.replace("\t", ",").replace(";", ",").split(",") for line in head.splitlines()[:100])
     return any(sum(parse_column_name(cell.strip('" ')) is not None for cell in row) >= 3 for row in rows)

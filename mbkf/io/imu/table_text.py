@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import check_input, read_bytes
 
 _COMMENT = ("#", "//", "%")
 _DELIMITERS = "\t;,"
@@ -49,9 +50,8 @@ def read_table_text(path: Path) -> TableText:
     Raises:
         FileFormatError: The file is missing, damaged or has no rows.
     """
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name a CSV table of inertial readings")
-    return split_table(path, decoded(path.read_bytes()))
+    check_input(path, "name a CSV table of inertial readings")
+    return split_table(path, decoded(read_bytes(path)))
 
 
 def split_table(path: Path, text: str) -> TableText:

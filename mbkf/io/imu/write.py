@@ -10,8 +10,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import replacing_text
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.written import MARK
 
 _PARTS = (
     ("specific_force_mps2", "acc", "m/s^2"),
@@ -44,7 +45,12 @@ def write_imu_csv(readings: Sequence[ImuReadings], path: str | Path) -> None:
             names += [f"{one.name} quat_{axis}" for axis in "xyzw"]
             columns += list(one.orientation.T)
     frames = {one.frame for one in readings if one.orientation is not None}
-    _write(path, [f"# orientation: {frame}" for frame in sorted(frames)], names, np.column_stack(columns))
+    _write(
+        path,
+        [f"# {MARK}", *(f"# orientation: {frame}" for frame in sorted(frames))],
+        names,
+        np.column_stack(columns),
+    )
 
 
 def write_orientation_csv(
@@ -76,11 +82,11 @@ def write_orientation_csv(
     if sd_rad is not None:
         names += [f"sd_{axis} [deg]" for axis in ("north", "west", "up")]
         parts.append(_DEGREES * sd_rad)
-    _write(path, [f"# {note}"], names, np.hstack(parts))
+    _write(path, [f"# {MARK}; {note}"], names, np.hstack(parts))
 
 
 def _write(path: str | Path, notes: Sequence[str], names: Sequence[str], table: Array) -> None:
-    with replacing(path) as partial, partial.open("w", encoding="utf-8", newline="\n") as file:
+    with replacing_text(path) as file:
         for line in (*notes, ",".join(names)):
             file.write(line + "\n")
         for row in table.tolist():

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
+from mbkf.io.files_read import check_input, read_bytes
 from mbkf.io.imu.channels import Channel, channel_signals
 from mbkf.io.imu.column_names import parse_column_name
 from mbkf.io.imu.readings import ImuReadings
@@ -39,8 +40,7 @@ def read_xdf(path: Path, units: Mapping[str, str] | None = None) -> tuple[ImuRea
         InvalidInput: A unit is stated nowhere.
         UnknownName: Unknown unit.
     """
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name a recording of Lab Streaming Layer (.xdf)")
+    check_input(path, "name a recording of Lab Streaming Layer (.xdf)")
     signals = list[Signal]()
     try:
         for stream in _streams(path):
@@ -56,7 +56,7 @@ def _streams(path: Path) -> Sequence[dict[str, Any]]:
     """The streams that pyxdf finds; an error in its log, as where chunks are cut, is an error here."""
     import pyxdf
 
-    content = path.read_bytes()
+    content = read_bytes(path)
     if path.suffix.lower() == ".xdfz":
         content = gzip.decompress(content)
     with _errors_of("pyxdf.pyxdf") as errors, np.errstate(all="ignore"):

@@ -15,6 +15,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.files_read import check_input, read_text
 from mbkf.io.imu.clocks import on_one_clock
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
@@ -62,9 +63,8 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
         InvalidInput: The rate is stated nowhere.
     """
     path = Path(path)
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name an Xsens text export")
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    check_input(path, "name an Xsens text export")
+    lines = read_text(path, errors="replace").splitlines()
     head = next((k for k, line in enumerate(lines[:30]) if line.startswith(COUNTER)), None)
     if head is None:
         raise FileFormatError(path, f"not an Xsens text export (no column {COUNTER})")

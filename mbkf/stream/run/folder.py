@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.errors import MbkfError
-from mbkf.io.atomic import replacing
 from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import Subject, read_subject, write_subject
 from mbkf.stream.source import StreamDescription
@@ -49,8 +48,7 @@ def open_log(
         place.rename(next(path for path in earlier if not path.exists()))
     kept = LiveStream(stream.trial, stream.rate_hz, stream.start_time_s, stream.plates, stream.sensors)
     log = LiveLog(place, kept, rows, dict(settings), list(names))
-    with replacing(place / SUBJECT_FILE) as partial:
-        write_subject(subject, partial)
+    write_subject(subject, place / SUBJECT_FILE)
     return log
 
 

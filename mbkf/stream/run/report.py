@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from mbkf.io.atomic import new_file
+from mbkf.io.utf8 import encoded
 from mbkf.stream.receiving.receiver import FrameCounts
 
 LIVE_FILE = "live.json"
@@ -32,8 +34,7 @@ class ReportFile:
             OSError: It cannot be written.
         """
         self._path, self._lock = path, threading.Lock()
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("wb") as file:
+        with new_file(path) as file:
             file.write(b"{}\n".ljust(ROOM_BYTES))
 
     def write(self, report: Mapping[str, object], last: bool = False) -> None:
@@ -42,9 +43,10 @@ class ReportFile:
         Raises:
             OSError: It is larger than its room, and no other is left.
         """
-        text = json.dumps(_finite(report), indent=2, allow_nan=False, ensure_ascii=False).encode() + b"\n"
+        text = json.dumps(_finite(report), indent=2, allow_nan=False, ensure_ascii=False)
+        content = encoded(text + "\n")
         with self._lock, self._path.open("r+b") as file:
-            file.write(text if last else text.ljust(ROOM_BYTES))
+            file.write(content if last else content.ljust(ROOM_BYTES))
             if last:
                 file.truncate()
 

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
+from mbkf.io.files_read import check_input
 from mbkf.io.results import Reconstruction
 from mbkf.io.session import FootEvent
 from mbkf.trial.gait.curves import SideCurve, side_curves
@@ -48,8 +49,7 @@ def read_curves(path: Path) -> pa.Table:
     Raises:
         FileFormatError: It is missing or damaged.
     """
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; delete its folder and run the batch again")
+    check_input(path, "delete its folder and run the batch again")
     try:
         return pq.read_table(path, schema=SCHEMA, page_checksum_verification=True)
     except (pa.ArrowException, OSError, ValueError) as error:

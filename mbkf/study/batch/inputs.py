@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import write_text
+from mbkf.io.files_read import opened, read_state
 from mbkf.io.plain_data import parse_json
 from mbkf.version import __version__
 
@@ -36,7 +37,7 @@ def fingerprint(files: Sequence[Path], settings: Mapping[str, object]) -> dict[s
 def is_made_from(record: Path, made_from: Mapping[str, object]) -> bool:
     """True where a record lists the same inputs; file names do not count, contents do."""
     try:
-        found = parse_json(record.read_text(encoding="utf-8"))
+        found = parse_json(read_state(record))
         return _contents(found) == _contents(made_from)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False
@@ -49,7 +50,7 @@ def read_record(record: Path) -> dict[str, object]:
         FileFormatError: It is missing or damaged.
     """
     try:
-        return dict(parse_json(record.read_text(encoding="utf-8")))
+        return dict(parse_json(read_state(record)))
     except (OSError, ValueError, TypeError) as error:
         raise FileFormatError(record, f"cannot be read ({error}); run the batch again") from error
 
@@ -60,8 +61,7 @@ def write_record(record: Path, made_from: Mapping[str, object]) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    with replacing(record) as partial:
-        partial.write_text(json.dumps(made_from, indent=2) + "\n", encoding="utf-8")
+    write_text(record, json.dumps(made_from, indent=2) + "\n")
 
 
 def _contents(made_from: Mapping[str, object]) -> tuple[list[object], object, object]:
@@ -72,5 +72,5 @@ def _contents(made_from: Mapping[str, object]) -> tuple[list[object], object, ob
 
 
 def _digest(file: Path) -> str:
-    with file.open("rb") as opened:
-        return hashlib.file_digest(opened, "sha256").hexdigest()
+    with opened(file) as content:
+        return hashlib.file_digest(content, "sha256").hexdigest()

@@ -20,12 +20,14 @@ person's rows.
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import SETTINGS_BYTES, read_text
 from mbkf.io.plain_data import read_toml
 from mbkf.study.batch.folder import STATED, checked_entry
 from mbkf.study.batch.plan import MOST_MOVING, Files, Person, Plan, Trial, planned
@@ -60,8 +62,7 @@ def plan_of_csv(file: Path) -> Plan:
         InvalidInput: It names no trial, or one place twice.
     """
     try:
-        with file.open(encoding="utf-8-sig", newline="") as opened:
-            rows = list(csv.DictReader(opened))
+        rows = list(csv.DictReader(io.StringIO(read_text(file, SETTINGS_BYTES))))
     except (OSError, ValueError, csv.Error) as error:
         raise FileFormatError(file, f"cannot be read as a list in CSV ({error})") from error
     known = set(rows[0]) if rows else set()

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Protocol
 
 from mbkf.errors import MbkfError
+from mbkf.io.files_read import own_files_read
 from mbkf.numerics.threads import single_threaded
 from mbkf.study.batch.person import subject_of
 from mbkf.study.batch.plan import Person, Trial
@@ -111,7 +112,7 @@ def _outcome(work: Callable[[], Outcome]) -> Outcome:
     """Result of the work or its error, with time and memory."""
     begin = time.perf_counter()
     try:
-        with single_threaded():
+        with single_threaded(), own_files_read():
             found = work()
     except Exception as error:  # one bad file costs only itself
         found = failed(error)

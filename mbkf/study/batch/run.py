@@ -18,7 +18,7 @@ from mbkf.study.batch.folder import plan_of_folder
 from mbkf.study.batch.lists import plan_of_csv, plan_of_toml
 from mbkf.study.batch.outcome import Outcome, ReconstructTrial, ScalePerson, Status, Task
 from mbkf.study.batch.plan import Person, Plan, Trial
-from mbkf.study.batch.tables import write_tables
+from mbkf.study.batch.tables import TABLES, write_tables
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -59,7 +59,7 @@ def batch(
     """
     if workers is not None and workers < 1:
         raise InvalidInput(f"{workers} workers can do nothing; give one or more")
-    target, plan = check_folder(out), plan_of(Path(source))
+    target, plan = check_folder(out, TABLES), plan_of(Path(source))
     if shard is not None:
         plan = plan.shard(*shard)
     count = workers or cpu_count() or 1

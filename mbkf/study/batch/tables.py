@@ -13,8 +13,10 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
 from mbkf.io.atomic import replacing
+from mbkf.io.files_read import read_state
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results_folder import RUN_ID, SUMMARY_FILE
+from mbkf.io.utf8 import storable
 from mbkf.study.batch.curves import SCHEMA, read_curves
 from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.plan import Plan, Trial
@@ -39,6 +41,9 @@ OWN = pa.schema(
 """Columns of every trial. status: done, unchanged (done before, from the same) or failed, and then why. seconds,
 peak_memory_mb: of the worker. folder: of the results, in the batch's folder. The other columns are those of
 summary.json, with a dot between the keys of its tables; lists stand as JSON."""
+
+TABLES = ("summary.parquet", "summary.csv", "curves.parquet", "curves.csv")
+"""Files in the batch's folder."""
 
 Row = dict[str, object]
 
@@ -107,7 +112,7 @@ def _summary(trial: Trial, outcome: Outcome, out: Path) -> Mapping[str, object]:
     if outcome.status == Status.FAILED:
         return {}
     try:
-        found = parse_json((out / trial.place / SUMMARY_FILE).read_text(encoding="utf-8"))
+        found = parse_json(read_state(out / trial.place / SUMMARY_FILE))
     except (OSError, ValueError):
         return {}
     return {key: value for key, value in found.items() if key != RUN_ID}
@@ -137,7 +142,7 @@ def _as(kind: pa.DataType, value: object) -> object:
     if value is None:
         return None
     if kind == pa.string():
-        return value if isinstance(value, str) else json.dumps(value)
+        return storable(value) if isinstance(value, str) else json.dumps(value)
     return float(value) if kind == pa.float64() and isinstance(value, int | float) else value
 
 
@@ -151,7 +156,9 @@ def _curves(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> Iterator[pa.Ta
         for place, name in enumerate(
             (trial.person.name, trial.person.session, trial.name or trial.path.stem)
         ):
-            table = table.add_column(place, OWN.names[place], pa.array([name] * len(table), pa.string()))
+            table = table.add_column(
+                place, OWN.names[place], pa.array([storable(name)] * len(table), pa.string())
+            )
         yield table
 
 

@@ -6,9 +6,10 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+from mbkf.io.atomic import check_folder, write_text
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.capture import read_capture
-from mbkf.io.results_folder import LABELS_FILE, read_reconstruction, write_result_files
+from mbkf.io.results_folder import LABELS_FILE, RESULT_FILES, read_reconstruction, write_result_files
 from mbkf.io.session import plain_events
 from mbkf.io.subject import read_subject
 from mbkf.study.batch.curves import write_curves
@@ -47,6 +48,7 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
         made_from["events"] = plain_events(trial.events)
     if is_made_from(target / RECORD, made_from):
         return curves_anew(trial, out)
+    check_folder(target, (*RESULT_FILES, CURVES_FILE))
     person = read_subject(subject)
     given = named(read_capture(trial.path, forces=trial.forces), person)
     result = reconstruct(given.capture, person, settings=settings)
@@ -56,7 +58,7 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
         write_curves(result, partial / CURVES_FILE, trial.events)
         if given.summary is not None:
             labels = json.dumps(given.summary, indent=2) + "\n"
-            (partial / LABELS_FILE).write_text(labels, encoding="utf-8")
+            write_text(partial / LABELS_FILE, labels)
         write_record(partial / RECORD, made_from)
     return True
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import write_text
 from mbkf.io.bvh import BvhJoint, bvh_text
 from mbkf.io.results import Reconstruction
 from mbkf.trial.exchange.animation import TO_ANIMATION, AnimatedBody, animated_body, held_rows
@@ -27,8 +27,7 @@ def write_result_bvh(r: Reconstruction, path: str | Path) -> None:
     """
     body = animated_body(r, held_rows(even_rows(r.times_s, r.rate_hz), r.tracked))
     text = bvh_text(bvh_joints(body), body.root_m, body.rotations, r.rate_hz)
-    with replacing(path) as partial:
-        partial.write_text(text, encoding="ascii")
+    write_text(path, text)
 
 
 def bvh_joints(body: AnimatedBody) -> tuple[BvhJoint, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 from collections.abc import Iterable, Sequence
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mbkf.io.atomic import write_text
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.trial.inertial.stride import StrideMeasurement, stride_summary
 
@@ -39,7 +41,7 @@ def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
         _write(partial / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
         _write(partial / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
         text = json.dumps(stride_summary(measured), indent=2, allow_nan=False, ensure_ascii=False)
-        (partial / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+        write_text(partial / SUMMARY_FILE, text + "\n")
     return Path(folder).absolute()
 
 
@@ -66,7 +68,8 @@ def _cell(value: float) -> str:
 
 
 def _write(path: Path, columns: Sequence[str], rows: Iterable[list[str]]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(rows)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(columns)
+    writer.writerows(rows)
+    write_text(path, text.getvalue())

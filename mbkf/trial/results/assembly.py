@@ -14,6 +14,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.result_groups import Measurements, Provenance, Quality
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
+from mbkf.io.utf8 import storable
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.preparation.filters import FilterInputs
@@ -67,7 +68,7 @@ def assemble(
     of_track = track_warnings(result, motion.dof_names, inputs.unobservable, instrument)
     return Reconstruction.of(
         Provenance(
-            trial=Path(capture.path).stem or "capture",
+            trial=storable(Path(capture.path).stem) or "capture",
             protocol=subject.protocol,
             filter=settings.filter,
             version=__version__,

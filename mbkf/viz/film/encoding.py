@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
+from mbkf.io.written import MARK
 from mbkf.stream.libraries import library
 from mbkf.viz.film.pictures import Picture
 
@@ -30,6 +31,7 @@ def write_mp4(pictures: Iterable[Picture], rate_hz: int, path: Path) -> None:
     """
     av = library("av", "a film as MP4", "film")
     with av.open(str(path), "w", format="mp4", options={"movflags": "+faststart"}) as file:
+        file.metadata["comment"] = MARK
         stream = None
         for number, picture in enumerate(pictures):
             if stream is None:
@@ -62,5 +64,12 @@ def write_gif(pictures: Iterable[Picture], rate_hz: int, path: Path) -> None:
     )
     first = next(reduced)
     first.save(
-        path, "GIF", save_all=True, append_images=reduced, duration=1000 // rate_hz, loop=0, disposal=1
+        path,
+        "GIF",
+        save_all=True,
+        append_images=reduced,
+        duration=1000 // rate_hz,
+        loop=0,
+        disposal=1,
+        comment=MARK.encode(),
     )

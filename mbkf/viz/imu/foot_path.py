@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbkf.io.atomic import replacing
+from mbkf.io.written import MARK
 from mbkf.numerics.runs import runs
 from mbkf.trial.inertial.stride import FootResult, StrideMeasurement
 
@@ -57,7 +58,8 @@ def foot_path_figure(measured: StrideMeasurement) -> Figure:
 def write_foot_path(measured: StrideMeasurement, path: str | Path) -> None:
     """Draws the figure into a file, of the kind its suffix names (.png, .svg, .pdf)."""
     with replacing(path) as partial:
-        foot_path_figure(measured).savefig(partial)
+        place = "Software" if partial.suffix.lower() == ".png" else "Creator"
+        foot_path_figure(measured).savefig(partial, metadata={place: MARK})
 
 
 def _draw_path(axes: Axes, foot: FootResult, colour: str) -> None:

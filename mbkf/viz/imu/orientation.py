@@ -12,6 +12,7 @@ from mbkf.conventions import Array
 from mbkf.imu.frames import conjugate, multiply
 from mbkf.imu.orientation import Orientation
 from mbkf.io.atomic import replacing
+from mbkf.io.written import MARK
 
 FIRST, SECOND, DIFFERENCE = "#1f6fb4", "#e06c10", "#444444"
 _DEGREES = 180.0 / np.pi
@@ -58,7 +59,7 @@ def write_comparison(first: Orientation, second: Orientation, path: str | Path) 
         one.grid(color="#e4e6e8", linewidth=0.7)
         one.spines[["top", "right"]].set_visible(False)
     with replacing(path) as partial:
-        figure.savefig(partial, dpi=110)
+        figure.savefig(partial, dpi=110, metadata={"Software": MARK})
 
 
 def _both(axes: Axes, first: Orientation, second: Orientation, a: Array, b: Array, name: str) -> None:

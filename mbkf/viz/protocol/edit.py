@@ -9,7 +9,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mbkf.errors import InvalidInput, MbkfError
+from mbkf.io.files_read import read_state_bytes
 from mbkf.io.plain_data import parse_json
+from mbkf.io.written import check_replaceable
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.model.protocol_file import checked_name, write_protocol
 from mbkf.trial.protocol.editing import Choice, edited
@@ -26,6 +28,7 @@ class MarkerSetEdit:
         protocol: The set to begin with.
         standing: The capture, with the body beside it.
         out: The file that saving writes.
+        edits: It is the marker set to begin with, and may be a user's own.
 
     Attributes:
         done: Set when the page reports that the person is done.
@@ -34,10 +37,14 @@ class MarkerSetEdit:
 
     Raises:
         InvalidInput: The file's name is not possible for a marker set.
+        ProtectedFile: The file is an input, or mbkf did not write it; with ``edits`` it may be either.
     """
 
-    def __init__(self, protocol: Protocol, standing: Standing, out: str | Path) -> None:
+    def __init__(
+        self, protocol: Protocol, standing: Standing, out: str | Path, *, edits: bool = False
+    ) -> None:
         self._protocol, self._standing, self._out = protocol, standing, checked_name(out)
+        check_replaceable(self._out, edits=edits)
         self._lock, self._before = threading.Lock(), self._content()
         self.done, self.file = threading.Event(), self._out.name
         self.saved: Protocol | None = None
@@ -90,7 +97,7 @@ class MarkerSetEdit:
         if self._content() not in (None, self._before):
             base = self._chosen(asked.get("before"))
             made, differing = merged_sets(base, made, load_protocol(self._out), over)
-        write_protocol(made, self._out)
+        write_protocol(made, self._out, edits=True)
         self.saved = made
         answer = {"saved": self.file, "markers": len(made.markers), "ignored": len(made.ignored)}
         if not differing or over:
@@ -107,7 +114,7 @@ class MarkerSetEdit:
     def _content(self) -> bytes | None:
         """The content of the file; None before it is there."""
         try:
-            return self._out.read_bytes()
+            return read_state_bytes(self._out)
         except FileNotFoundError:
             return None
 
@@ -119,6 +126,7 @@ class EditPage(MarkerSetEdit):
         protocol: The set to begin with.
         standing: The capture, with the body beside it.
         out: The file that saving writes.
+        edits: As for :class:`MarkerSetEdit`.
         port: 0 for any free one.
 
     Attributes:
@@ -128,8 +136,10 @@ class EditPage(MarkerSetEdit):
         InvalidInput: The port is not free, or the file's name is not possible for a marker set.
     """
 
-    def __init__(self, protocol: Protocol, standing: Standing, out: str | Path, *, port: int = 0) -> None:
-        super().__init__(protocol, standing, out)
+    def __init__(
+        self, protocol: Protocol, standing: Standing, out: str | Path, *, port: int = 0, edits: bool = False
+    ) -> None:
+        super().__init__(protocol, standing, out, edits=edits)
         self._server = PageServer(self.text(), hear=self.hear, port=port, token=secrets.token_urlsafe(16))
         self.url = self._server.url
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from mbkf.errors import FileFormatError
+from mbkf.io.files_read import SETTINGS_BYTES, read_text
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import LABELS_FILE
@@ -68,7 +69,7 @@ def read_labels(path: str | Path) -> dict[str, object]:
     """
     source = Path(path)
     try:
-        found = parse_json(source.read_text(encoding="utf-8"))
+        found = parse_json(read_text(source, SETTINGS_BYTES))
     except (OSError, ValueError) as error:
         raise FileFormatError(source, f"cannot be read ({error}); make it with 'mbkf label'") from error
     if "ghosts_dropped" not in found:

@@ -1,0 +1,68 @@
+"""Files named on the command line: inputs are protected, and outputs looked at, before a command begins its work."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from mbkf.cli.options import OUTPUTS, Output
+from mbkf.io.atomic import check_file
+from mbkf.io.files_read import files_read, own_files_read
+from mbkf.io.written import overwriting
+
+
+@contextmanager
+def inputs_protected(args: argparse.Namespace) -> Iterator[None]:
+    """Protects the files that the options name as inputs, and permits replacing others with ``--overwrite``.
+
+    Raises:
+        ProtectedFile: An output is an input.
+    """
+    outputs = {one.dest for one in outputs_of(args)}
+    with own_files_read(everywhere=True), overwriting(getattr(args, "overwrite", False)):
+        for name, value in vars(args).items():
+            if name not in outputs:
+                for path in _files(value):
+                    files_read().add(path)
+        yield
+
+
+def check_outputs(args: argparse.Namespace) -> None:
+    """Looks at the files that a command is to write; those in a folder are looked at by the command.
+
+    Raises:
+        ProtectedFile: One was read, or is none of mbkf's own.
+        FileFormatError: A file stands in the place of its folder.
+        PermissionError: Its folder may not be written to.
+    """
+    for one in outputs_of(args):
+        path = getattr(args, one.dest)
+        if path is not None and not one.folder:
+            check_file(path, edits=edits_own_file(args, one))
+
+
+def outputs_of(args: argparse.Namespace) -> tuple[Output, ...]:
+    """The options of the command that name a file or folder to write."""
+    return tuple(getattr(args, OUTPUTS, ()))
+
+
+def edits_own_file(args: argparse.Namespace, output: Output) -> bool:
+    """True where a command is to write the file that it edits."""
+    out, edited = getattr(args, output.dest), getattr(args, output.edits, None)
+    return out is not None and edited is not None and Path(out).exists() and _is_same(Path(out), Path(edited))
+
+
+def _is_same(first: Path, second: Path) -> bool:
+    return second.exists() and first.samefile(second)
+
+
+def _files(value: object) -> Iterator[Path]:
+    """The files that a value names, with "file:" before it or not."""
+    for one in value if isinstance(value, list | tuple) else [value]:
+        if isinstance(one, str):
+            for text in (one, one.removeprefix("file:")):
+                with suppress(OSError, ValueError):  # a text that cannot be a name
+                    if Path(text).is_file():
+                        yield Path(text)
