@@ -139,7 +139,7 @@ def write_baseline(baseline: Baseline, file: Path = FILE) -> None:
         f"better = {_text(one.better)}\ntolerance = {one.tolerance!r}\n"
         for name, one in baseline.metrics.items()
     ]
-    with replacing(file) as partial:
+    with replacing(file, edits=True) as partial:
         partial.write_text("\n".join(parts), encoding="utf-8")
 
 

@@ -66,11 +66,11 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.results_folder import RESULT_FILES
     from mbkf.model.human import HumanModel
     from mbkf.stream.run.report import LIVE_FILE
-    from mbkf.stream.run.sensor_standing import SensorStanding
+    from mbkf.stream.run.sensor_standing import MOUNTS_FILE, SensorStanding
     from mbkf.stream.run.session import LiveSession
     from mbkf.trial.preparation.settings import ReconstructSettings
 
-    person, folder = person_of(args), check_folder(args.out, (LIVE_FILE, *RESULT_FILES))
+    person, folder = person_of(args), check_folder(args.out, (LIVE_FILE, MOUNTS_FILE, *RESULT_FILES))
     model = HumanModel.of(person)
     posture = posture_of(args, model)
     settings = ReconstructSettings(

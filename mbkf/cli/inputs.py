@@ -33,7 +33,7 @@ def check_outputs(args: argparse.Namespace) -> None:
     """Looks at the files that a command is to write; those in a folder are looked at by the command.
 
     Raises:
-        ProtectedFile: One was read, or is none of mbkf's own.
+        ProtectedFile: One was read, or mbkf did not write it.
         FileFormatError: A file stands in the place of its folder.
         PermissionError: Its folder may not be written to.
     """

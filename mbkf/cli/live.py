@@ -103,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.subject import Subject
     from mbkf.stream.run.report import LIVE_FILE
     from mbkf.stream.run.session import LiveSession
-    from mbkf.stream.run.standing import StandingStart
+    from mbkf.stream.run.standing import SUBJECT_FILE, StandingStart
     from mbkf.trial.preparation.presets import with_preset
     from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -112,7 +112,8 @@ def run(args: argparse.Namespace) -> int:
     for option, given in (("--from", args.source), ("--out", args.out)):
         if given is None:
             raise InvalidInput(f"{option} is missing; see mbkf live --help")
-    person, folder = _person(args), check_folder(args.out, (LIVE_FILE, *RESULT_FILES))
+    scaled = (SUBJECT_FILE,) if args.subject is None else ()
+    person, folder = _person(args), check_folder(args.out, (LIVE_FILE, *scaled, *RESULT_FILES))
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
         lag_s=lag_seconds(args),

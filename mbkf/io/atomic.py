@@ -31,7 +31,7 @@ def replacing(path: str | Path, *, edits: bool = False) -> Iterator[Path]:
         edits: It is one of the user's own that this change is meant for (:func:`check_replaceable`).
 
     Raises:
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         OSError: The folder cannot be made or written to.
     """
     target = Path(path)
@@ -67,7 +67,7 @@ def write_text(path: str | Path, text: str, *, edits: bool = False) -> None:
         edits: As for :func:`replacing`.
 
     Raises:
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         OSError: The file cannot be written.
     """
     with replacing(path, edits=edits) as partial:
@@ -79,7 +79,7 @@ def replacing_text(path: str | Path) -> Iterator[TextIO]:
     """As :func:`replacing`, with the temporary file open for text, as :func:`write_text` writes it.
 
     Raises:
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         OSError: The file cannot be written.
     """
     unstorable = "backslashreplace"
@@ -94,7 +94,7 @@ def new_file(path: str | Path) -> BinaryIO:
     """Opens a file that grows while it can be read already, such as a log; whatever stands there is checked first.
 
     Raises:
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         OSError: It cannot be written.
     """
     target = Path(path)
@@ -125,7 +125,7 @@ def check_file(path: str | Path, *, edits: bool = False) -> Path:
 
     Raises:
         FileFormatError: A folder stands there, or a file in the place of its folder.
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         PermissionError: Its folder may not be written to, or not be made.
     """
     target = Path(path)
@@ -143,7 +143,7 @@ def check_folder(folder: str | Path, files: Sequence[str] = ()) -> Path:
 
     Raises:
         FileFormatError: A file stands there or on the way, or a folder in the place of a file.
-        ProtectedFile: One of the files was read, or is none of mbkf's own.
+        ProtectedFile: One of the files was read, or mbkf did not write it.
         PermissionError: It may not be written to, or not be made.
     """
     target = Path(folder).absolute()

@@ -35,7 +35,7 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
 
     Raises:
         FileFormatError: A file stands where a folder is needed, or a folder where a file is.
-        ProtectedFile: A file that would be replaced was read, or is none of mbkf's own.
+        ProtectedFile: A file that would be replaced was read, or mbkf did not write it.
         OSError: The folder cannot be made or written to.
     """
     target = check_folder(folder).resolve()

@@ -12,8 +12,8 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 from mbkf.errors import FileFormatError
 
@@ -215,7 +215,7 @@ def read_state_bytes(path: Path) -> bytes:
 @contextmanager
 def opened(
     path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str = "name a file"
-) -> Iterator[BinaryIO]:
+) -> Iterator[BufferedReader]:
     """Opens a file to read its bytes.
 
     Raises:

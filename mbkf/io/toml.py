@@ -34,7 +34,7 @@ def write_toml(path: str | Path, comment: str, table: Mapping[str, object], *, e
         edits: The file is a user's own that is changed on purpose.
 
     Raises:
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         OSError: The file cannot be written.
     """
     write_text(path, toml_text(comment, table), edits=edits)

@@ -96,7 +96,7 @@ def check_replaceable(path: str | Path, *, edits: bool = False) -> None:
             mbkf's own.
 
     Raises:
-        ProtectedFile: This task read the file, or it is none of mbkf's own and :func:`overwriting` is not on.
+        ProtectedFile: This task read the file, or mbkf did not write it and :func:`overwriting` is off.
         OSError: It cannot be looked at.
     """
     target = Path(path)

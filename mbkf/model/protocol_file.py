@@ -54,7 +54,7 @@ def write_protocol(protocol: Protocol, path: str | Path, *, edits: bool = False)
         edits: The file is the marker set that was changed, and may be a user's own.
 
     Raises:
-        ProtectedFile: The file was read, or it is none of mbkf's own.
+        ProtectedFile: The file was read, or mbkf did not write it.
         InvalidInput: The file does not end in ``.toml``, or the body's file exists and holds another body.
         OSError: It cannot be written.
     """

@@ -112,11 +112,9 @@ def test_synth_leaves_the_captures_of_a_laboratory(tmp_path, capsys):
     assert main(["synth", "--seconds", "0.5", "--out", str(tmp_path)]) == 2
     assert "trial.c3d" in capsys.readouterr().err
     assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [("trial.c3d", b"raw")]
-    assert (
-        main(["synth", "--motion", "squat", "--seconds", "0.5", "--out", str(tmp_path), "--overwrite"]) == 0
-    )
+    assert main(["synth", "--motion", "squat", "--seconds", "1", "--out", str(tmp_path), "--overwrite"]) == 0
     assert (tmp_path / "trial.c3d").read_bytes() != b"raw"
-    assert main(["synth", "--motion", "squat", "--seconds", "0.5", "--out", str(tmp_path)]) == 0
+    assert main(["synth", "--motion", "squat", "--seconds", "1", "--out", str(tmp_path)]) == 0
 
 
 def test_a_marker_set_is_edited_in_its_own_file_and_in_no_other(tmp_path):

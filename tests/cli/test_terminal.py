@@ -50,7 +50,7 @@ def test_everything_printed_passes_the_door(monkeypatch):
     assert (sys.stdout, sys.stderr) == (out, err)
     for screen, times in ((out, 2), (err, 4)):
         assert STEERING.search(screen.getvalue()) is None
-        assert screen.getvalue().count("\\u001b]0;owned\\u0007") == times
+        assert screen.getvalue().count("\\u001b]0;owned") == times
 
 
 def test_tables_keep_the_colours_of_mbkf(monkeypatch):
