@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
+from typing import TypeVar
 from urllib.parse import quote
 
 from starlette.concurrency import run_in_threadpool
@@ -18,6 +19,9 @@ from starlette.routing import Route
 from mbkf.app.bodies import plain, read_body
 from mbkf.app.failures import BAD_REQUEST, CONFLICT, NOT_FOUND, WITHOUT_VERSION, Refused, failed, failure
 from mbkf.errors import InvalidInput, MbkfError
+from mbkf.io.files_read import own_files_read
+
+T = TypeVar("T")
 
 Query = Mapping[str, str]
 """Words of a request's address, e.g. "P1" for ``session`` in ``?session=P1``; empty where a word is missing."""
@@ -71,7 +75,7 @@ def page(path: str, make: Callable[[Query], str]) -> Route:
 
     async def endpoint(request: Request) -> Response:
         try:
-            return HTMLResponse(await run_in_threadpool(lambda: make(_query(request))))
+            return HTMLResponse(await in_own_thread(lambda: make(_query(request))))
         except (MbkfError, OSError) as error:
             status, text = failure(error)
             return PlainTextResponse(text, status_code=NOT_FOUND if status == BAD_REQUEST else status)
@@ -93,10 +97,20 @@ def download(path: str, make: Callable[[Query], tuple[str, bytes]]) -> Route:
     return Route(path, endpoint, methods=["GET"])
 
 
+async def in_own_thread(work: Callable[[], T]) -> T:
+    """The result of a function that runs in a thread; the files that it reads count for this request alone."""
+
+    def alone() -> T:
+        with own_files_read():
+            return work()
+
+    return await run_in_threadpool(alone)
+
+
 async def replied(answer: Callable[[], Response]) -> Response:
     """The reply of a function that runs in a thread; a foreseen failure as its sentence, under "trouble"."""
     try:
-        return await run_in_threadpool(answer)
+        return await in_own_thread(answer)
     except (MbkfError, OSError) as error:
         return failed(error)
 

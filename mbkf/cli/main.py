@@ -19,7 +19,6 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from mbkf.cli.closed_streams import open_closed_streams
-from mbkf.cli.inputs import check_outputs, inputs_protected
 from mbkf.cli.postponed import postpone
 from mbkf.cli.terminal import guarded_output, show_traceback
 from mbkf.errors import MbkfError, MbkfWarning
@@ -132,6 +131,8 @@ def _run(words: list[str]) -> int:
     out = getattr(args, "out", None)
     if out is not None and not out.strip():  # "" would be the folder that the command is called in
         return _fail("--out is empty; name the folder or file to write")
+    from mbkf.cli.inputs import check_outputs, inputs_protected
+
     postpone()
     warnings.formatwarning = _formatted
     try:

@@ -113,7 +113,13 @@ def guarded_output() -> Iterator[None]:
 
 
 def show_traceback(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Writes an error with its traceback to the standard error, as ``sys.excepthook``."""
+    """Writes an error with its traceback to the standard error.
+
+    Args:
+        kind: Class of the error.
+        error: The error.
+        trace: Its traceback.
+    """
     with guarded_output():
         sys.stderr.write("".join(traceback.format_exception(kind, error, trace)))
 

@@ -162,6 +162,11 @@ def kind_of(mode: int) -> str:
 def read_bytes(path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str = "name a file") -> bytes:
     """The content of a file.
 
+    Args:
+        path: The file.
+        most_bytes: Size of the largest that is possible.
+        hint: Advice at the end of the messages.
+
     Raises:
         FileNotFoundError: It does not exist.
         FileFormatError: It is a folder, pipe, socket or device, or too large.
@@ -176,6 +181,11 @@ def read_bytes(path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str = "n
 
 def read_text(path: str | Path, most_bytes: int = CAPTURE_BYTES, *, errors: str = "strict") -> str:
     """The text of a file in UTF-8, with or without a byte order mark; line ends are newlines.
+
+    Args:
+        path: The file.
+        most_bytes: Size of the largest that is possible.
+        errors: Treatment of bytes that are no UTF-8, as for ``bytes.decode``.
 
     Raises:
         FileNotFoundError: It does not exist.
@@ -217,6 +227,11 @@ def opened(
     path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str = "name a file"
 ) -> Iterator[BufferedReader]:
     """Opens a file to read its bytes.
+
+    Args:
+        path: The file.
+        most_bytes: Size of the largest that is possible.
+        hint: Advice at the end of the messages.
 
     Raises:
         FileNotFoundError: It does not exist.

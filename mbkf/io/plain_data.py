@@ -26,7 +26,7 @@ _LONG_KEY = re.compile(
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
-def read_toml(path: Path) -> TomlTable:
+def read_toml(path: Path, hint: str = "name a file") -> TomlTable:
     """The table of a TOML file in UTF-8, with or without a byte order mark.
 
     Raises:
@@ -34,7 +34,7 @@ def read_toml(path: Path) -> TomlTable:
         FileFormatError: It is a folder, pipe, socket or device, or too large.
         ValueError: It is not in UTF-8, or as for :func:`parse_toml`.
     """
-    content = read_bytes(path, SETTINGS_BYTES)
+    content = read_bytes(path, SETTINGS_BYTES, hint)
     if content.startswith(_UTF_16):
         raise UnicodeError("it is in UTF-16; save it in UTF-8")
     return parse_toml(content.decode("utf-8-sig"))

@@ -139,7 +139,7 @@ class Entries:
             FileFormatError: The file is missing or damaged.
         """
         with one_line_errors(Path(path), kind, hint):
-            return cls(Path(path), read_toml(Path(path)))
+            return cls(Path(path), read_toml(Path(path), hint))
 
     def text(self, key: str, empty: bool = False) -> str | None:
         """A text, which may be empty only where asked for."""

@@ -25,6 +25,7 @@ def shown(browser, tmp_path_factory):
     session = study(lab, trials=1) / "P1"
     trial = read_capture(session / "walk1.c3d")
     names = trial.markers.names
+    (session / "walk1.c3d").unlink()
     write_c3d(
         replace(
             trial,

@@ -48,6 +48,7 @@ def test_an_unknown_set_is_told_until_one_is_stated(workspace):
     for path in folder.glob("*.c3d"):
         capture = read_capture(path)
         odd = replace(capture.markers, names=tuple(f"Q{k}" for k in range(len(capture.markers.names))))
+        path.unlink()
         write_c3d(replace(capture, markers=odd), path)
 
     def doubts():
@@ -64,6 +65,7 @@ def test_the_standing_trial_is_shown(workspace):
     assert capture_to_show(workspace.survey("P1")).name == "static.c3d"
     (workspace.root / "P1" / "static.c3d").unlink()
     assert capture_to_show(workspace.survey("P1")).name == "walk1.c3d"
+    (workspace.root / "P1" / "walk1.c3d").unlink()
     write_c3d(read_capture(walk_folder() / "raw.c3d"), workspace.root / "P1" / "walk1.c3d")
     with pytest.raises(InvalidInput, match="named markers"):
         capture_to_show(workspace.survey("P1"))

@@ -161,6 +161,7 @@ def test_unusable_forces_file(person, tmp_path, refuse_reconstruct):
     refuse_reconstruct(words, path, "no such file", "MOT")
     path.write_text("nothing")
     refuse_reconstruct(words, path, "not a MOT or STO file")
+    path.unlink()
     times = np.arange(100) / RATE_HZ
     write_storage(Table(("Fx", "Fy"), times, np.ones((100, 2))), path)
     refuse_reconstruct(words, path, "Fx, Fy", "ground_force")
