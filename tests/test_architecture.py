@@ -267,10 +267,7 @@ def opened_directly(source: str) -> list[str]:
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in OPENING:
             of = ast.unparse(node.func.value)
-            plain = re.fullmatch(
-                r"(partial|temporary|Image|av|webbrowser|files_read|sets|waiting|self\._plates)\b.*", of
-            )
-            if plain is None:
+            if NO_FILE.match(of) is None:
                 found.append(ast.unparse(node.func))
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "open":
             found.append("open")
