@@ -129,7 +129,7 @@ def check_regular(path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str =
     state = file.stat()
     kind = kind_of(state.st_mode)
     if kind:
-        raise FileFormatError(file, f"is {kind}, and only files can be read; {hint}")
+        raise FileFormatError(file, f"cannot be read, it is {kind}; {hint}")
     if state.st_size > most_bytes:
         raise _too_large(file, most_bytes, hint)
     files_read().add(file)

@@ -103,7 +103,7 @@ def test_a_wrong_count_of_rows_is_told_where_forces_last_as_long_as_the_markers(
     text = forces.read_text()
     forces.write_text(text.replace("nRows=500", "nRows=900"))
     assert "a.mot promises 900 rows and has 500" in read_capture(trc, forces=forces).notes
-    forces.write_text("\n".join(text.splitlines()[:300]) + "\n")
+    forces.write_text("\n".join(text.splitlines()[:301]) + "\n")
     with pytest.raises(FileFormatError, match=r"500 rows promised, 291 present, and they end at 0\.290 s"):
         read_capture(trc, forces=forces)
 
