@@ -36,8 +36,8 @@ UNSURE_S = 0.5
 """After the server states that its models changed, markers and plates are not read until its new description is here,
 or for so long at most."""
 
-RESTART_S = 0.25
-"""After so long without a frame the server may be another one, which describes itself anew."""
+RESTART_S, RESTART_FRAMES = 0.25, 5
+"""After so long, and so many intervals, without a frame the server may be another one, which describes itself anew."""
 
 Arrived = tuple[float, Frame]
 """Time of arrival on the clock of ``time.perf_counter``, and the frame."""
@@ -105,7 +105,8 @@ class NatNetSource:
                 self._again()
             return None
         arrival_s, frame = arrived
-        changed = frame.changed or arrival_s - self._heard_s > RESTART_S
+        silent_s = max(RESTART_S, RESTART_FRAMES / self._layout.stream.rate_hz)
+        changed = frame.changed or arrival_s - self._heard_s > silent_s
         self._heard_s, self._silent = arrival_s, False
         self._follow_description(changed, arrival_s)
         found = self._layout.frame(frame, arrival_s)

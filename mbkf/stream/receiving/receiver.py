@@ -37,6 +37,10 @@ class FrameCounts(NamedTuple):
     queued: int
 
 
+def _stale(oldest: ReadyFrame, newest: ReadyFrame) -> bool:
+    return newest.arrival_s - oldest.arrival_s >= SLACK_S
+
+
 class Receiver:
     """Aligned frames of a source, taken one by one.
 
@@ -68,7 +72,7 @@ class Receiver:
         self.rate_hz = stream.rate_hz
         self._source, self._samples, self._note, self._failed = source, samples, note, failed
         self._alignment = FrameAlignment(stream, columns, note, mass_kg, live=not source.patient)
-        self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient)
+        self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient, _stale)
         self._overwritten = 0
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mbkf-reader", daemon=True)

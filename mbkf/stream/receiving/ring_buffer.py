@@ -1,13 +1,15 @@
 """Ring buffer between the thread that reads a stream and the filter: it overwrites old frames instead of growing.
 
 It holds the frames of a short time, so that a pause of the machine loses none; of a longer time when the filter starts.
-When the filter falls behind by more, all frames but the latest are dropped, which bounds the latency.
+When the filter falls behind by more, all frames but the latest are dropped, which bounds the latency. Frames that come
+at once, after a pause of their sender, are not behind yet and are all taken.
 """
 
 from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Callable
 from typing import Generic, TypeVar
 
 T = TypeVar("T")
@@ -16,9 +18,17 @@ T = TypeVar("T")
 class RingBuffer(Generic[T]):
     """Holds a limited number of items; a full buffer drops all of them for the next one."""
 
-    def __init__(self, size: int, patient: bool = False) -> None:
-        """Args: items held at most, and whether a full buffer makes the writer wait instead of dropping items."""
+    def __init__(self, size: int, patient: bool = False, stale: Callable[[T, T], bool] | None = None) -> None:
+        """An empty buffer.
+
+        Args:
+            size: Items held at most.
+            patient: Whether a full buffer makes the writer wait instead of dropping items.
+            stale: Whether the oldest item is too old beside the newest; until it is, a buffer whose size was reduced by
+                :meth:`allow` holds up to its first size, since items that come at once are soon taken. None for always.
+        """
         self._size, self._patient = max(1, size), patient
+        self._most, self._stale = self._size, stale
         self._items: deque[T] = deque()
         self._changed = threading.Condition()
         self._closed = False
@@ -35,12 +45,15 @@ class RingBuffer(Generic[T]):
             while self._patient and len(self._items) >= self._size and not self._closed:
                 self._changed.wait()
             overwritten: list[T] = []
-            if len(self._items) >= self._size and not self._closed:
+            if len(self._items) >= self._size and not self._closed and self._too_old(item):
                 overwritten.extend(self._items)
                 self._items.clear()
             self._items.append(item)
             self._changed.notify_all()
             return overwritten
+
+    def _too_old(self, newest: T) -> bool:
+        return self._stale is None or len(self._items) >= self._most or self._stale(self._items[0], newest)
 
     def take(self, timeout_s: float) -> T | None:
         """The oldest item held; None where none comes for so long, or ever (see :attr:`ended`)."""

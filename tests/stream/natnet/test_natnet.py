@@ -259,6 +259,7 @@ def test_a_server_that_was_silent_is_asked_again(server, monkeypatch):
     connected(source)
     assert len(read(source, 10)) == 10
     server.heard()
+    monkeypatch.setattr(source_module, "RESTART_FRAMES", 0)
     monkeypatch.setattr(source_module, "RESTART_S", 0.0)  # any time at all is a silence
     server.send(frame(10))
     assert np.isnan(read(source, 1)[0].markers_m).all()

@@ -21,6 +21,15 @@ def test_it_may_hold_more_for_a_while():
     assert buffer.put(3) == [0, 1, 2]
 
 
+def test_items_that_come_at_once_are_held_until_the_first_of_them_is_too_old():
+    buffer = RingBuffer(5, stale=lambda oldest, newest: newest - oldest >= 10)
+    buffer.allow(2)
+    assert [buffer.put(k) for k in (0, 1, 2, 3)] == [[], [], [], []]
+    assert buffer.put(10) == [0, 1, 2, 3]
+    assert [buffer.put(k) for k in (11, 12, 13, 14)] == [[], [], [], []]
+    assert buffer.put(15) == [10, 11, 12, 13, 14]  # never more than at first
+
+
 def test_a_patient_slot_keeps_the_giver_waiting():
     buffer, taken = RingBuffer(2, patient=True), []
 
