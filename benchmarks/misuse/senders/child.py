@@ -26,11 +26,11 @@ from benchmarks.misuse.senders.judging import (
     wrong_loads,
     wrong_numbers,
 )
-from benchmarks.misuse.senders.kinds import KINDS, Kind
+from benchmarks.misuse.senders.kinds import KINDS, Kind, scheduled
 from benchmarks.misuse.senders.wires import ReorderedLslWire, ReorderedNatNetWire
 from benchmarks.robustness.stream_child import ACCOUNTS, PATIENCE_S, Sender
 from benchmarks.robustness.stream_kinds import LSL
-from benchmarks.robustness.stream_schedule import Schedule, Sent
+from benchmarks.robustness.stream_schedule import Sent
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
 from mbkf.stream.played import Played, played
@@ -82,8 +82,7 @@ def outcome(name: str, seed: int, walk: Played, folder: Path) -> dict[str, objec
         walk: What is played.
         folder: Holds the subject; the run's own folder is made in it.
     """
-    kind, schedule = KINDS[name], Schedule(walk, seed)
-    kind.change(schedule)
+    kind, schedule = KINDS[name], scheduled(name, walk, seed)
     own = f"{kind.protocol}-{os.getpid()}-{seed}"
     wire = (
         ReorderedLslWire(walk, f"mbkf-{own}", schedule.counted)

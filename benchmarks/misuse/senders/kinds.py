@@ -14,6 +14,10 @@ import numpy as np
 from benchmarks.robustness.stream_kinds import LSL, NATNET
 from benchmarks.robustness.stream_schedule import Schedule
 from mbkf.conventions import Array
+from mbkf.stream.played import Played
+
+FOLLOWED = 100
+"""Faults begin so many frames later than those of disturbed streams: when the filter follows the person."""
 
 Change = Callable[[Schedule], None]
 OUTAGE_S = 0.4
@@ -216,3 +220,18 @@ KINDS: dict[str, Kind] = {
     ),
     "NatNet, back with reversed markers": Kind(NATNET, back_as("open_reversed_markers"), event="lost"),
 }
+
+
+def scheduled(name: str, played: Played, seed: int) -> Schedule:
+    """What a sender of a kind sends, and when.
+
+    Args:
+        name: The kind.
+        played: The capture.
+        seed: Which of its kind.
+    """
+    schedule = Schedule(played, seed)
+    schedule.begin += FOLLOWED
+    schedule.end += FOLLOWED
+    KINDS[name].change(schedule)
+    return schedule

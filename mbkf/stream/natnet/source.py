@@ -37,7 +37,8 @@ UNSURE_S = 0.5
 or for so long at most."""
 
 RESTART_S, RESTART_FRAMES = 0.25, 5
-"""After so long, and so many intervals, without a frame the server may be another one, which describes itself anew."""
+"""After so long, and so many intervals, without a frame a server whose count did not stand still may be another one,
+which describes itself anew; where it did, this computer was busy."""
 
 Arrived = tuple[float, Frame]
 """Time of arrival on the clock of ``time.perf_counter``, and the frame."""
@@ -67,6 +68,7 @@ class NatNetSource:
         self._silent = self._changed = False
         self._described: Descriptions | None = None
         self._asked_s = self._unsure_until_s = 0.0
+        self._number = 0
         self._news: list[tuple[str, str]] = []
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
@@ -106,7 +108,8 @@ class NatNetSource:
             return None
         arrival_s, frame = arrived
         silent_s = max(RESTART_S, RESTART_FRAMES / self._layout.stream.rate_hz)
-        changed = frame.changed or arrival_s - self._heard_s > silent_s
+        silent = arrival_s - self._heard_s > silent_s and frame.number != self._number + 1
+        changed, self._number = frame.changed or silent, frame.number
         self._heard_s, self._silent = arrival_s, False
         self._follow_description(changed, arrival_s)
         found = self._layout.frame(frame, arrival_s)

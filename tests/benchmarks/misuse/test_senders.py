@@ -14,10 +14,10 @@ from benchmarks.misuse.senders.judging import (
     wrong_loads,
     wrong_numbers,
 )
-from benchmarks.misuse.senders.kinds import KINDS
+from benchmarks.misuse.senders.kinds import KINDS, scheduled
 from benchmarks.misuse.senders.wires import ReorderedLslWire, ReorderedNatNetWire, reversed_plates
 from benchmarks.robustness.stream_kinds import LSL, NATNET
-from benchmarks.robustness.stream_schedule import Act, Schedule, Sent
+from benchmarks.robustness.stream_schedule import Act, Sent
 from mbkf.stream.played import played
 from tests.captures import made_capture
 
@@ -27,9 +27,7 @@ FINE = dict.fromkeys(("frames_late", "frames_overwritten", "frames_not_written",
 
 
 def items(name, seed):
-    schedule = Schedule(WALK, seed)
-    KINDS[name].change(schedule)
-    return schedule.items()
+    return scheduled(name, WALK, seed).items()
 
 
 def plain(item):

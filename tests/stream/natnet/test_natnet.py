@@ -262,6 +262,8 @@ def test_a_server_that_was_silent_is_asked_again(server, monkeypatch):
     monkeypatch.setattr(source_module, "RESTART_FRAMES", 0)
     monkeypatch.setattr(source_module, "RESTART_S", 0.0)  # any time at all is a silence
     server.send(frame(10))
+    assert not np.isnan(read(source, 1)[0].markers_m).any()  # it counted on: this computer was busy
+    server.send(frame(40))
     assert np.isnan(read(source, 1)[0].markers_m).all()
     server.hear(packets.REQUEST_DESCRIPTIONS)
     source.close()
