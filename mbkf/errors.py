@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -65,11 +66,44 @@ class UnknownName(MbkfError):
 
     def __init__(self, kind: str, name: str, choices: Iterable[str], where: str = "") -> None:
         self.kind, self.name, self.choices, self.where = kind, name, tuple(choices), where
-        close = difflib.get_close_matches(name, self.choices, n=3, cutoff=0.5)
-        listed = close or self.choices[:12]
-        hint = "did you mean" if close else "known are"
         prefix = f"{where}: " if where else ""
-        super().__init__(f"{prefix}unknown {kind} '{name}'; {hint} {', '.join(listed)}")
+        super().__init__(f"{prefix}unknown {kind} '{name}'; {suggestion(name, self.choices)}")
+
+
+class UnknownEntry(FileFormatError, UnknownName):
+    """A file holds an entry or column that files of its kind do not have."""
+
+    def __init__(
+        self, path: str | Path, kind: str, name: str, choices: Iterable[str], line: int | None = None
+    ) -> None:
+        """Names the closest of the entries that are possible.
+
+        Args:
+            path: The file.
+            kind: Noun of the entry, such as "session entry".
+            name: Its name in the file.
+            choices: Names that are possible.
+            line: Line of the entry, from 1; None where it is not known.
+        """
+        self.kind, self.name, self.choices, self.where = kind, name, tuple(choices), str(path)
+        self.path, self.line = Path(path), line
+        self.reason = f"unknown {kind} '{name}'; {suggestion(name, self.choices)}"
+        MbkfError.__init__(self, f"{path}{'' if line is None else f', line {line}'}: {self.reason}")
+
+
+def suggestion(name: str, choices: Iterable[str]) -> str:
+    """The names closest to a wrong one, or the first of all: "did you mean mass_kg"."""
+    folded: dict[str, str] = {}
+    for choice in choices:
+        folded.setdefault(_folded(choice), choice)
+    close = difflib.get_close_matches(_folded(name), folded, n=3, cutoff=0.5)
+    listed = [folded[one] for one in close] or list(folded.values())[:12]
+    return f"{'did you mean' if close else 'known are'} {', '.join(listed)}"
+
+
+def _folded(name: str) -> str:
+    """A name without capitals, spaces and brackets."""
+    return "_".join(re.findall(r"\w+", name.casefold()))
 
 
 class ShapeError(MbkfError):

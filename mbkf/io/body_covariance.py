@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypedDict
@@ -10,6 +11,11 @@ import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import ShapeError
+from mbkf.io import fields
+from mbkf.io.toml import Entries
+
+MOST_SPREAD = 2.0
+"""Largest standard deviation of a scale factor, and of a marker's place in m."""
 
 DIGITS = 6
 """Significant digits of a number in a subject file."""
@@ -91,18 +97,46 @@ class BodyCovariance:
         return CovarianceTable(factors=list(self.factors), markers=list(self.markers), root=rows)
 
 
-def read_covariance(table: CovarianceTable) -> BodyCovariance:
+def read_covariance(read: Entries) -> BodyCovariance:
     """The record of a table that :meth:`BodyCovariance.as_table` made.
 
     Raises:
-        KeyError: An entry is missing.
-        ValueError: Row n does not have n + 1 finite numbers.
+        FileFormatError: An entry is missing, row n does not have n + 1 finite numbers, or no person varies so much.
         ShapeError: The number of rows is not that of the names' parameters.
     """
-    rows = [[float(x) for x in row] for row in table["root"]]
+    rows = read.need(_ROOT)
     root = np.zeros((len(rows), len(rows)))
     for n, row in enumerate(rows):
-        if len(row) != n + 1 or not np.isfinite(row).all():
-            raise ValueError(f"row {n} of the covariance needs {n + 1} finite numbers")
         root[n, : n + 1] = row
-    return BodyCovariance(tuple(map(str, table["factors"])), tuple(map(str, table["markers"])), root)
+    found = BodyCovariance(read.need(_FACTORS), read.need(_MARKERS), root)
+    spreads = np.sqrt((root * root).sum(axis=1))
+    if spreads.size and spreads.max() > MOST_SPREAD:
+        k, names = int(spreads.argmax()), [*found.factors, *np.repeat(found.markers, 3)]
+        reason = f"the standard deviation of {names[k]} is {spreads[k]:.3g}, more than {MOST_SPREAD:g}"
+        raise read.fault(reason, _ROOT.key)
+    return found
+
+
+def _triangle(value: object) -> list[list[float]] | None:
+    """Rows of a lower triangle; None where they are not."""
+    if not isinstance(value, list):
+        return None
+    for n, row in enumerate(value):
+        if not isinstance(row, list) or len(row) != n + 1 or any(isinstance(x, bool) for x in row):
+            return None
+        if not all(isinstance(x, int | float) and math.isfinite(x) for x in row):
+            return None
+    return value
+
+
+_FACTORS = fields.texts("factors", "names of the scale factors", required=True)
+_MARKERS = fields.texts("markers", "names of the markers", required=True)
+_ROOT = fields.Field(
+    "root",
+    "rows of L, whose square L Lᵀ is the covariance",
+    "rows, the n-th of n finite numbers",
+    _triangle,
+    True,
+)
+COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _ROOT)
+"""Entries of the covariance in a subject file."""

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import InvalidInput
+from mbkf.io import fields
+from mbkf.io.toml import Entries
+
+MASS_FACTORS, FARTHEST_SHIFT_M = (0.05, 20.0), 0.5
+"""Bounds of persons: of a segment's mass over the table's, and of the shift of its centre of mass."""
+
+_MASS_FACTOR = fields.number("mass_factor", "mass over that of the table", MASS_FACTORS, required=True)
+_CENTRE = fields.numbers(
+    "centre_shift_m", "centre of mass from that of the table", 3, FARTHEST_SHIFT_M, "m", required=True
+)
+_MASS_FACTOR_SD = fields.number("mass_factor_sd", "its standard deviation", (0.0, 10.0), required=True)
+_CENTRE_SD = fields.numbers(
+    "centre_shift_sd_m", "its standard deviation", 3, FARTHEST_SHIFT_M, "m", required=True
+)
+INERTIA = fields.record("inertia", _MASS_FACTOR, _CENTRE, _MASS_FACTOR_SD, _CENTRE_SD)
+"""Entries of a segment's inertia in a subject file."""
 
 
 @dataclass(frozen=True)
@@ -36,31 +50,15 @@ class SegmentInertia:
             raise InvalidInput(f"a segment's mass_factor must be positive, got {self.mass_factor:g}")
 
 
-def parse_inertia(table: Mapping[str, Mapping[str, object]]) -> dict[str, SegmentInertia]:
-    """The segments of the subject file's table.
+def parse_inertia(read: Entries) -> SegmentInertia:
+    """The inertia of one segment in a subject file.
 
     Raises:
-        InvalidInput: A mass is not positive or a number not finite.
-        KeyError: An entry is missing.
-        ValueError: A shift has not three coordinates.
+        FileFormatError: An entry is missing, or a person cannot have it.
     """
-    return {
-        name: SegmentInertia(
-            _number(entry["mass_factor"]),
-            _vector(name, entry["centre_shift_m"]),
-            _number(entry["mass_factor_sd"]),
-            _vector(name, entry["centre_shift_sd_m"]),
-        )
-        for name, entry in table.items()
-    }
-
-
-def _number(value: Any) -> float:
-    return float(value)
-
-
-def _vector(name: str, values: Any) -> Array:
-    found = read_only(values)
-    if found.shape != (3,):
-        raise ValueError(f"the inertia of {name} needs three coordinates")
-    return found
+    return SegmentInertia(
+        read.need(_MASS_FACTOR),
+        read_only(read.need(_CENTRE)),
+        read.need(_MASS_FACTOR_SD),
+        read_only(read.need(_CENTRE_SD)),
+    )

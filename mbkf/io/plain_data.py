@@ -13,6 +13,7 @@ from pathlib import Path
 
 from mbkf.conventions import JsonTable, TomlTable
 from mbkf.io.files_read import SETTINGS_BYTES, read_bytes
+from mbkf.io.toml_lines import mistake
 
 MOST_PARTS = 32
 """Parts of the longest key between dots."""
@@ -34,17 +35,37 @@ def read_toml(path: Path, hint: str = "name a file") -> TomlTable:
         FileFormatError: It is a folder, pipe, socket or device, or too large.
         ValueError: It is not in UTF-8, or as for :func:`parse_toml`.
     """
+    return parse_toml(plain_text(path, hint))
+
+
+def plain_text(path: Path, hint: str = "") -> str:
+    """The text of a file in UTF-8, with or without a byte order mark.
+
+    Args:
+        path: The file.
+        hint: Advice for a file that is not regular; may be empty.
+
+    Raises:
+        OSError: The file does not exist, or it cannot be read.
+        FileFormatError: It is a folder, pipe, socket or device, or too large.
+        ValueError: It is not in UTF-8.
+    """
     content = read_bytes(path, SETTINGS_BYTES, hint)
     if content.startswith(_UTF_16):
         raise UnicodeError("it is in UTF-16; save it in UTF-8")
-    return parse_toml(content.decode("utf-8-sig"))
+    try:
+        return content.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UnicodeError(f"line {line} is not in UTF-8; save the file in UTF-8") from error
 
 
 def parse_toml(text: str) -> TomlTable:
     """The table of a TOML text.
 
     Raises:
-        ValueError: It is not TOML, or nested too deep, or holds a whole number of more than 64 bits.
+        TomlMistake: It is not TOML; with its line and the mend of a common mistake.
+        ValueError: It is nested too deep, or holds a whole number of more than 64 bits.
     """
     long_key = _LONG_KEY.search(text)
     if long_key is not None:
@@ -52,6 +73,8 @@ def parse_toml(text: str) -> TomlTable:
         raise ValueError(f"a name of more than {MOST_PARTS} parts between dots (at line {line})")
     try:
         table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise mistake(text, error) from error
     except RecursionError as error:
         raise ValueError("nested too deep") from error
     _check_integers(table)

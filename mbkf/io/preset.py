@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
 
-from mbkf.errors import UnknownName
-from mbkf.io.plain_data import read_toml
-from mbkf.io.toml import one_line_errors, write_toml
+from mbkf.io import fields
+from mbkf.io.toml import Entries, write_toml
 
 FOLDER_VARIABLE = "MBKF_PRESETS"
 """Environment variable that names the folder of named presets."""
 
 SUFFIX = ".toml"
-_KEYS = ("name", "filter", "version", "note", "tuned_on", "held_out", "values", "found", "likelihood")
+
+_NAME = fields.text("name", "its name; by default that of the file", empty=True)
+_FILTER = fields.text("filter", "the filter it is for", required=True)
+_VALUES = fields.part("values", "settings by name", "[values]", required=True)
+_VERSION = fields.text("version", "version of mbkf that found it", empty=True)
+_NOTE = fields.text("note", "remark", empty=True)
+_TUNED_ON = fields.texts("tuned_on", "trials of the search")
+_HELD_OUT = fields.texts("held_out", "trials of its validation")
+_FOUND = fields.part("found", "result of a search that did no better", "[found]")
+_LIKELIHOOD = fields.part("likelihood", "log-likelihoods per reading, nats", "[likelihood]")
+PRESET = fields.record(
+    "preset", _NAME, _FILTER, _VALUES, _VERSION, _NOTE, _TUNED_ON, _HELD_OUT, _FOUND, _LIKELIHOOD
+)
+"""Entries of a preset file."""
+
+_VALUE = fields.number("value", "a setting")
 
 
 @dataclass(frozen=True)
@@ -73,36 +85,19 @@ def read_preset(path: str | Path) -> Preset:
     """Reads a preset file.
 
     Raises:
+        UnknownEntry: It has an entry that presets do not have.
         FileFormatError: The file is missing, not TOML, or lacks or misuses an entry.
-        UnknownName: It has an entry that presets do not have.
     """
-    source = Path(path)
-    with one_line_errors(source, "a preset file", "make it with 'mbkf tune'"):
-        table = read_toml(source)
-        unknown = [key for key in table if key not in _KEYS]
-        if unknown:
-            raise UnknownName("entry", unknown[0], _KEYS, str(source))
-        return Preset(
-            name=_string(table.get("name", source.stem)),
-            filter=_string(table["filter"]),
-            values=_numbers(table["values"]),
-            version=_string(table.get("version", "")),
-            note=_string(table.get("note", "")),
-            tuned_on=tuple(map(_string, table.get("tuned_on", ()))),
-            held_out=tuple(map(_string, table.get("held_out", ()))),
-            found=_numbers(table.get("found", {})),
-            likelihood=_numbers(table.get("likelihood", {})),
-        )
-
-
-def _string(value: Any) -> str:
-    if not isinstance(value, str):
-        raise ValueError(f"{value!r} is not a text")
-    return value
-
-
-def _numbers(table: Mapping[str, Any]) -> dict[str, float]:
-    for key, value in table.items():
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise ValueError(f"{key} = {value!r} is not a finite number")
-    return {key: float(value) for key, value in table.items()}
+    read = Entries.of_file(PRESET, path, "a preset file", "make it with 'mbkf tune'")
+    read.need(_VALUES)
+    return Preset(
+        name=read.get(_NAME) or Path(path).stem,
+        filter=read.need(_FILTER),
+        values=read.numbers_by_name(_VALUES, _VALUE),
+        version=read.get(_VERSION) or "",
+        note=read.get(_NOTE) or "",
+        tuned_on=read.get(_TUNED_ON) or (),
+        held_out=read.get(_HELD_OUT) or (),
+        found=read.numbers_by_name(_FOUND, _VALUE),
+        likelihood=read.numbers_by_name(_LIKELIHOOD, _VALUE),
+    )

@@ -28,9 +28,9 @@ from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
 
-from mbkf.errors import FileFormatError
+from mbkf.io import fields
 from mbkf.io.atomic import write_text
-from mbkf.io.toml import Entries, toml_text
+from mbkf.io.toml import Entries, Origin, toml_text
 
 SESSION_FILE = "session.toml"
 
@@ -57,6 +57,33 @@ class EventKind(StrEnum):
 
     STRIKE = "strike"
     OFF = "off"
+
+
+_NAME = fields.text("name", "the person's name or code; by default that of the folder", empty=True)
+MASS = fields.number("mass_kg", "body mass", MASS_KG, "kg")
+HEIGHT = fields.number("height_m", "body height", HEIGHT_M, "m")
+_AGE = fields.number("age", "age", AGE, "years")
+_SEX = fields.word("sex", "for reports", SEXES)
+PROTOCOL = fields.text("protocol", "marker set: its name, or a file beside this one")
+_TRIAL = fields.part(
+    "trial", "statements on a trial, which is named by its file without suffix", "[trial.NAME]"
+)
+SESSION = fields.record("session", _NAME, MASS, HEIGHT, _AGE, _SEX, PROTOCOL, _TRIAL)
+"""Entries of a session file."""
+
+_KIND = fields.word("kind", "its task; by default the one that its markers show", tuple(TrialKind))
+_EXCLUDED = fields.text("excluded", "reason to leave it out", empty=True)
+_EVENTS = fields.part(
+    "event", "strikes and toe-offs by hand, instead of the detected ones", "[[trial.NAME.event]]"
+)
+TRIAL = fields.record("trial", _KIND, _EXCLUDED, _EVENTS)
+"""Entries of a trial in a session file."""
+
+_SIDE = fields.word("side", "foot", SIDES, required=True)
+_EVENT_KIND = fields.word("kind", "strike or toe-off", tuple(EventKind), required=True)
+_TIME = fields.number("time_s", "time of the capture", unit="s", required=True)
+EVENT = fields.record("foot event", _SIDE, _EVENT_KIND, _TIME)
+"""Entries of an event."""
 
 
 @dataclass(frozen=True)
@@ -121,29 +148,31 @@ def read_session(path: str | Path) -> SessionNotes:
     """Reads a session file.
 
     Raises:
+        UnknownEntry: It has an entry that sessions do not have.
         FileFormatError: It is missing or damaged, or an entry is not possible.
     """
-    return _session(Entries.of_file(path, "a session file", "'mbkf app' writes one"))
+    return _session(Entries.of_file(SESSION, path, "a session file", "'mbkf app' writes one"))
 
 
 def session_of(table: Mapping[str, object], file: str | Path = SESSION_FILE) -> SessionNotes:
     """The session that plain data describe, the entries of a session file; ``file`` is named in messages.
 
     Raises:
+        UnknownEntry: It has an entry that sessions do not have.
         FileFormatError: An entry is not possible.
     """
-    return _session(Entries(Path(file), table))
+    return _session(Entries(SESSION, table, Origin(Path(file))))
 
 
 def _session(read: Entries) -> SessionNotes:
     return SessionNotes(
-        name=read.text("name") or "",
-        mass_kg=read.number("mass_kg", MASS_KG),
-        height_m=read.number("height_m", HEIGHT_M),
-        age=read.number("age", AGE),
-        sex=read.one_of("sex", SEXES) or "",
-        protocol=read.text("protocol"),
-        trials={name: _trial(entries) for name, entries in read.tables("trial").items()},
+        name=read.get(_NAME) or "",
+        mass_kg=read.get(MASS),
+        height_m=read.get(HEIGHT),
+        age=read.get(_AGE),
+        sex=read.get(_SEX) or "",
+        protocol=read.get(PROTOCOL),
+        trials={name: _trial(entries) for name, entries in read.tables(_TRIAL, TRIAL).items()},
     )
 
 
@@ -191,18 +220,13 @@ def _plain_trial(trial: TrialNotes) -> dict[str, object]:
 
 
 def _trial(read: Entries) -> TrialNotes:
-    kind = read.one_of("kind", tuple(TrialKind))
-    events = read.list_of_tables("event")
+    kind, events = read.get(_KIND), read.list_of_tables(_EVENTS, EVENT)
     return TrialNotes(
         None if kind is None else TrialKind(kind),
-        read.text("excluded") or "",
+        read.get(_EXCLUDED) or "",
         None if events is None else tuple(sorted((_event(one) for one in events), key=lambda e: e.time_s)),
     )
 
 
 def _event(read: Entries) -> FootEvent:
-    side, kind = read.one_of("side", SIDES), read.one_of("kind", tuple(EventKind))
-    time_s = read.number("time_s")
-    if side is None or kind is None or time_s is None:
-        raise FileFormatError(read.file, f"{read.where}an event needs side, kind and time_s")
-    return FootEvent(side, EventKind(kind), time_s)
+    return FootEvent(read.need(_SIDE), EventKind(read.need(_EVENT_KIND)), read.need(_TIME))

@@ -6,23 +6,74 @@ import json
 from collections.abc import Collection, Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import InvalidInput
-from mbkf.io.body_covariance import BodyCovariance, read_covariance
-from mbkf.io.inertia import SegmentInertia, parse_inertia
-from mbkf.io.plain_data import number_between, parse_json, read_toml
+from mbkf.io import fields
+from mbkf.io.body_covariance import COVARIANCE, BodyCovariance, read_covariance
+from mbkf.io.inertia import INERTIA, SegmentInertia, parse_inertia
+from mbkf.io.plain_data import parse_json
 from mbkf.io.plausible import MASSES_KG
-from mbkf.io.toml import one_line_errors, write_toml
+from mbkf.io.toml import Entries, one_line_errors, write_toml
 
-FARTHEST_M, SCALES, HEIGHTS_M = 3.0, (0.05, 20.0), (0.3, 2.8)
-"""Bounds of marker places in their segments, of factors to the reference body and of heights."""
+FARTHEST_M, MOST_NOISE_M, SCALES, HEIGHTS_M = 1.5, 1.0, (0.2, 2.0), (0.3, 2.8)
+"""Bounds of persons: of marker places in their segments, of noise, of factors to the reference body and of heights."""
+
+FARTHEST_TURN = 1e3
+"""Bound of a coordinate of the posture, rad or m."""
 
 STANDING_KEY = "standing_q"
 """Key of a subject's report for the posture of the static trial: its configuration, nq numbers."""
+
+
+_NAME = fields.text("name", "name of the marker", required=True)
+_SEGMENT = fields.text("segment", "segment that carries it", required=True)
+_POSITION = fields.numbers("position_m", "place in the segment's frame", 3, FARTHEST_M, "m", required=True)
+_NOISE = fields.number("noise_m", "noise with skin movement", (0.0, MOST_NOISE_M), "m", required=True)
+_SESSION_SD = fields.number(
+    "session_sd_m", "spread of its place in another trial", (0.0, MOST_NOISE_M), "m", required=True
+)
+_ALIASES = fields.texts("aliases", "other names in captures")
+_CORRELATED = fields.number("correlated_m", "correlated part of the noise", (0.0, MOST_NOISE_M), "m")
+_CORRELATION = fields.number("correlation_s", "time constant of that part", (0.0, 1e3), "s")
+MARKER = fields.record(
+    "marker", _NAME, _SEGMENT, _POSITION, _NOISE, _SESSION_SD, _ALIASES, _CORRELATED, _CORRELATION
+)
+"""Entries of a marker in a subject file."""
+
+_BODY = fields.text("body", "name of the reference body", required=True)
+_BODY_TEXT = fields.text("body_text", "file of a reference body of your own, word for word", empty=True)
+_REPORT = fields.text("report", "the scaling in JSON", empty=True)
+_MASS = fields.number("mass_kg", "body mass", MASSES_KG, "kg", required=True)
+_HEIGHT = fields.number("height_m", "body height", HEIGHTS_M, "m")
+_PROTOCOL = fields.text("protocol", "name of the marker protocol", required=True, empty=True)
+_SCALE_FACTORS = fields.part(
+    "scale_factors",
+    "size over that of the reference body, by factor: all of the body",
+    "[scale_factors]",
+    required=True,
+)
+_FACTOR = fields.number("factor", "a scale factor", SCALES)
+_INERTIA = fields.part("inertia", "a segment's own inertia", "[inertia.SEGMENT]")
+_MARKERS = fields.part("marker", "a marker", "[[marker]]")
+_COVARIANCE = fields.part("covariance", "uncertainty of factors and marker places", "[covariance]")
+SUBJECT = fields.record(
+    "subject",
+    _BODY,
+    _BODY_TEXT,
+    _REPORT,
+    _MASS,
+    _HEIGHT,
+    _PROTOCOL,
+    _SCALE_FACTORS,
+    _INERTIA,
+    _MARKERS,
+    _COVARIANCE,
+)
+"""Entries of a subject file."""
 
 
 @dataclass(frozen=True)
@@ -161,49 +212,81 @@ def read_subject(path: str | Path) -> Subject:
     """Reads a subject file.
 
     Raises:
-        FileFormatError: The file is missing, not TOML, or lacks an entry.
-        InvalidInput: The mass is not positive.
+        UnknownEntry: The file has an entry that subjects do not have.
+        FileFormatError: The file is missing, not TOML, or lacks or misuses an entry.
+        InvalidInput: A person cannot have the segments' inertia.
     """
-    source = Path(path)
-    with one_line_errors(source, "a subject file", "make it with 'mbkf scale'"):
-        table = read_toml(source)
-        return Subject(
-            body=table["body"],
-            mass_kg=_mass_kg(table["mass_kg"]),
-            scale_factors={
-                name: number_between(table["scale_factors"], name, *SCALES) for name in table["scale_factors"]
-            },
-            markers=tuple(_marker(entry) for entry in table.get("marker", ())),
-            protocol=table["protocol"],
-            height_m=number_between(table, "height_m", *HEIGHTS_M) if "height_m" in table else None,
-            report=dict(parse_json(table.get("report", "{}"))),
-            body_text=str(table.get("body_text", "")),
-            inertia=parse_inertia(table.get("inertia", {})),
-            covariance=read_covariance(table["covariance"]) if "covariance" in table else None,
+    hint = "make it with 'mbkf scale'"
+    read = Entries.of_file(SUBJECT, path, "a subject file", hint)
+    with one_line_errors(read.file, "a subject file", hint):
+        read.need(_SCALE_FACTORS)
+        subject = Subject(
+            body=read.need(_BODY),
+            mass_kg=read.need(_MASS),
+            scale_factors=read.numbers_by_name(_SCALE_FACTORS, _FACTOR),
+            markers=_markers(read),
+            protocol=read.need(_PROTOCOL),
+            height_m=read.get(_HEIGHT),
+            report=dict(parse_json(read.get(_REPORT) or "{}")),
+            body_text=read.get(_BODY_TEXT) or "",
+            inertia=_inertia(read),
+            covariance=_covariance(read),
         )
+    _check_report(subject, read)
+    return subject
 
 
-def _mass_kg(stated: Any) -> float:
-    """A possible body mass; one that is not positive is refused by :class:`Subject`."""
-    value = float(stated)
-    if isinstance(stated, bool):
-        raise ValueError("mass_kg is not a number")
-    if value > 0.0 and not MASSES_KG[0] <= value <= MASSES_KG[1]:
-        raise InvalidInput(f"mass_kg must be between {MASSES_KG[0]:g} and {MASSES_KG[1]:g}, got {value:g}")
-    return value
+def _markers(read: Entries) -> tuple[SubjectMarker, ...]:
+    found: dict[str, SubjectMarker] = {}
+    for one in read.list_of_tables(_MARKERS, MARKER) or ():
+        name = one.need(_NAME)
+        one.where = f"marker {name}: "
+        if name in found:
+            raise one.fault("it stands twice; keep one of both")
+        noise_m = one.need(_NOISE)
+        correlated_m = one.get(_CORRELATED) or 0.0
+        if correlated_m > noise_m:
+            raise one.fault(f"correlated_m {correlated_m:g} exceeds noise_m {noise_m:g}", _CORRELATED.key)
+        found[name] = SubjectMarker(
+            name,
+            one.need(_SEGMENT),
+            read_only(one.need(_POSITION)),
+            noise_m,
+            one.need(_SESSION_SD),
+            one.get(_ALIASES) or (),
+            correlated_m,
+            one.get(_CORRELATION) or 0.0,
+        )
+    return tuple(found.values())
 
 
-def _marker(entry: dict[str, Any]) -> SubjectMarker:
-    position = read_only(entry["position_m"])
-    if position.shape != (3,) or not (np.abs(position) <= FARTHEST_M).all():
-        raise ValueError(f"marker {entry['name']} needs three finite coordinates of at most {FARTHEST_M:g} m")
-    return SubjectMarker(
-        entry["name"],
-        entry["segment"],
-        position,
-        number_between(entry, "noise_m", 0.0, FARTHEST_M),
-        number_between(entry, "session_sd_m", 0.0, FARTHEST_M),
-        tuple(entry.get("aliases", ())),
-        number_between(entry, "correlated_m", 0.0, FARTHEST_M, 0.0),
-        float(entry.get("correlation_s", 0.0)),
-    )
+def _inertia(read: Entries) -> dict[str, SegmentInertia]:
+    return {name: parse_inertia(one) for name, one in read.tables(_INERTIA, INERTIA).items()}
+
+
+def _covariance(read: Entries) -> BodyCovariance | None:
+    """The covariance, of which every factor must be a scale factor of this file.
+
+    Raises:
+        UnknownEntry: A scale factor that it names has no line.
+    """
+    found = read.table_of(_COVARIANCE, COVARIANCE)
+    if found is None:
+        return None
+    covariance = read_covariance(found)
+    factors = read.numbers_by_name(_SCALE_FACTORS, _FACTOR)
+    lacking = [name for name in covariance.factors if name not in factors]
+    if lacking:
+        reason = f"scale_factors: {lacking[0]} is missing, which [covariance] names; restore its line"
+        raise read.fault(reason, _SCALE_FACTORS.key)
+    return covariance
+
+
+def _check_report(subject: Subject, read: Entries) -> None:
+    """Refuses a posture of the static trial that is not a list of finite numbers."""
+    posture = subject.report.get(STANDING_KEY)
+    if posture is None:
+        return
+    numbers = posture if isinstance(posture, list) else [None]
+    if not all(isinstance(x, int | float) and abs(x) <= FARTHEST_TURN for x in numbers):
+        raise read.fault(f"report: {STANDING_KEY} must be a list of finite numbers", _REPORT.key)

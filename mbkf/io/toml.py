@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import json
-import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
-from mbkf.conventions import Array
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import FileFormatError, InvalidInput, UnknownEntry
 from mbkf.io.atomic import write_text
-from mbkf.io.plain_data import read_toml
+from mbkf.io.fields import Field, Record, shown
+from mbkf.io.plain_data import parse_toml, plain_text
+from mbkf.io.toml_lines import Place, TomlMistake, line_of
 from mbkf.io.utf8 import storable
 
 T = TypeVar("T")
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-_SHOWN = 40
 
 
 def write_toml(path: str | Path, comment: str, table: Mapping[str, object], *, edits: bool = False) -> None:
@@ -108,29 +108,64 @@ def one_line_errors(path: Path, kind: str, hint: str) -> Iterator[None]:
         raise FileFormatError(path, f"{found}; {hint}") from error
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from error
+    except TomlMistake as error:
+        raise FileFormatError(path, f"not {kind}: {error.reason}", error.line) from error
     except (OSError, UnicodeError) as error:
         raise FileFormatError(path, f"cannot be read ({error})") from error
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(path, f"not {kind} ({error}); {hint}") from error
 
 
-class Entries:
-    """Entries of a table, each as it must be; an entry that is missing is None.
+@dataclass(frozen=True)
+class Origin:
+    """Where a table was read from.
 
     Attributes:
         file: The file.
-        where: Place of the table in it, for messages; ends with ": " where it is not empty.
-        table: The entries.
+        text: Its text, in which the lines of errors are found; empty for a table of another origin.
+        place: Way to the table in it.
+        line: Line of the whole table, where it is a row of a list.
     """
 
-    def __init__(self, file: Path, table: Mapping[str, object], where: str = "") -> None:
-        self.file, self.where, self.table = file, where, table
+    file: Path
+    text: str = ""
+    place: Place = ()
+    line: int | None = None
+
+    def line_of(self, key: str = "") -> int | None:
+        """Line of an entry, else of the table; None where neither is found."""
+        if not self.text:
+            return self.line
+        return line_of(self.text, (*self.place, key)) if key else line_of(self.text, self.place)
+
+
+class Entries:
+    """Entries of a table as its record declares them.
+
+    Attributes:
+        record: The declaration.
+        table: The entries.
+        origin: Where they were read.
+        where: Place of the table for messages; ends with ": " where it is not empty.
+    """
+
+    def __init__(self, record: Record, table: Mapping[str, object], origin: Origin, where: str = "") -> None:
+        """Takes a table.
+
+        Raises:
+            UnknownEntry: It has an entry that is not declared.
+        """
+        self.record, self.table, self.origin, self.where = record, table, origin, where
+        for key in table:
+            if key not in record.keys:
+                raise UnknownEntry(origin.file, f"{record.name} entry", key, record.keys, origin.line_of(key))
 
     @classmethod
-    def of_file(cls, path: str | Path, kind: str, hint: str) -> Entries:
+    def of_file(cls, record: Record, path: str | Path, kind: str, hint: str) -> Entries:
         """The entries of a file.
 
         Args:
+            record: Their declaration.
             path: The file.
             kind: The kind of file with its article, for messages.
             hint: The command that writes such files.
@@ -139,79 +174,89 @@ class Entries:
             FileFormatError: The file is missing or damaged.
         """
         with one_line_errors(Path(path), kind, hint):
-            return cls(Path(path), read_toml(Path(path), hint))
+            text = plain_text(Path(path), hint)
+            table = parse_toml(text)
+        return cls(record, table, Origin(Path(path), text))
 
-    def text(self, key: str, empty: bool = False) -> str | None:
-        """A text, which may be empty only where asked for."""
-        return self._checked(
-            key, lambda value: value if isinstance(value, str) and (value or empty) else None, "a text"
-        )
+    @property
+    def file(self) -> Path:
+        """The file."""
+        return self.origin.file
 
-    def one_of(self, key: str, known: tuple[str, ...]) -> str | None:
-        """One of the known words."""
-        expected = f"one of {', '.join(known)}"
-        return self._checked(key, lambda value: value if value in known else None, expected)
+    def get(self, field: Field[T]) -> T | None:
+        """The value of an entry; None for a missing one.
 
-    def number(self, key: str, span: tuple[float, float] = (-math.inf, math.inf)) -> float | None:
-        """A finite number in a span."""
-        expected = "a number" if math.isinf(span[0]) else f"a number between {span[0]:g} and {span[1]:g}"
-        return self._checked(key, lambda value: _number_in(value, *span), expected)
-
-    def numbers(self, key: str, count: int, largest: float) -> Array | None:
-        """(count,) numbers.
-
-        Args:
-            key: Name of the entry.
-            count: Number of numbers.
-            largest: Bound of their size.
+        Raises:
+            FileFormatError: It is not as declared, or is missing and required.
         """
+        if field.key not in self.table:
+            if field.required:
+                raise self.fault(f"{field.key} is missing; it must be {field.expected}")
+            return None
+        value = self.table[field.key]
+        found = field.parse(value)
+        if found is None:
+            reason = f"{field.key} must be {field.expected}, got {shown(value)}{field.mend(value)}"
+            raise self.fault(reason, field.key)
+        return found
 
-        def read(value: object) -> Array | None:
-            listed = value if isinstance(value, list) else []
-            found = [_number_in(one, -largest, largest) for one in listed]
-            return None if len(found) != count or None in found else np.array(found, dtype=float)
+    def need(self, field: Field[T]) -> T:
+        """The value of a required entry.
 
-        return self._checked(key, read, f"{count} numbers")
+        Raises:
+            FileFormatError: It is missing or not as declared.
+        """
+        found = self.get(field)
+        if found is None:
+            raise self.fault(f"{field.key} is missing; it must be {field.expected}")
+        return found
 
-    def tables(self, key: str) -> dict[str, Entries]:
-        """Tables of a table, by name; empty without a such entry."""
-        found = self.table.get(key, {})
+    def fault(self, reason: str, key: str = "") -> FileFormatError:
+        """An error about an entry of this table, or about the table itself."""
+        return FileFormatError(self.file, f"{self.where}{reason}", self.origin.line_of(key))
+
+    def tables(self, field: Field[object], record: Record) -> dict[str, Entries]:
+        """Tables of a table, by name; empty without such an entry."""
+        found = self.table.get(field.key, {})
         if not isinstance(found, dict) or not all(isinstance(one, dict) for one in found.values()):
-            raise FileFormatError(self.file, f"{self.where}{key} must hold tables, [{key}.NAME]")
-        return {name: Entries(self.file, one, f"{key} {name}: ") for name, one in found.items()}
+            raise self.fault(f"{field.key} must hold tables, [{field.key}.NAME]", field.key)
+        return {
+            name: Entries(record, one, self._inner(field.key, name), f"{field.key} {name}: ")
+            for name, one in found.items()
+        }
 
-    def list_of_tables(self, key: str) -> list[Entries] | None:
-        """Tables one after another."""
-        found = self.table.get(key)
+    def list_of_tables(self, field: Field[object], record: Record) -> list[Entries] | None:
+        """Tables one after another; None without such an entry."""
+        found = self.table.get(field.key)
         if found is None:
             return None
         if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
-            raise FileFormatError(self.file, f"{self.where}{key} must be a list of tables, [[{key}]]")
-        return [Entries(self.file, one, self.where) for one in found]
+            raise self.fault(f"{field.key} must be a list of tables, [[{field.key}]]", field.key)
+        return [Entries(record, one, self._inner(field.key, n), self.where) for n, one in enumerate(found)]
 
-    def required(self, key: str, value: T | None) -> T:
-        """A value that may not be missing.
-
-        Raises:
-            FileFormatError: It is.
-        """
-        if value is None:
-            raise FileFormatError(self.file, f"{self.where}{key} is missing")
-        return value
-
-    def _checked(self, key: str, read: Callable[[object], T | None], expected: str) -> T | None:
-        if key not in self.table:
-            return None
-        found = read(self.table[key])
+    def table_of(self, field: Field[object], record: Record) -> Entries | None:
+        """The one table under a key; None without such an entry."""
+        found = self.table.get(field.key)
         if found is None:
-            value = str(self.table[key])
-            shown = value if len(value) <= _SHOWN else value[:_SHOWN] + " …"
-            raise FileFormatError(self.file, f"{self.where}{key} must be {expected}, got {shown}")
-        return found
+            return None
+        if not isinstance(found, dict):
+            raise self.fault(f"{field.key} must be a table, [{field.key}]", field.key)
+        return Entries(record, found, self._inner(field.key), f"{field.key}: ")
 
+    def numbers_by_name(self, field: Field[object], value: Field[float]) -> dict[str, float]:
+        """A table of numbers under names that people choose; empty without such an entry.
 
-def _number_in(value: object, low: float, high: float) -> float | None:
-    """A finite number between two others, None for anything else."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    return float(value) if math.isfinite(value) and low <= value <= high else None
+        Args:
+            field: The table.
+            value: Declaration of each number; its key does not count.
+        """
+        found = self.table.get(field.key, {})
+        if not isinstance(found, dict):
+            raise self.fault(f"{field.key} must be a table, [{field.key}]", field.key)
+        fields = {name: replace(value, key=name) for name in found}
+        record = Record("number", tuple(fields.values()))
+        entries = Entries(record, found, self._inner(field.key), f"{field.key}: ")
+        return {name: entries.need(one) for name, one in fields.items()}
+
+    def _inner(self, *keys: str | int) -> Origin:
+        return replace(self.origin, place=(*self.origin.place, *keys))

@@ -122,9 +122,10 @@ class HumanModel(Body):
         Raises:
             UnknownName: The subject's reference body or a scale factor is unknown.
             FileFormatError: The body file that the subject carries is damaged.
+            InvalidInput: A scale factor of the body is missing.
         """
         body = reference_body(subject)
-        return cls.scaled(subject.scale_factors, subject.mass_kg, body, subject.inertia)
+        return cls(body, scale_of(subject, body), subject.mass_kg, subject.inertia)
 
     @property
     def root(self) -> SegmentJoint:
@@ -299,6 +300,26 @@ def reference_body(subject: Subject) -> BodyDescription:
     if subject.body_text:
         return parse_body(subject.body_text, f"body '{subject.body}' in the subject")
     return load_body(subject.body)
+
+
+def scale_of(subject: Subject, body: BodyDescription) -> Array:
+    """(K,) scale factors of a subject, in the order of its body; all 1 for a subject that states none.
+
+    Raises:
+        UnknownName: The body does not have one of them.
+        InvalidInput: One of the body is missing.
+    """
+    factors = subject.scale_factors
+    for name in factors:
+        if name not in body.scale_factors:
+            raise UnknownName("scale factor", name, body.scale_factors)
+    missing = [name for name in body.scale_factors if name not in factors]
+    if factors and missing:
+        raise InvalidInput(
+            f"the subject lacks the scale factor {', '.join(missing)} of the body '{body.name}'; restore its line in "
+            "[scale_factors], or scale the person again"
+        )
+    return np.array([factors.get(name, 1.0) for name in body.scale_factors])
 
 
 def _frames_in(data: pin.Data) -> Array:

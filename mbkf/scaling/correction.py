@@ -18,7 +18,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.human import reference_body
+from mbkf.model.human import reference_body, scale_of
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.covariance import corrected_covariance
@@ -97,7 +97,7 @@ def _with_precision(problem: ScalingProblem, offset_precision: Array) -> Scaling
 def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
     """Scaling with fixed factors: poses and offsets only, each marker near its place in the subject file."""
     body = reference_body(subject)
-    factors = np.array([subject.scale_factors.get(name, 1.0) for name in body.scale_factors])
+    factors = scale_of(subject, body)
     own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
     frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body, own), FRAMES)
     count = len(frames.measured_m)

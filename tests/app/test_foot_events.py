@@ -132,7 +132,7 @@ def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run
         (EVENTS, "[]", "sent no events"),
         (EVENTS, "{}", "sent no events"),
         (EVENTS, '{"events": 3}', "event must be a list"),
-        (EVENTS, '{"events": [{"side": "right", "kind": "strike"}]}', "needs side, kind and time_s"),
+        (EVENTS, '{"events": [{"side": "right", "kind": "strike"}]}', "time_s is missing"),
         (EVENTS, '{"events": [{"side": "middle", "kind": "off", "time_s": 1}]}', "side must be"),
         (EVENTS, '{"events": [{"side": "left", "kind": "off", "time_s": NaN}]}', "not finite"),
         ("/trial/events?session=P9&trial=walk1", '{"events": []}', "no session 'P9'"),

@@ -1,6 +1,7 @@
 """What is not known of a body: read back as written, singular or not, and told for markers in any order."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError, ShapeError
-from mbkf.io.body_covariance import DIGITS, BodyCovariance, read_covariance
+from mbkf.io.body_covariance import COVARIANCE, DIGITS, BodyCovariance, read_covariance
 from mbkf.io.subject import read_subject, write_subject
+from mbkf.io.toml import Entries, Origin
 from tests.io.reconstructions import made_up
 
 NAMES = st.lists(
@@ -20,15 +22,19 @@ NAMES = st.lists(
 def made(factors, markers, seed=0, rank=None):
     """A covariance of random errors, of full rank unless told."""
     rng, size = np.random.default_rng(seed), len(factors) + 3 * len(markers)
-    some = rng.normal(size=(size, size if rank is None else rank)) * 10.0 ** rng.uniform(-4, 0, (size, 1))
+    some = rng.normal(size=(size, size if rank is None else rank)) * 10.0 ** rng.uniform(-5, -1, (size, 1))
     return BodyCovariance.of(tuple(factors), tuple(markers), some @ some.T), some @ some.T
+
+
+def read(table):
+    return read_covariance(Entries(COVARIANCE, table, Origin(Path("subject.toml"))))
 
 
 @given(NAMES, NAMES, st.integers(0, 99))
 @settings(max_examples=30, deadline=None)
 def test_it_is_read_back_to_the_digits_written(factors, markers, seed):
     known, _ = made(factors, markers, seed)
-    found = read_covariance(known.as_table())
+    found = read(known.as_table())
     assert (found.factors, found.markers) == (known.factors, known.markers)
     np.testing.assert_allclose(found.root, known.root, rtol=10.0 ** (1 - DIGITS))
 
@@ -54,19 +60,21 @@ def test_markers_come_in_any_order_and_one_that_scaling_did_not_see_by_itself():
 
 
 @pytest.mark.parametrize(
-    ("change", "error"),
+    ("change", "error", "reason"),
     [
-        ({"root": [[1.0], [1.0]]}, ValueError),
-        ({"root": [[float("nan")]]}, ValueError),
-        ({"root": [[1.0]], "markers": ["A"]}, ShapeError),
-        ({"root": [["x"]]}, ValueError),
+        ({"root": [[1.0], [1.0]]}, FileFormatError, "root must be rows"),
+        ({"root": [[float("nan")]]}, FileFormatError, "root must be rows"),
+        ({"root": [[1.0]], "markers": ["A"]}, ShapeError, "root"),
+        ({"root": [["x"]]}, FileFormatError, "root must be rows"),
+        ({"root": [[3.0]]}, FileFormatError, "the standard deviation of a is 3, more than 2"),
+        ({"factor": ["a"]}, FileFormatError, "unknown covariance entry 'factor'; did you mean factors"),
     ],
 )
-def test_a_table_that_is_no_covariance_is_refused(change, error):
+def test_a_table_that_is_no_covariance_is_refused(change, error, reason):
     table = {"factors": ["a"], "markers": [], "root": [[1.0]]}
-    assert read_covariance(table).covariance == [[1.0]]
-    with pytest.raises(error):
-        read_covariance({**table, **change})
+    assert read(table).covariance == [[1.0]]
+    with pytest.raises(error, match=reason):
+        read({**table, **change})
 
 
 def test_subject_files_have_it_or_not(tmp_path):
@@ -79,5 +87,5 @@ def test_subject_files_have_it_or_not(tmp_path):
     np.testing.assert_allclose(read_subject(path).covariance.root, known.root, rtol=1e-5)
     text = path.read_text(encoding="utf-8").replace(f"{known.root[1, 1]:.6g}]", "]")
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(FileFormatError, match="row 1 of the covariance needs 2"):
+    with pytest.raises(FileFormatError, match="covariance: root must be rows"):
         read_subject(path)

@@ -51,5 +51,5 @@ def test_a_shift_has_three_coordinates(tmp_path):
     path = tmp_path / "subject.toml"
     write_subject(replace(PLAIN, inertia={"torso": SegmentInertia(1.1)}), path)
     path.write_text(path.read_text().replace("centre_shift_m = [0.0, 0.0, 0.0]", "centre_shift_m = [0.0]"))
-    with pytest.raises(FileFormatError, match="inertia of torso"):
+    with pytest.raises(FileFormatError, match="inertia torso: centre_shift_m must be 3 numbers"):
         read_subject(path)

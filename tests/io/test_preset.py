@@ -56,7 +56,7 @@ def test_the_folder_is_the_users(monkeypatch, tmp_path):
         ("\x00", "not a preset file"),
         ("[values]\n", "filter"),
         ('filter = "dynamic"\n', "values"),
-        ("filter = 3\n[values]\n", "not a text"),
+        ("filter = 3\n[values]\n", "filter must be a text"),
         (SMALL + 'gate = "wide"\n', "gate"),
         (SMALL + "gate = true\n", "gate"),
         (SMALL + "gate = nan\n", "gate"),

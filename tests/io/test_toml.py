@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io import fields
 from mbkf.io.toml import Entries, one_line_errors, write_toml
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
@@ -51,45 +52,80 @@ def test_arrays_numbers_of_numpy_and_missing_entries(tmp_path):
     assert found == {"a": [[1.0, 0.0], [0.0, 1.0]], "b": 0.5, "c": 3, "e": [], "f": True}
 
 
-def entries(**table) -> Entries:
-    return Entries(Path("a.toml"), table, "part: ")
+NAME = fields.text("name", "a name", required=True)
+SIZE = fields.number("size_m", "a size", (0.0, 3.0), "m")
+PLACE = fields.numbers("place_m", "a place", 2, 9.0, "m")
+KIND = fields.word("kind", "a kind", ("a", "b"))
+FREE = fields.part("free", "numbers by name", "[free]")
+PARTS = fields.part("parts", "tables by name", "[parts.NAME]")
+LISTED = fields.part("listed", "tables", "[[listed]]")
+INNER = fields.record("inner table", SIZE)
+OUTER = fields.record("test file", NAME, SIZE, PLACE, KIND, FREE, PARTS, LISTED)
 
 
-def test_entries_are_what_they_must_be_or_missing():
-    read = entries(text="x", number=2, numbers=[1, 2.5], word="a", tables={"b": {"n": 1}}, listed=[{"n": 2}])
-    assert (read.text("text"), read.number("number", (0, 3)), read.one_of("word", ("a", "b"))) == (
-        "x",
-        2.0,
-        "a",
+def of_text(tmp_path, text: str) -> Entries:
+    (tmp_path / "a.toml").write_text(text, encoding="utf-8")
+    return Entries.of_file(OUTER, tmp_path / "a.toml", "a test file", "make one")
+
+
+def test_entries_are_as_declared_or_missing(tmp_path):
+    read = of_text(
+        tmp_path,
+        'name = "x"\nsize_m = 2\nplace_m = [1, 2.5]\nkind = "a"\nfree.n = 1\n'
+        "[parts.b]\nsize_m = 1\n[[listed]]\nsize_m = 2\n[[listed]]\n",
     )
-    np.testing.assert_array_equal(read.numbers("numbers", 2, 3.0), [1.0, 2.5])
-    assert read.tables("tables")["b"].number("n") == 1.0
-    assert [one.number("n") for one in read.list_of_tables("listed")] == [2.0]
-    missing = (read.text("x"), read.number("x"), read.numbers("x", 1, 1.0), read.list_of_tables("x"))
-    assert missing == (None, None, None, None) and read.tables("x") == {}
-    assert read.required("text", read.text("text")) == "x"
-    with pytest.raises(FileFormatError, match=r"a\.toml: part: x is missing"):
-        read.required("x", read.text("x"))
+    assert (read.need(NAME), read.get(SIZE), read.get(KIND)) == ("x", 2.0, "a")
+    np.testing.assert_array_equal(read.get(PLACE), [1.0, 2.5])
+    assert read.numbers_by_name(FREE, SIZE) == {"n": 1.0}
+    assert read.tables(PARTS, INNER)["b"].get(SIZE) == 1.0
+    assert [one.get(SIZE) for one in read.list_of_tables(LISTED, INNER)] == [2.0, None]
+    empty = of_text(tmp_path, "")
+    assert (empty.get(SIZE), empty.get(KIND), empty.list_of_tables(LISTED, INNER)) == (None, None, None)
+    assert empty.tables(PARTS, INNER) == empty.numbers_by_name(FREE, SIZE) == {}
+    with pytest.raises(FileFormatError, match=r"a\.toml: name is missing; it must be a text"):
+        empty.get(NAME)
+    with pytest.raises(FileFormatError, match="size_m is missing; it must be a number between 0 and 3 m"):
+        empty.need(SIZE)
+
+
+def every(read: Entries) -> None:
+    for field in (SIZE, PLACE, KIND):
+        read.get(field)
+    read.numbers_by_name(FREE, SIZE)
+    for one in (*read.tables(PARTS, INNER).values(), *(read.list_of_tables(LISTED, INNER) or ())):
+        one.get(SIZE)
 
 
 @pytest.mark.parametrize(
-    ("value", "ask", "reason"),
+    ("text", "reason"),
     [
-        ("", lambda read: read.text("x"), "must be a text, got"),
-        (True, lambda read: read.number("x"), "must be a number, got True"),
-        (float("nan"), lambda read: read.number("x"), "must be a number, got nan"),
-        (4, lambda read: read.number("x", (0.0, 3.0)), "must be a number between 0 and 3, got 4"),
-        ([1.0], lambda read: read.numbers("x", 2, 9.0), "must be 2 numbers"),
-        ([1.0, 10.0], lambda read: read.numbers("x", 2, 9.0), "must be 2 numbers"),
-        ([1.0, True], lambda read: read.numbers("x", 2, 9.0), "must be 2 numbers"),
-        ("c" * 100, lambda read: read.one_of("x", ("a", "b")), "must be one of a, b, got c+ …"),
-        ([1], lambda read: read.list_of_tables("x"), r"must be a list of tables, \[\[x\]\]"),
-        ({"a": 1}, lambda read: read.tables("x"), r"must hold tables, \[x.NAME\]"),
+        ("size_m = true", "line 1: size_m must be a number between 0 and 3 m, got True"),
+        ("\nsize_m = nan", "line 2: size_m must be a number between 0 and 3 m, got nan"),
+        (
+            "size_m = 4",
+            "line 1: size_m must be .*, got 4; write size_m = 0.04 if it is in cm, size_m = 0.004 if it is in mm",
+        ),
+        ("place_m = [1.0]", "line 1: place_m must be 2 numbers of at most 9 m"),
+        ("place_m = [1.0, 10.0]", "line 1: place_m must be 2 numbers"),
+        ("place_m = [1.0, true]", "line 1: place_m must be 2 numbers"),
+        (f'kind = "{"c" * 100}"', "line 1: kind must be one of a, b, got c+ …"),
+        ("kind = [1]", "line 1: kind must be one of a, b"),
+        ("listed = [1]", r"line 1: listed must be a list of tables, \[\[listed\]\]"),
+        ("parts = {a = 1}", r"line 1: parts must hold tables, \[parts.NAME\]"),
+        ("free = 3", r"line 1: free must be a table, \[free\]"),
+        ("[free]\nm = 4", "line 2: free: m must be a number between 0 and 3 m"),
+        (
+            "[[listed]]\n[[listed]]\nsise_m = 1",
+            "line 3: unknown inner table entry 'sise_m'; did you mean size_m",
+        ),
+        ("[parts.x]\nsize_m = 9", "line 2: parts x: size_m must be"),
+        ("SIZE_M = 1", "line 1: unknown test file entry 'SIZE_M'; did you mean size_m"),
+        ("x = 1", "line 1: unknown test file entry 'x'; known are name, size_m"),
     ],
 )
-def test_other_entries_are_refused_with_their_place(value, ask, reason):
-    with pytest.raises(FileFormatError, match=f"a.toml: part: x {reason}"):
-        ask(entries(x=value))
+def test_other_entries_are_refused_with_line_and_place(tmp_path, text, reason):
+    with pytest.raises(FileFormatError, match=rf"a\.toml, {reason}"):
+        every(of_text(tmp_path, text))
 
 
 @pytest.mark.parametrize(

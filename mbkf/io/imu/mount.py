@@ -10,11 +10,21 @@ import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import InvalidInput
-from mbkf.io.plain_data import read_toml
-from mbkf.io.toml import one_line_errors, write_toml
+from mbkf.io import fields
+from mbkf.io.toml import Entries, write_toml
 
 FARTHEST_M, LONGEST = 3.0, 1e6
 """Largest coordinate of a sensor in its segment, and of a quaternion before it is normalised."""
+
+
+_NAME = fields.text("name", "the sensor, as in its readings", required=True)
+_SEGMENT = fields.text("segment", "segment that carries it", required=True)
+_POSITION = fields.numbers("position_m", "place in the segment's frame", 3, FARTHEST_M, "m", required=True)
+_ROTATION = fields.numbers("rotation", "quaternion (x, y, z, w), sensor → segment", 4, LONGEST, required=True)
+MOUNT = fields.record("mount", _NAME, _SEGMENT, _POSITION, _ROTATION)
+_IMUS = fields.part("imu", "a sensor", "[[imu]]", required=True)
+MOUNTS = fields.record("mounts", _IMUS)
+"""Entries of a file of mounts."""
 
 
 @dataclass(frozen=True)
@@ -67,19 +77,21 @@ def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
     """Reads a file of :func:`write_mounts`.
 
     Raises:
+        UnknownEntry: The file has an entry that mounts do not have.
         FileFormatError: The file is missing or lacks an entry.
         InvalidInput: A place is impossible.
     """
-    source = Path(path)
-    with one_line_errors(
-        source, "a file of sensor mounts", "'mbkf imu synth' and 'mbkf imu angles' write one"
-    ):
-        return tuple(
-            ImuMount(
-                entry["name"],
-                entry["segment"],
-                np.array(entry["position_m"], dtype=float),
-                np.array(entry["rotation"], dtype=float),
-            )
-            for entry in read_toml(source)["imu"]
-        )
+    read = Entries.of_file(
+        MOUNTS, path, "a file of sensor mounts", "'mbkf imu synth' and 'mbkf imu angles' write one"
+    )
+    read.need(_IMUS)
+    mounts: dict[str, ImuMount] = {}
+    for one in read.list_of_tables(_IMUS, MOUNT) or ():
+        name = one.need(_NAME)
+        if name in mounts:
+            raise one.fault(f"sensor {name} stands twice; keep one of both")
+        try:
+            mounts[name] = ImuMount(name, one.need(_SEGMENT), one.need(_POSITION), one.need(_ROTATION))
+        except InvalidInput as error:
+            raise InvalidInput(f"{path}: {error}") from error
+    return tuple(mounts.values())
