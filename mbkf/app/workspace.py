@@ -69,7 +69,7 @@ class Workspace:
         """A session with its trials and their problems."""
         folder = self.folder(session)
         with self._surveying:
-            return survey_session(folder, self._surveyed, self.root)
+            return survey_session(folder, self._surveyed, self.root, self.recordings(session))
 
     def plan(self, session: str) -> Plan:
         """The work for a session, as ``mbkf batch`` plans it.

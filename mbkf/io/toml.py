@@ -243,6 +243,20 @@ class Entries:
             raise self.fault(f"{field.key} must be a table, [{field.key}]", field.key)
         return Entries(record, found, self._inner(field.key), f"{field.key}: ")
 
+    def each_table(self, field: Field[object], record: Record) -> list[Entries | FileFormatError]:
+        """Tables one after another, where one that cannot be read costs only itself; empty without such an entry."""
+        listed = self.table.get(field.key, [])
+        found: list[Entries | FileFormatError] = []
+        for n, one in enumerate(listed if isinstance(listed, list) else []):
+            place = self._inner(field.key, n)
+            try:
+                if not isinstance(one, dict):
+                    raise FileFormatError(self.file, f"{field.key} must hold tables, [[{field.key}]]")
+                found.append(Entries(record, one, place, self.where))
+            except FileFormatError as error:
+                found.append(error)
+        return found
+
     def numbers_by_name(self, field: Field[object], value: Field[float]) -> dict[str, float]:
         """A table of numbers under names that people choose; empty without such an entry.
 

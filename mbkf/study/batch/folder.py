@@ -13,14 +13,15 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, suggestion
 from mbkf.io.capture import CAPTURES, FORCES, folder_suffixes
 from mbkf.io.results_folder import MOTION_FILE
-from mbkf.io.session import HEIGHT_M, MASS_KG, SESSION_FILE, SessionNotes, TrialKind, read_session
+from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
+from mbkf.io.toml_lines import line_of
 from mbkf.study.batch.plan import (
     MOST_LOOKED_AT,
     MOST_MOVING,
@@ -41,22 +42,60 @@ STATIC = re.compile(
 )
 """Names of standing trials, in lower case."""
 
-STATED = ("mass_kg", "height_m", "protocol")
-"""Person as stated in a session file."""
-
 
 def plan_of_folder(folder: Path) -> Plan:
-    """The persons and trials of a folder.
+    """The persons and trials of a folder; those under a damaged session file have that as their fault.
 
     Raises:
-        FileFormatError: A session file is damaged.
         InvalidInput: It holds no trial.
     """
     root = folder.absolute()
     trials: list[Trial] = []
+    notes: list[str] = []
     for place, captures in _sessions(root):
-        trials += _trials(root, place, captures)
-    return planned(trials, str(folder))
+        try:
+            stated = stated_of(root, place)
+            notes += strange_trials(stated, captures, place / SESSION_FILE)
+            trials += _trials(root, place, captures, stated)
+        except FileFormatError as error:
+            person = Person(*person_and_session(root, place))
+            trials += [
+                Trial(person, path, None, folder_name(path.stem), fault=str(error))
+                for path in [path for path in captures if not is_static(path)] or captures
+            ]
+    return planned(trials, str(folder), notes)
+
+
+def strange_trials(
+    notes: SessionNotes, captures: Sequence[Path], file: Path, known: Collection[str] = ()
+) -> list[str]:
+    """Remarks on statements about trials of which no capture lies in the folder: live runs, or files that are gone.
+
+    Args:
+        notes: Statements of the session file.
+        captures: The captures of its folder.
+        file: The session file.
+        known: Names of live runs.
+
+    Raises:
+        FileFormatError: The name is that of a capture, but for its suffix, capitals or marks.
+    """
+    stems = [path.stem for path in captures]
+    plain = {_letters(stem): stem for stem in stems}
+    found = []
+    for name in notes.trials:
+        if name in stems or name in known:
+            continue
+        if (meant := plain.get(_letters(name)) or plain.get(_letters(Path(name).stem))) is not None:
+            line = line_of(file.read_text(encoding="utf-8-sig"), ("trial", name)) if file.is_file() else None
+            raise FileFormatError(file, f"unknown trial '{name}'; did you mean {meant}", line)
+        found.append(f"{file}: its trial '{name}' is no capture of this folder; {suggestion(name, stems)}")
+    return found
+
+
+def _letters(name: str) -> str:
+    """A name without capitals, spaces and marks."""
+    return "".join(re.findall(r"[^\W_]+", name.casefold()))
 
 
 def is_static(path: Path, notes: SessionNotes | None = None) -> bool:
@@ -137,9 +176,9 @@ def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
         yield place, captures_in(place)
 
 
-def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
+def _trials(root: Path, place: Path, captures: Sequence[Path], notes: SessionNotes) -> list[Trial]:
     """The trials of one session."""
-    notes, files = stated_of(root, place), sorted(place.iterdir())
+    files = sorted(place.iterdir())
     kept = [path for path in captures if not notes.trial(path.stem).excluded]
     statics = tuple(path for path in kept if is_static(path, notes))
     moving = [Files(path, forces_beside(path, files)) for path in kept if path not in statics]
@@ -203,25 +242,3 @@ def _found_set(notes: SessionNotes, folder: Path) -> SessionNotes:
     if notes.protocol and notes.protocol.lower().endswith(".toml"):
         return replace(notes, protocol=str(folder / notes.protocol))
     return notes
-
-
-def checked_entry(key: str, value: object, file: Path, line: int | None = None) -> float | str:
-    """A mass, height or protocol as it must be.
-
-    Args:
-        key: One of :data:`STATED`.
-        value: Value in the file.
-        file: The file.
-        line: Its line; None: unknown.
-
-    Raises:
-        FileFormatError: It is not one.
-    """
-    if key == "protocol":
-        if isinstance(value, str) and value:
-            return value
-        raise FileFormatError(file, "protocol must be a name or a file", line)
-    low, high = {"mass_kg": MASS_KG, "height_m": HEIGHT_M}[key]
-    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise FileFormatError(file, f"{key} must be a number between {low:g} and {high:g}, got {value}", line)
-    return float(value)

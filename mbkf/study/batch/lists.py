@@ -19,144 +19,175 @@ person's rows.
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
-from typing import TypeAlias
 
 from mbkf.errors import FileFormatError
-from mbkf.io.files_read import SETTINGS_BYTES, read_text
-from mbkf.io.plain_data import read_toml
-from mbkf.study.batch.folder import STATED, checked_entry
-from mbkf.study.batch.plan import MOST_MOVING, Files, Person, Plan, Trial, planned
+from mbkf.io import fields
+from mbkf.io.edited_csv import read_edited_csv
+from mbkf.io.session import HEIGHT, MASS, PROTOCOL
+from mbkf.io.toml import Entries
+from mbkf.study.batch.listing import Key, Listing
+from mbkf.study.batch.plan import Files, Plan
 
-Entry: TypeAlias = Mapping[str, object]
+_SUBJECT = fields.text("subject", "the person's name or code", required=True)
+_TRIAL = fields.text("trial", "capture of a moving trial", required=True)
+_SESSION = fields.text("session", "name of the session, for a person with several", empty=True)
+_STATIC = fields.text("static", "capture of a standing trial")
+_FORCES = fields.text("forces", "ground reactions of the trial, where its capture has none")
+_NAME = fields.text("name", "name of the trial's folder; by default that of its file")
+_SUBJECT_FILE = fields.text("subject_file", "a person scaled before, instead of static and mass")
+CSV_LIST = fields.record(
+    "list", _SUBJECT, _TRIAL, _SESSION, _STATIC, _FORCES, _NAME, MASS, HEIGHT, PROTOCOL, _SUBJECT_FILE
+)
+"""Columns of a list in CSV."""
 
-COLUMNS = ("subject", "trial", "session", "static", "forces", "name", *STATED, "subject_file")
+_PERSON = fields.text("name", "the person's name or code", required=True)
+_STATICS = fields.Field(
+    "static",
+    "captures of standing trials",
+    "a file or a list of files",
+    lambda v: (
+        [v]
+        if isinstance(v, str)
+        else v
+        if isinstance(v, list) and all(isinstance(x, str) for x in v)
+        else None
+    ),
+)
+_TRIALS = fields.Field(
+    "trials",
+    "captures of moving trials",
+    "a list of files, or of tables with path, forces and name",
+    lambda v: v if isinstance(v, list) else None,
+    required=True,
+)
+_SCALED = fields.text("subject", "a person scaled before, instead of static and mass")
+LISTED_PERSON = fields.record(
+    "subject", _PERSON, _SESSION, MASS, HEIGHT, PROTOCOL, _STATICS, _TRIALS, _SCALED
+)
+"""Entries of a person in a list in TOML."""
+
+_PATH = fields.text("path", "the capture", required=True)
+LISTED_TRIAL = fields.record("trial", _PATH, _FORCES, _NAME)
+"""Entries of a trial in a list in TOML."""
+
+_PERSONS = fields.part("subject", "a person and session", "[[subject]]", required=True)
+TOML_LIST = fields.record("list", _PERSONS)
+"""Entries of a list in TOML."""
 
 
 def plan_of_toml(file: Path) -> Plan:
-    """The persons and trials of a TOML list.
+    """The persons and trials of a TOML list; a person or trial that cannot be right has its fault in the plan.
 
     Raises:
-        FileFormatError: It is damaged, or an entry is missing or not possible.
-        InvalidInput: It names no trial, or one place twice.
+        UnknownEntry: The list has an entry besides its persons.
+        FileFormatError: It is damaged.
+        InvalidInput: It names no trial.
     """
-    try:
-        listed = read_toml(file)
-    except (OSError, ValueError) as error:
-        raise FileFormatError(file, f"cannot be read as a list in TOML ({error})") from error
-    entries = listed.get("subject")
-    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-        raise FileFormatError(file, "has no [[subject]]")
-    return planned([trial for entry in entries for trial in _trials(file, entry)], str(file))
+    read = Entries.of_file(TOML_LIST, file, "a list in TOML", "mbkf batch --help shows one")
+    if not isinstance(read.need(_PERSONS), list):
+        raise read.fault("has no [[subject]]", "subject")
+    listing = Listing(file)
+    for number, one in enumerate(read.each_table(_PERSONS, LISTED_PERSON), start=1):
+        row = f"subject {number}"
+        if isinstance(one, FileFormatError):
+            listing.lose((row, ""), row, file, one)
+        else:
+            _listed_person(listing, one, row)
+    return listing.plan()
 
 
 def plan_of_csv(file: Path) -> Plan:
-    """The persons and trials of a CSV list.
+    """The persons and trials of a CSV list; a row that cannot be right has its fault in the plan.
 
     Raises:
-        FileFormatError: It is damaged, or a column is missing, unknown or holds something impossible.
-        InvalidInput: It names no trial, or one place twice.
+        UnknownEntry: A column is not known.
+        FileFormatError: The list is damaged, or a required column is missing.
+        InvalidInput: It names no trial.
     """
+    listing = Listing(file)
+    for row in read_edited_csv(file, CSV_LIST):
+        listing.notes += row.notes
+        key = row.cells.get("subject", f"line {row.line}"), row.cells.get("session", "")
+        path, place = file, f"line {row.line}"
+        if "trial" in row.cells:
+            path = file.absolute().parent / row.cells["trial"].replace("\0", "")
+            place = row.cells.get("name", path.stem)
+        try:
+            if isinstance(row.entries, FileFormatError):
+                raise row.entries
+            _csv_row(listing, row.entries)
+        except FileFormatError as error:
+            listing.lose(key, place, path, error)
+    return listing.plan()
+
+
+def _csv_row(listing: Listing, read: Entries) -> None:
+    key: Key = read.need(_SUBJECT), read.get(_SESSION) or ""
+    stated = _stated(read)
+    named = [field for field in (_TRIAL, _FORCES, _STATIC, _SUBJECT_FILE) if field.key in read.table]
+    files = {field.key: _file(read, read.need(field)) for field in named}
+    trial, forces, static, scaled = (files.get(key) for key in ("trial", "forces", "static", "subject_file"))
+    if trial is None and (forces is not None or _NAME.key in read.table or not (stated or files)):
+        raise read.fault("trial is missing; name its capture")
+    if scaled is not None:
+        stated["subject"] = scaled
+    listing.person(key, stated, read.origin.line)
+    if static is not None:
+        listing.static(key, static)
+    if trial is not None:
+        listing.trial(key, Files(trial, forces), read.get(_NAME) or trial.stem)
+
+
+def _listed_person(listing: Listing, read: Entries, row: str) -> None:
+    """Adds a person and the trials; without a name or trials, one lost trial that is called as its row."""
+    name = row
     try:
-        rows = list(csv.DictReader(io.StringIO(read_text(file, SETTINGS_BYTES))))
-    except (OSError, ValueError, csv.Error) as error:
-        raise FileFormatError(file, f"cannot be read as a list in CSV ({error})") from error
-    known = set(rows[0]) if rows else set()
-    for name in ("subject", "trial"):
-        if rows and name not in known:
-            raise FileFormatError(file, f"has no column '{name}'", 1)
-    if strange := sorted(str(name) for name in known - set(COLUMNS)):
-        raise FileFormatError(file, f"has columns that are not known: {', '.join(strange)}", 1)
-    persons: dict[tuple[str, str], Person] = {}
-    trials: list[tuple[tuple[str, str], Trial]] = []
-    for line, row in enumerate(rows, start=2):
-        filled = {key: value.strip() for key, value in row.items() if key and value and value.strip()}
-        key = filled.get("subject", ""), filled.get("session", "")
-        person = _with(persons.get(key, Person(*key)), filled, file, line)
-        if "trial" in filled:
-            path = _file(file, filled["trial"], line)
-            forces = _file(file, filled["forces"], line) if "forces" in filled else None
-            trials.append((key, Trial(person, path, forces, filled.get("name", path.stem))))
-            person = replace(person, moving=(*person.moving, Files(path, forces))[:MOST_MOVING])
-        persons[key] = person
-    return planned([replace(trial, person=persons[key]) for key, trial in trials], str(file))
-
-
-def _with(person: Person, row: Mapping[str, str], file: Path, line: int) -> Person:
-    """A person completed by the statements of a row."""
-    if not person.name:
-        raise FileFormatError(file, "names no subject", line)
-    found: dict[str, object] = {}
-    for key in STATED:
-        if key in row:
-            found[key] = checked_entry(
-                key, row[key] if key == "protocol" else _number(row[key], file, line), file, line
-            )
-    if "static" in row:
-        static = _file(file, row["static"], line)
-        found["statics"] = (*person.statics, *(() if static in person.statics else (static,)))
-    if "subject_file" in row:
-        found["subject"] = _file(file, row["subject_file"], line)
-    return replace(person, **found)  # type: ignore[arg-type]
-
-
-def _number(text: str, file: Path, line: int) -> float:
+        name = read.need(_PERSON)
+        read.where = f"{name}: "
+        key: Key = name, read.get(_SESSION) or ""
+        trials = read.need(_TRIALS)
+    except FileFormatError as error:
+        listing.lose((name, ""), row, listing.file, error)
+        return
     try:
-        return float(text)
-    except ValueError:
-        raise FileFormatError(file, f"'{text}' should be a number", line) from None
+        stated, scaled = _stated(read), read.get(_SCALED)
+        if scaled is not None:
+            stated["subject"] = _file(read, scaled)
+        listing.person(key, stated, read.origin.line_of())
+        for static in read.get(_STATICS) or ():
+            listing.static(key, _file(read, static))
+    except FileFormatError as error:
+        listing.person(key, {}, None)
+        listing.lose_person(key, error)
+    for number, one in enumerate(trials, start=1):
+        try:
+            own = {"path": one} if isinstance(one, str) else one
+            if not isinstance(own, dict):
+                raise read.fault("a trial is a file, or a table with path, forces and name", _TRIALS.key)
+            entries = Entries(LISTED_TRIAL, own, read.origin, f"{name}, trial {number}: ")
+            path, forces = _file(entries, entries.need(_PATH)), entries.get(_FORCES)
+            files = Files(path, None if forces is None else _file(entries, forces))
+            listing.trial(key, files, entries.get(_NAME) or path.stem)
+        except FileFormatError as error:
+            listing.lose(key, f"trial {number}", listing.file, error)
 
 
-def _file(file: Path, name: str, line: int | None = None) -> Path:
+def _stated(read: Entries) -> dict[str, object]:
+    """Mass, height and protocol, as far as they are stated."""
+    found = {field.key: read.get(field) for field in (MASS, HEIGHT)}
+    stated: dict[str, object] = {key: value for key, value in found.items() if value is not None}
+    if protocol := read.get(PROTOCOL):
+        stated[PROTOCOL.key] = protocol
+    return stated
+
+
+def _file(read: Entries, name: str) -> Path:
     """A file that a list names.
 
     Raises:
         FileFormatError: Its name could not be one.
     """
     if "\0" in name:
-        raise FileFormatError(file, "a file's name cannot hold a zero byte", line)
-    return (file.absolute().parent / name).absolute()
-
-
-def _trials(file: Path, entry: Entry) -> list[Trial]:
-    """The trials of a table."""
-    name, session = entry.get("name"), entry.get("session", "")
-    if not isinstance(name, str) or not name or not isinstance(session, str):
-        raise FileFormatError(file, "a [[subject]] needs a name")
-    statics, subject = entry.get("static", ()), entry.get("subject")
-    listed, trials = [statics] if isinstance(statics, str) else statics, entry.get("trials")
-    if (
-        not isinstance(listed, list | tuple)
-        or not isinstance(trials, list)
-        or not isinstance(subject, str | None)
-    ):
-        raise FileFormatError(file, f"{name}: trials must be a list of files, static one or a list of them")
-    found = [_trial(file, name, one) for one in trials]
-    stated = {key: checked_entry(key, entry[key], file) for key in STATED if key in entry}
-    person = Person(
-        name,
-        session,
-        tuple(_file(file, str(one)) for one in listed),
-        tuple(Files(path, forces) for path, forces, _ in found)[:MOST_MOVING],
-        subject=None if subject is None else _file(file, subject),
-    )
-    person = replace(person, **stated)  # type: ignore[arg-type]
-    return [Trial(person, path, forces, trial_name) for path, forces, trial_name in found]
-
-
-def _trial(file: Path, person: str, one: object) -> tuple[Path, Path | None, str]:
-    """Capture, ground reactions and name of an entry of ``trials``."""
-    own = {"path": one} if isinstance(one, str) else one
-    if (
-        not isinstance(own, dict)
-        or not all(isinstance(value, str) for value in own.values())
-        or "path" not in own
-    ):
-        raise FileFormatError(file, f"{person}: a trial is a file, or a table with path, forces and name")
-    path = _file(file, own["path"])
-    forces = _file(file, own["forces"]) if "forces" in own else None
-    return path, forces, own.get("name", path.stem)
+        raise read.fault("a file's name cannot hold a zero byte")
+    return (read.file.absolute().parent / name).absolute()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -70,6 +71,7 @@ class Trial:
         forces: Ground reactions beside it; None: those of the capture itself.
         name: Its folder's name among the person's trials.
         events: Strikes and toe-offs set by a person; None: those that are found.
+        fault: Reason for which it cannot be done, such as a damaged row; empty without.
     """
 
     person: Person
@@ -77,6 +79,7 @@ class Trial:
     forces: Path | None = None
     name: str = ""
     events: tuple[FootEvent, ...] | None = None
+    fault: str = ""
 
     @property
     def place(self) -> Path:
@@ -86,14 +89,20 @@ class Trial:
 
 @dataclass(frozen=True)
 class Plan:
-    """All trials of a batch, and with them the persons."""
+    """All trials of a batch, and with them the persons.
+
+    Attributes:
+        trials: The trials.
+        notes: Remarks on the list or folder, such as a decimal comma that was read.
+    """
 
     trials: tuple[Trial, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def persons(self) -> tuple[Person, ...]:
-        """Those whose trials these are, in their order."""
-        return tuple(dict.fromkeys(trial.person for trial in self.trials))
+        """Those whose trials can be done, in their order."""
+        return tuple(dict.fromkeys(trial.person for trial in self.trials if not trial.fault))
 
     def shard(self, number: int, count: int) -> Plan:
         """Every ``count``-th trial, from the ``number``-th (from 1) on.
@@ -103,7 +112,7 @@ class Plan:
         """
         if not 1 <= number <= count:
             raise InvalidInput(f"shard {number}/{count} does not exist; give 1/{count} to {count}/{count}")
-        return Plan(self.trials[number - 1 :: count])
+        return Plan(self.trials[number - 1 :: count], self.notes)
 
 
 def folder_name(name: str) -> str:
@@ -112,29 +121,51 @@ def folder_name(name: str) -> str:
     return f"_{found}" if found in {"", ".", ".."} else found
 
 
-def planned(trials: Sequence[Trial], where: str) -> Plan:
-    """The plan of trials, each in a place of its own.
+def planned(trials: Sequence[Trial], where: str, notes: Sequence[str] = ()) -> Plan:
+    """The plan of trials, each in a place of its own; one whose place is taken has that as its fault.
 
     Args:
         trials: They.
         where: File or folder that they were read from, for messages.
+        notes: Remarks on the reading.
 
     Raises:
-        InvalidInput: The plan is empty, two trials have the same place, or a name cannot be a folder's.
+        InvalidInput: The plan is empty.
     """
     if not trials:
         raise InvalidInput(
             f"{where}: no trial was found; mbkf batch --help describes the contents of a folder or list"
         )
-    places: dict[Path, Path] = {}
-    for trial in trials:
-        for name in (trial.person.name, trial.person.session, trial.name):
-            if name in {".", ".."} or FORBIDDEN.search(name):
-                raise InvalidInput(f"{where}: '{name}' cannot be a folder's name")
-        other = places.setdefault(trial.place, trial.path)
-        if other != trial.path:
-            raise InvalidInput(
-                f"{where}: {trial.path} and {other} would both be written to {trial.place}; give one another name"
-            )
-    unique = {trial.place: trial for trial in trials}
-    return Plan(tuple(unique.values()))
+    places: dict[Path, Trial] = {}
+    found, remarks = [], list(notes)
+    for trial in map(partial(_placeable, where), trials):
+        other = None if trial.fault else places.get(trial.place)
+        if other is None:
+            found.append(trial)
+            if not trial.fault:
+                places[trial.place] = trial
+        elif _same(trial, other):
+            remarks.append(f"{where}: {trial.path.name} of {trial.person.name} stands twice and is done once")
+        else:
+            files = (trial.path, other.path) if trial.path != other.path else (trial.place, "itself")
+            reason = f"{where}: {files[0]} and {files[1]} would both be written to {trial.place}; give one another name"
+            found.append(replace(trial, fault=reason))
+    return Plan(tuple(found), tuple(remarks))
+
+
+def _same(one: Trial, other: Trial) -> bool:
+    """True for two rows that state the same trial."""
+    return (one.path, one.forces, one.person) == (other.path, other.forces, other.person)
+
+
+def _placeable(where: str, trial: Trial) -> Trial:
+    """A trial whose names can be folders'; one with other names gets possible ones and has that as its fault."""
+    names = (trial.person.name, trial.person.session, trial.name)
+    wrong = next((name for name in names if name in {".", ".."} or FORBIDDEN.search(name)), None)
+    if wrong is None:
+        return trial
+    person = replace(
+        trial.person, name=folder_name(names[0]), session=folder_name(names[1]) if names[1] else ""
+    )
+    fault = trial.fault or f"{where}: '{wrong}' cannot be a folder's name"
+    return replace(trial, person=person, name=folder_name(names[2]) if names[2] else "", fault=fault)

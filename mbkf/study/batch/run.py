@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Sequence
 from os import cpu_count
 from pathlib import Path
@@ -10,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from mbkf.conventions import StageCallback
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import FileFormatError, InvalidInput, MbkfWarning
 from mbkf.io.atomic import check_folder
 from mbkf.io.leftovers import sweep
 from mbkf.study.batch.cluster import ClusterWorkers
@@ -60,6 +61,8 @@ def batch(
     if workers is not None and workers < 1:
         raise InvalidInput(f"{workers} workers can do nothing; give one or more")
     target, plan = check_folder(out, TABLES), plan_of(Path(source))
+    for note in plan.notes:
+        warnings.warn(note, MbkfWarning, stacklevel=2)
     if shard is not None:
         plan = plan.shard(*shard)
     count = workers or cpu_count() or 1
@@ -137,10 +140,11 @@ def outcomes_of(
             strict=True,
         )
     )
-    ready = [trial for trial in plan.trials if scaled[trial.person].subject is not None]
+    possible = [trial for trial in plan.trials if not trial.fault]
+    ready = [trial for trial in possible if scaled[trial.person].subject is not None]
     tasks = (ReconstructTrial(one, _subject(scaled, one.person), out, settings) for one in ready)
     found = dict(zip(ready, _done(tasks, executor, "Trials", progress, len(ready)), strict=True))
-    return [found.get(trial) or _unscaled(trial, scaled) for trial in plan.trials]
+    return [found.get(trial) or _undone(trial, scaled) for trial in plan.trials]
 
 
 def _done(
@@ -174,5 +178,7 @@ def _subject(scaled: dict[Person, Outcome], person: Person) -> Path:
     return subject
 
 
-def _unscaled(trial: Trial, scaled: dict[Person, Outcome]) -> Outcome:
+def _undone(trial: Trial, scaled: dict[Person, Outcome]) -> Outcome:
+    if trial.fault:
+        return Outcome(Status.FAILED, trial.fault)
     return Outcome(Status.FAILED, f"the person could not be scaled: {scaled[trial.person].reason}")

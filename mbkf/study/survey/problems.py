@@ -23,11 +23,16 @@ TEXTS: Mapping[str, tuple[str, str]] = {
     ),
     "no_trial": ("no usable trial", "add captures with markers"),
     "no_static": ("no standing trial", "the body is scaled from moving trials, with more uncertainty"),
+    "session_file": (
+        "{0}",
+        "correct that line of the file in a text editor, or rename the file and enter person and trials here again",
+    ),
+    "strange_trial": ("{0}", "correct its name in session.toml, or remove it where the capture is gone"),
     "frames_lost": ("{0} of {1} frames were lost", "live.json lists the times"),
 }
 """Problem and remedy by key; {0} and {1} stand for values."""
 
-GRAVE = frozenset({"unreadable", "no_marker", "no_trial"})
+GRAVE = frozenset({"unreadable", "no_marker", "no_trial", "session_file"})
 """With these a capture, or the session, cannot be used as it is."""
 
 OF_MARKER_SET = frozenset({"unknown_set", "partly_known_set"})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import data_folder
-from mbkf.errors import MbkfError
+from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.imu.mount import ImuMount, read_mounts, write_mounts
 from mbkf.io.osim import read_osim
 from mbkf.io.preset import read_preset
@@ -23,9 +23,18 @@ def _subject():
     return Subject("human18", 70.0, {"head": 1.0}, (marker,), "reference36")
 
 
+def plan_of_list(path):
+    """The plan of a list or folder; the first fault of a row as its error."""
+    plan = plan_of(path)
+    for trial in plan.trials:
+        if trial.fault:
+            raise InvalidInput(trial.fault)
+    return plan
+
+
 def plan_of_session(path):
     (path.parent / "walk.c3d").touch()
-    return plan_of(path.parent)
+    return plan_of_list(path.parent)
 
 
 PROTOCOL = 'name = "P"\n[[marker]]\nname = "A"\nlandmark = "c7"\nnoise_mm = 5\n'
@@ -45,7 +54,7 @@ def samples(tmp_path_factory):
     return {
         "subject": (read_subject, (folder / "subject.toml").read_text()),
         "mounts": (read_mounts, (folder / "mounts.toml").read_text()),
-        "protocol": (load_protocol, PROTOCOL), "preset": (read_preset, PRESET), "list": (plan_of, LIST),
+        "protocol": (load_protocol, PROTOCOL), "preset": (read_preset, PRESET), "list": (plan_of_list, LIST),
         "session": (plan_of_session, SESSION),
         "body": (load_body, (data_folder("models") / "human18.toml").read_text()[:4000]),
     }  # fmt: skip
@@ -134,7 +143,7 @@ CASES = [
     ("list", "mass_kg = 70.0", "mass_kg = 1e300", "mass_kg"),
     ("list", '["a.c3d"]', "[1]", "a trial is a file"),
     ("list", '["a.c3d"]', '["a\\u0000.c3d"]', "zero byte"),
-    ("list", 'name = "P"', "name = 1", "needs a name"),
+    ("list", 'name = "P"', "name = 1", "name must be a text"),
     ("list", "[[subject]]", "[subject]", "[[subject]]"),
     ("session", "mass_kg = 70.0", "mass_kg = nan", "mass_kg"),
     ("session", "height_m = 1.8", "height_m = true", "height_m"),

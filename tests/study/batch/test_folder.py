@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import InvalidInput
 from mbkf.io.session import EventKind, FootEvent
 from mbkf.study.batch.folder import forces_beside, is_static, plan_of_folder, session_folders
 
@@ -84,9 +84,7 @@ def test_of_two_captures_of_one_name_the_c3d_is_taken(tmp_path):
 
 def test_session_files_state_what_holds_below_them_the_nearest_first(tmp_path):
     made(tmp_path, "P1/monday/walk.c3d", "P1/tuesday/walk.c3d")
-    (tmp_path / "P1" / "session.toml").write_text(
-        "mass_kg = 70\nheight_m = 1.8\nother = 3\n", encoding="utf-8"
-    )
+    (tmp_path / "P1" / "session.toml").write_text("mass_kg = 70\nheight_m = 1.8\n", encoding="utf-8")
     (tmp_path / "P1" / "tuesday" / "session.toml").write_text("mass_kg = 71.5\n", encoding="utf-8")
     monday, tuesday = plan_of_folder(tmp_path).persons
     assert (monday.mass_kg, monday.height_m, monday.protocol) == (70.0, 1.8, None)
@@ -129,11 +127,42 @@ def test_events_by_hand_belong_to_their_trial(tmp_path):
         "= 3",
     ],
 )
-def test_a_session_file_that_cannot_be_is_refused(tmp_path, text):
-    made(tmp_path, "P1/walk.c3d")
+def test_a_damaged_session_file_costs_its_own_session(tmp_path, text):
+    made(tmp_path, "P1/walk.c3d", "P1/static.c3d", "P2/walk.c3d")
     (tmp_path / "P1" / "session.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(FileFormatError, match=r"session\.toml"):
-        plan_of_folder(tmp_path)
+    lost, kept = plan_of_folder(tmp_path).trials
+    assert (lost.path.name, lost.person.name) == ("walk.c3d", "P1") and "session.toml" in lost.fault
+    assert kept.person.name == "P2" and not kept.fault
+
+
+def test_a_damaged_session_file_above_costs_the_sessions_below_it(tmp_path):
+    made(tmp_path, "P1/monday/walk.c3d", "P1/friday/walk.c3d", "P2/static.c3d", "P2/walk.c3d")
+    (tmp_path / "P1" / "session.toml").write_text("mass = 71", encoding="utf-8")
+    faults = {(one.person.name, one.person.session): one.fault for one in plan_of_folder(tmp_path).trials}
+    assert not faults["P2", ""]
+    assert (
+        "unknown session entry 'mass'; did you mean mass_kg"
+        in faults["P1", "monday"]
+        == faults["P1", "friday"]
+    )
+
+
+@pytest.mark.parametrize("name", ["w1.c3d", "W1", "w_1", "w 1.C3D"])
+def test_a_trial_in_a_session_file_is_a_capture_by_its_exact_name(tmp_path, name):
+    made(tmp_path, "P1/w1.c3d", "P1/w2.c3d")
+    file = tmp_path / "P1" / "session.toml"
+    file.write_text(f'mass_kg = 70\n[trial."{name}"]\nexcluded = "fell"\n', encoding="utf-8")
+    reason = f"{file}, line 2: unknown trial '{name}'; did you mean w1"
+    assert [one.fault for one in plan_of_folder(tmp_path).trials] == [reason, reason]
+
+
+def test_a_statement_about_a_capture_that_is_gone_is_a_remark(tmp_path):
+    made(tmp_path, "P1/w1.c3d", "P1/w2.c3d")
+    (tmp_path / "P1" / "session.toml").write_text('[trial.w3]\nexcluded = "fell"\n', encoding="utf-8")
+    plan = plan_of_folder(tmp_path)
+    assert [one.fault for one in plan.trials] == ["", ""]
+    (note,) = plan.notes
+    assert "its trial 'w3' is no capture of this folder; did you mean w2, w1" in note
 
 
 def test_a_person_scaled_before_is_taken(tmp_path):

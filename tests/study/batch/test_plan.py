@@ -48,9 +48,24 @@ def test_places_are_person_session_and_trial():
 
 def test_two_files_in_one_place_are_refused_and_one_file_twice_is_one_trial():
     person = Person("P1")
-    with pytest.raises(InvalidInput, match="both be written"):
-        planned([Trial(person, Path("a/walk.c3d")), Trial(person, Path("b/walk.c3d"))], "list.csv")
-    assert len(planned([Trial(person, Path("a/walk.c3d"))] * 2, "list.csv").trials) == 1
+    first, second = planned(
+        [Trial(person, Path("a/walk.c3d")), Trial(person, Path("b/walk.c3d"))], "list.csv"
+    ).trials
+    assert not first.fault and "both be written to P1/walk; give one another name" in second.fault
+    forced = Trial(person, Path("a/walk.c3d"), Path("a/walk.mot"))
+    assert [bool(one.fault) for one in planned([Trial(person, Path("a/walk.c3d")), forced], "x").trials] == [
+        False,
+        True,
+    ]
+    once = planned([Trial(person, Path("a/walk.c3d"))] * 2, "list.csv")
+    assert len(once.trials) == 1 and once.notes == ("list.csv: walk.c3d of P1 stands twice and is done once",)
+
+
+def test_a_fault_takes_no_place_from_a_trial_and_its_person_is_not_scaled():
+    lost, kept = Trial(Person("P1"), Path("a/walk.c3d"), fault="no"), Trial(Person("P1"), Path("b/walk.c3d"))
+    plan = planned([lost, kept, Trial(Person("P2"), Path("c.c3d"), fault="no")], "list.csv")
+    assert [one.fault for one in plan.trials] == ["no", "", "no"]
+    assert plan.persons == (Person("P1"),)
 
 
 @pytest.mark.parametrize("name", ["..", ".", "a/b", "a\\b", "a:b", "a\nb"])
@@ -60,8 +75,9 @@ def test_names_that_no_folder_can_have_are_refused(name):
         Trial(Person("P1", name), Path("walk.c3d")),
         Trial(Person("P1"), Path("walk.c3d"), name=name),
     ):
-        with pytest.raises(InvalidInput, match="cannot be a folder"):
-            planned([trial], "list.csv")
+        (found,) = planned([trial], "list.csv").trials
+        assert "cannot be a folder's name" in found.fault
+        assert not {".", ".."} & set(found.place.parts) and not found.place.is_absolute()
 
 
 def test_a_plan_of_nothing_is_refused():

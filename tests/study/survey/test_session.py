@@ -62,3 +62,19 @@ def test_what_is_stated_above_a_session_counts(folder):
 def test_a_session_without_a_trial_is_told(tmp_path):
     session = survey_session(tmp_path)
     assert session.trials == () and session.problems[0].grave
+
+
+def test_a_damaged_session_file_is_a_problem_of_its_session(folder):
+    (folder / SESSION_FILE).write_text("mass_kg = 71,9\n", encoding="utf-8")
+    session = survey_session(folder)
+    assert session.notes == SessionNotes() and "write mass_kg = 71.9" in session.damage
+    problem = session.problems[0]
+    assert (problem.key, problem.values, problem.grave) == ("session_file", (session.damage,), True)
+    assert len(session.trials) == 4
+
+
+def test_a_statement_about_no_capture_is_a_problem_unless_it_is_a_live_run(folder):
+    write_session(SessionNotes(trials={"gone": TrialNotes(excluded="fell")}), folder / SESSION_FILE)
+    (problem,) = survey_session(folder).problems
+    assert problem.key == "strange_trial" and "'gone' is no capture of this folder" in problem.what
+    assert survey_session(folder, live_runs=("gone",)).problems == ()
