@@ -17,6 +17,7 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "edited_files",
     "mathml",
     "public_surface",
     "result_quantities",

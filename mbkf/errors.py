@@ -91,6 +91,10 @@ class UnknownEntry(FileFormatError, UnknownName):
         MbkfError.__init__(self, f"{path}{'' if line is None else f', line {line}'}: {self.reason}")
 
 
+_MEANT = {"weight": "mass", "gender": "sex", "person": "subject", "participant": "subject"}
+"""Words that people write for others."""
+
+
 def suggestion(name: str, choices: Iterable[str]) -> str:
     """The names closest to a wrong one, or the first of all: "did you mean mass_kg"."""
     folded: dict[str, str] = {}
@@ -102,8 +106,9 @@ def suggestion(name: str, choices: Iterable[str]) -> str:
 
 
 def _folded(name: str) -> str:
-    """A name without capitals, spaces and brackets."""
-    return "_".join(re.findall(r"\w+", name.casefold()))
+    """A name without capitals, spaces and brackets, in the words of mbkf."""
+    words = re.findall(r"[^\W_]+", name.casefold())
+    return "_".join(_MEANT.get(word, word) for word in words)
 
 
 class ShapeError(MbkfError):

@@ -18,8 +18,8 @@ import numpy as np
 
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, MbkfError, UnknownName
-from mbkf.io.files_read import SETTINGS_BYTES, read_text
-from mbkf.io.plain_data import parse_toml
+from mbkf.io.known_keys import refuse_unknown
+from mbkf.io.plain_data import parse_toml, plain_text
 from mbkf.model.body_checks import check_body
 from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
 from mbkf.model.description import (
@@ -37,14 +37,32 @@ from mbkf.model.sides import mirrored
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
 
-_NOTES = ("_source", "_printed_m", "_printed_kg_m2", "_correction")
-"""Endings of a segment's keys that document the source of its numbers."""
+REMARKS = ("source", "_printed_m", "_printed_kg_m2", "_correction")
+"""Endings of keys that document the source of numbers."""
 
-_SEGMENT_KEYS = {
+_SEGMENT_KEYS = (
     "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
     "posture_sd_deg", "acceleration_sd", "movement_sd", "limits_deg",
+)  # fmt: skip
+_ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title")
+KNOWN = {
+    "": (
+        "name", "reference_mass_kg", "reference_height_m", "scale_factors", "roles", "segment", "landmark", "sole",
+        "clinical_joint", "shape", "bearing",
+    ),
+    "segment": _SEGMENT_KEYS,
+    "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
+    "landmark": ("name", "segment", "position_m"),
+    "sole": ("height_m", "heel_x_m", "ball_x_m", "toe_x_m", "inner_y_m", "outer_y_m"),
+    "clinical_joint": (
+        "name", "proximal", "distal", "order", "main", "mirror", "heading_sd_deg", "angle", "translation",
+    ),
+    "clinical_joint.angle": _ANGLE_KEYS,
+    "clinical_joint.translation": _ANGLE_KEYS,
+    "shape": ("segment", "kind", "numbers", "to"),
+    "bearing": ("name", "segment", "position_m", "radius_m", "lever_m"),
 }  # fmt: skip
-_ROLE_KEYS = {"root", "feet", "toes", "leading", "steady", "knees"}
+"""Entries of a body's file."""
 
 
 def load_body(body: str | Path = "human18") -> BodyDescription:
@@ -61,8 +79,8 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
     path = Path(body)
     if path.suffix == ".toml":
         try:
-            text = read_text(path, SETTINGS_BYTES)
-        except (OSError, UnicodeDecodeError) as error:
+            text = plain_text(path)
+        except (OSError, ValueError) as error:
             raise FileFormatError(
                 path, f"cannot be read ({error}); give the name of a body or the path of a body file"
             ) from error
@@ -96,7 +114,9 @@ def parse_body(text: str, path: str | Path) -> BodyDescription:
 
 def _parse(text: str, path: Path, kept: str) -> BodyDescription:
     try:
-        body = _body(parse_toml(text), path, kept)
+        table = parse_toml(text)
+        refuse_unknown(table, KNOWN, path, text, REMARKS)
+        body = _body(table, path, kept)
         check_body(body)
     except MbkfError:
         raise
@@ -131,10 +151,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
 
 def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Segment:
     where = f"{path}, segment {entry.get('name', '?')}"
-    for key in entry:
-        if key not in _SEGMENT_KEYS and not key.endswith(_NOTES):
-            raise UnknownName("key", key, sorted(_SEGMENT_KEYS), where)
-    missing = [key for key in sorted(_SEGMENT_KEYS - {"axes", "limits_deg"}) if key not in entry]
+    missing = [key for key in _SEGMENT_KEYS if key not in entry and key not in ("axes", "limits_deg")]
     if missing:
         raise FileFormatError(path, f"segment {entry.get('name', '?')}: lacks {', '.join(missing)}")
     if entry["joint"] not in JOINT_DOF:
@@ -216,9 +233,6 @@ def _landmarks(
 
 def _roles(table: dict[str, Any], segments: tuple[Segment, ...], path: Path) -> Roles:
     roles, where = table["roles"], f"{path}, roles"
-    for key in roles:
-        if key not in _ROLE_KEYS:
-            raise UnknownName("role", key, sorted(_ROLE_KEYS), where)
 
     def several(key: str, otherwise: list[str]) -> tuple[str, ...]:
         return tuple(_known(name, segments, f"{where}, {key}") for name in roles.get(key, otherwise))

@@ -13,7 +13,8 @@ import numpy as np
 
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.io.plain_data import number_between, read_toml
+from mbkf.io.known_keys import refuse_unknown
+from mbkf.io.plain_data import number_between, parse_toml, plain_text
 from mbkf.io.subject import match_names
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
@@ -32,10 +33,15 @@ FARTHEST_M, MOST_SD_MM = 3.0, 1000.0
 
 DEFAULT_CORRELATION_S = 0.3
 
-_KEYS = {
-    "name", "landmark", "segment", "position_m", "kind", "placement_sd_mm", "noise_mm", "correlated_mm",
-    "correlation_s", "aliases", "mirror", "mirror_aliases", "static_only", "probability", "alternatives",
+KNOWN = {
+    "": ("name", "title", "body", "source", "marker", "ignored"),
+    "marker": (
+        "name", "landmark", "segment", "position_m", "kind", "placement_sd_mm", "noise_mm", "correlated_mm",
+        "correlation_s", "aliases", "mirror", "mirror_aliases", "static_only", "probability", "alternatives",
+    ),
+    "ignored": ("name", "reason"),
 }  # fmt: skip
+"""Entries of a protocol's file."""
 
 
 @dataclass(frozen=True)
@@ -169,7 +175,9 @@ def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -
 
 def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
     try:
-        table = read_toml(path)
+        text = plain_text(path)
+        table = parse_toml(text)
+        refuse_unknown(table, KNOWN, path, text)
         own = _own_body(table, path)
         body = body or own
         markers: list[ProtocolMarker] = []
@@ -229,10 +237,16 @@ def _markers(
 
 
 def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> ProtocolMarker:
-    for key in entry:
-        if key not in _KEYS:
-            raise UnknownName("key", key, sorted(_KEYS), f"{path}, marker {entry.get('name', '?')}")
     where = f"{path}, marker {entry['name']}"
+    for key, other in (("landmark", "segment"), ("landmark", "position_m")):
+        if key in entry and other in entry:
+            raise FileFormatError(
+                path, f"marker {entry['name']}: {key} gives its place; remove {other}, or {key}"
+            )
+    if "mirror_aliases" in entry and "mirror" not in entry:
+        raise FileFormatError(
+            path, f"marker {entry['name']}: mirror is missing, which mirror_aliases belong to"
+        )
     if "landmark" in entry:
         if entry["landmark"] not in body.landmarks:
             raise UnknownName("landmark", entry["landmark"], body.landmarks, where)

@@ -5,10 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.subject import Subject
 from mbkf.model.body import Body
 
 OCCLUSION_FRAMES = 20
+
+MOST_STREAKS = 100
+"""Most streaks for each sample of a capture; to hide all samples takes a handful."""
+
 GHOST_SECONDS = (0.2, 1.0)
 
 
@@ -64,12 +69,24 @@ def occlusions(
         fraction: Part of the samples that is hidden, 0…1.
         rng: Source of the streaks.
         streak: Frames of a streak.
+
+    Raises:
+        InvalidInput: The fraction is no part of the samples.
+        NotConverged: The streaks did not reach it.
     """
+    if not 0.0 <= fraction <= 1.0:
+        raise InvalidInput(f"the hidden fraction must be between 0 and 1, got {fraction:g}")
     hidden = np.zeros((frames, markers), dtype=bool)
-    streak = min(streak, frames)
-    while hidden.sum() < round(fraction * hidden.size):
+    streak, wanted = min(streak, frames), round(fraction * hidden.size)
+    for _ in range(MOST_STREAKS * hidden.size):
+        if hidden.sum() >= wanted:
+            break
         first, marker = rng.integers(1 - streak, frames), rng.integers(markers)
         hidden[max(first, 0) : first + streak, marker] = True
+    if hidden.sum() < wanted:
+        raise NotConverged(
+            f"{int(hidden.sum())} of {wanted} samples are hidden after all streaks; hide fewer"
+        )
     return hidden
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import mbkf
-from docs._extensions import result_quantities
+from docs._extensions import edited_files, result_quantities
 from mbkf.cli.main import build_parser
 from mbkf.model.protocol import protocol_names
 
@@ -41,6 +41,15 @@ PYTHON_BLOCKS = [
     for page in PAGES
     for k, text in enumerate(blocks(page, "python"))
 ]
+
+
+def test_every_entry_of_an_edited_file_stands_in_the_page_on_them():
+    text = (DOCS / "edited_files.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"```\{entries\} (.+)", text)) == set(edited_files.RECORDS)
+    for name, record in edited_files.RECORDS.items():
+        rows = edited_files.entry_rows(name)[2:]
+        assert [row.split("|")[1].strip(" `") for row in rows] == list(record.keys)
+        assert all(len(row.split("|")) == 5 and "None" not in row for row in rows)
 
 
 @pytest.mark.slow

@@ -92,7 +92,7 @@ def test_a_body_without_bearings_has_none():
         ("mass_kg = 14.2", 'mass_kg = "much"', "segment pelvis: could not convert"),
         ("mass_kg = 14.2", "mass_kg = 4.2", "sum to 71.52 kg, but reference_mass_kg is 81.52; add"),
         ("mass_kg = 14.2", "mass_kg = -14.2", "segment pelvis: mass_kg must be positive"),
-        ("com_m = [0, 0, -0.211]", "com = [0, 0, -0.211]", "unknown key 'com'; did you mean com_m"),
+        ("com_m = [0, 0, -0.211]", "com = [0, 0, -0.211]", "unknown segment entry 'com'; did you mean com_m"),
         ("com_m = [0, 0, -0.211]", "com_m = [0, -0.211]", "segment pelvis: com_m needs three"),
         (
             "inertia_kg_m2 = [0.2464, 0.3719",
@@ -122,7 +122,7 @@ def test_a_body_without_bearings_has_none():
             "must be children of the feet",
         ),
         ('knees = [["right_thigh", ', 'knees = [["right_foot", ', "pairs of thigh and shank"),
-        ("leading = [", "leeding = [", "unknown role 'leeding'; did you mean leading"),
+        ("leading = [", "leeding = [", "unknown roles entry 'leeding'; did you mean leading"),
         ("toe_x_m = 0.205", "toe_m = 0.205", "toe_m"),
         ("toe_x_m = 0.205", "toe_x_m = 0.1", "must grow"),
         ("outer_y_m = -0.055", "outer_y_m = 0.055", "must lie to the right"),

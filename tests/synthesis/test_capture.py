@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import welch
 from scipy.stats import chi2
 
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture_options import CaptureOptions
@@ -40,6 +40,22 @@ def test_occlusions_reach_the_fraction_in_streaks():
     assert hidden.mean() == pytest.approx(0.1, abs=0.001)
     lengths = [end - start for column in hidden.T for start, end in runs(column) if start > 0 and end < 2000]
     assert min(lengths) >= cameras.OCCLUSION_FRAMES
+    assert cameras.occlusions(40, 3, 1.0, np.random.default_rng(0)).all()
+
+
+@pytest.mark.parametrize("fraction", [-0.1, 1.01, float("nan")])
+def test_a_fraction_that_is_no_part_is_refused(fraction):
+    with pytest.raises(InvalidInput, match="hidden fraction must be between 0 and 1"):
+        cameras.occlusions(20, 3, fraction, np.random.default_rng(0))
+
+
+def test_streaks_that_hide_the_same_samples_end():
+    class Stuck:
+        def integers(self, *_bounds):
+            return 0
+
+    with pytest.raises(NotConverged, match="20 of 60 samples are hidden"):
+        cameras.occlusions(20, 3, 1.0, Stuck())
 
 
 def test_raw_points_are_the_trial_s_in_another_order_with_ghosts(capture):

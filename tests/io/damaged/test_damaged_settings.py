@@ -132,7 +132,7 @@ CASES = [
     ("protocol", "noise_mm = 5", "probability = 2", "probability"),
     ("protocol", "noise_mm = 5", "aliases = [1, 2]", "strings"),
     ("protocol", 'name = "A"', "name = 5", "strings"),
-    ("protocol", 'name = "A"', 'name = "\\u001b[2J"\nbogus = 1', "\\x1b[2J"),
+    ("protocol", 'name = "A"', 'name = "A"\n"\\u001b[2J" = 1', "\\x1b[2J"),
     ("protocol", 'name = "P"', "name = [1]", "strings"),
     ("protocol", 'name = "P"', 'name = "P"\nbody = "../nowhere.toml"', "nowhere.toml"),
     ("protocol", 'name = "P"', 'name = "P"\nbody = "' + "x" * 200 + '"', "unknown body"),
