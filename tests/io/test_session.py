@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError
@@ -48,6 +48,7 @@ SESSIONS = st.builds(
 
 
 @given(notes=SESSIONS)
+@settings(deadline=None)
 def test_what_is_written_comes_back(tmp_path_factory, notes):
     path = tmp_path_factory.mktemp("session") / SESSION_FILE
     write_session(notes, path)

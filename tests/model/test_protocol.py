@@ -299,11 +299,7 @@ def test_own_protocol_from_a_file(write):
     [
         (['name = "X"\nsegment = "pelvic"\nposition_m = [0, 0, 0]'], UnknownName, "did you mean pelvis"),
         (['name = "X"\nlandmark = "right_knee_laterl"'], UnknownName, "did you mean right_knee_lateral"),
-        (
-            ['name = "X"\nlandmark = "c7"\nnoise = 5'],
-            UnknownName,
-            "unknown marker entry 'noise'; did you mean noise_mm",
-        ),
+        (['name = "X"\nlandmark = "c7"\nnoise = 5'], UnknownName, "'noise'; did you mean noise_mm"),
         (['name = "X"\nlandmark = "c7"\nkind = "bone"'], UnknownName, "unknown marker kind 'bone'"),
         (
             ['name = "X"\nlandmark = "c7"', 'name = "X"\nlandmark = "t6"'],

@@ -55,7 +55,13 @@ class Listing:
             self._persons[key] = replace(person, statics=(*person.statics, path))
 
     def trial(self, key: Key, files: Files, name: str) -> None:
-        """Adds a trial of a person."""
+        """Adds a trial of a person.
+
+        Args:
+            key: Name and session of the person.
+            files: Its capture, and the ground reactions beside it.
+            name: Its name.
+        """
         person = self._persons[key]
         self._trials.append((key, Trial(person, files.path, files.forces, name)))
         self._persons[key] = replace(person, moving=(*person.moving, files)[:MOST_MOVING])

@@ -79,8 +79,8 @@ def survey_session(
     masses = [trial.standing_kg for trial in trials if trial.standing_kg is not None]
     standing = sorted(masses)[len(masses) // 2] if masses else None
     session = SurveyedSession(folder, notes, trials, standing, (), damage)
-    found = (Problem("session_file", (damage,)),) if damage else ()
-    found += tuple(Problem("strange_trial", (remark,)) for remark in remarks)
+    found: list[Problem] = [Problem("session_file", (damage,))] if damage else []
+    found += [Problem("strange_trial", (remark,)) for remark in remarks]
     return replace(session, problems=(*found, *_problems(session, stated.mass_kg)))
 
 
