@@ -19,8 +19,8 @@ from mbkf.io.plain_data import parse_json
 from mbkf.io.plausible import MASSES_KG
 from mbkf.io.toml import Entries, one_line_errors, write_toml
 
-FARTHEST_M, MOST_NOISE_M, SCALES, HEIGHTS_M = 1.5, 1.0, (0.2, 2.0), (0.3, 2.8)
-"""Bounds of persons: of marker places in their segments, of noise, of factors to the reference body and of heights."""
+FARTHEST_M, SPREADS_M, SCALES, HEIGHTS_M = 1.5, (1e-6, 1.0), (0.2, 2.0), (0.3, 2.8)
+"""Bounds of persons: of marker places in their segments, of spreads, of factors to the reference body and of heights."""
 
 FARTHEST_TURN = 1e3
 """Bound of a coordinate of the posture, rad or m."""
@@ -32,12 +32,12 @@ STANDING_KEY = "standing_q"
 _NAME = fields.text("name", "name of the marker", required=True)
 _SEGMENT = fields.text("segment", "segment that carries it", required=True)
 _POSITION = fields.numbers("position_m", "place in the segment's frame", 3, FARTHEST_M, "m", required=True)
-_NOISE = fields.number("noise_m", "noise with skin movement", (0.0, MOST_NOISE_M), "m", required=True)
+_NOISE = fields.number("noise_m", "noise with skin movement", SPREADS_M, "m", required=True)
 _SESSION_SD = fields.number(
-    "session_sd_m", "spread of its place in another trial", (0.0, MOST_NOISE_M), "m", required=True
+    "session_sd_m", "spread of its place in another trial", SPREADS_M, "m", required=True
 )
 _ALIASES = fields.texts("aliases", "other names in captures")
-_CORRELATED = fields.number("correlated_m", "correlated part of the noise", (0.0, MOST_NOISE_M), "m")
+_CORRELATED = fields.number("correlated_m", "correlated part of the noise", (0.0, SPREADS_M[1]), "m")
 _CORRELATION = fields.number("correlation_s", "time constant of that part", (0.0, 1e3), "s")
 MARKER = fields.record(
     "marker", _NAME, _SEGMENT, _POSITION, _NOISE, _SESSION_SD, _ALIASES, _CORRELATED, _CORRELATION

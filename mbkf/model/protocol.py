@@ -28,8 +28,8 @@ neural network found in videos (a joint centre or a feature); tracked, with corr
 DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.006, "keypoint": 0.025}
 DEFAULT_NOISE_M = {"anatomical": 0.005, "technical": 0.005, "computed": 0.005, "keypoint": 0.020}
 DEFAULT_CORRELATED_M = {"anatomical": 0.0, "technical": 0.0, "computed": 0.0, "keypoint": 0.010}
-FARTHEST_M, MOST_SD_MM = 3.0, 1000.0
-"""Greatest distance of a marker from its segment's origin, and greatest standard deviation of its place or noise."""
+FARTHEST_M, LEAST_SD_MM, MOST_SD_MM = 3.0, 1e-3, 1000.0
+"""Greatest distance of a marker from its segment's origin, and bounds of the standard deviation of its place or noise."""
 
 DEFAULT_CORRELATION_S = 0.3
 
@@ -275,7 +275,7 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         segment=segment,
         position_m=position,
         kind=kind,
-        placement_sd_m=number_between(entry, "placement_sd_mm", 0.0, MOST_SD_MM, usual_mm) / 1e3,
+        placement_sd_m=number_between(entry, "placement_sd_mm", LEAST_SD_MM, MOST_SD_MM, usual_mm) / 1e3,
         noise_m=noise,
         aliases=tuple(aliases),
         static_only=entry.get("static_only", False),
@@ -289,7 +289,7 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
 
 def _noise(entry: dict[str, Any], kind: str) -> tuple[float, float, float]:
     """Noise, m, its correlated part, m, and that part's correlation time, s."""
-    noise = number_between(entry, "noise_mm", 0.0, MOST_SD_MM, 1e3 * DEFAULT_NOISE_M[kind]) / 1e3
+    noise = number_between(entry, "noise_mm", LEAST_SD_MM, MOST_SD_MM, 1e3 * DEFAULT_NOISE_M[kind]) / 1e3
     usual = min(DEFAULT_CORRELATED_M[kind], 0.5 * noise)
     correlated = entry.get("correlated_mm", 1e3 * usual) / 1e3
     correlation_s = entry.get("correlation_s", DEFAULT_CORRELATION_S if correlated else 0.0)

@@ -152,6 +152,12 @@ def test_impossible_masses_are_refused(subject, mass):
             "marker RKNE: position_m must be 3",
         ),
         ("noise_m = 0.005", "", "marker RKNE: noise_m is missing"),
+        ("noise_m = 0.005", "noise_m = 0", "noise_m must be a number between 1e-06 and 1 m, got 0"),
+        (
+            "session_sd_m = 0.005",
+            "session_sd_m = 0",
+            "session_sd_m must be a number between 1e-06 and 1 m, got 0",
+        ),
         (
             "noise_m = 0.005",
             "noise_m = 5",

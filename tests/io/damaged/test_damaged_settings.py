@@ -129,6 +129,8 @@ CASES = [
     ("protocol", "noise_mm = 5", "noise_mm = -1", "noise_mm"),
     ("protocol", "noise_mm = 5", "noise_mm = inf", "noise_mm"),
     ("protocol", "noise_mm = 5", "placement_sd_mm = nan", "placement_sd_mm"),
+    ("protocol", "noise_mm = 5", "noise_mm = 0", "noise_mm must be a number between 0.001 and 1000"),
+    ("protocol", "noise_mm = 5", "placement_sd_mm = 0", "placement_sd_mm must be a number between 0.001"),
     ("protocol", "noise_mm = 5", "probability = 2", "probability"),
     ("protocol", "noise_mm = 5", "aliases = [1, 2]", "strings"),
     ("protocol", 'name = "A"', "name = 5", "strings"),
