@@ -29,7 +29,7 @@ DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0
 DEFAULT_NOISE_M = {"anatomical": 0.005, "technical": 0.005, "computed": 0.005, "keypoint": 0.020}
 DEFAULT_CORRELATED_M = {"anatomical": 0.0, "technical": 0.0, "computed": 0.0, "keypoint": 0.010}
 FARTHEST_M, LEAST_SD_MM, MOST_SD_MM = 3.0, 1e-3, 1000.0
-"""Greatest distance of a marker from its segment's origin, and bounds of the standard deviation of its place or noise."""
+"""Greatest distance of a marker from its segment's origin, and bounds of the spread of its place and noise."""
 
 DEFAULT_CORRELATION_S = 0.3
 
