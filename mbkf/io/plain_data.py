@@ -38,12 +38,12 @@ def read_toml(path: Path, hint: str = "name a file") -> TomlTable:
     return parse_toml(plain_text(path, hint))
 
 
-def plain_text(path: Path, hint: str = "") -> str:
+def plain_text(path: Path, hint: str = "name a file") -> str:
     """The text of a file in UTF-8, with or without a byte order mark.
 
     Args:
         path: The file.
-        hint: Advice for a file that is not regular; may be empty.
+        hint: Advice for a file that is not regular.
 
     Raises:
         OSError: The file does not exist, or it cannot be read.

@@ -20,7 +20,7 @@ from mbkf.io.plausible import MASSES_KG
 from mbkf.io.toml import Entries, one_line_errors, write_toml
 
 FARTHEST_M, SPREADS_M, SCALES, HEIGHTS_M = 1.5, (1e-6, 1.0), (0.2, 2.0), (0.3, 2.8)
-"""Bounds of persons: of marker places in their segments, of spreads, of factors to the reference body and of heights."""
+"""Bounds of persons: of marker places in segments, of spreads, of factors to the reference body and of heights."""
 
 FARTHEST_TURN = 1e3
 """Bound of a coordinate of the posture, rad or m."""
@@ -219,7 +219,8 @@ def read_subject(path: str | Path) -> Subject:
     hint = "make it with 'mbkf scale'"
     read = Entries.of_file(SUBJECT, path, "a subject file", hint)
     with one_line_errors(read.file, "a subject file", hint):
-        read.need(_SCALE_FACTORS)
+        if not read.need(_SCALE_FACTORS):
+            raise read.fault("scale_factors is empty; it lists all of the body", _SCALE_FACTORS.key)
         subject = Subject(
             body=read.need(_BODY),
             mass_kg=read.need(_MASS),

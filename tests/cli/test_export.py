@@ -8,8 +8,11 @@ import pytest
 from mbkf.cli.main import build_parser, main
 from mbkf.io.results_folder import MOTION_FILE, write_reconstruction
 from mbkf.io.subject import Subject, SubjectMarker, write_subject
+from mbkf.model.body_file import load_body
 from mbkf.trial.export import FORMATS, RESULT_FORMATS
 from tests.recordings import walk
+
+FACTORS = dict.fromkeys(load_body().scale_factors, 1.0)
 
 
 def command(*words):
@@ -17,8 +20,8 @@ def command(*words):
 
 
 def test_a_subject_becomes_a_file(tmp_path, capsys):
-    marker = SubjectMarker("C7", "torso", np.array([-0.08, 0.0, 0.3]), 0.005, 0.0)
-    write_subject(Subject("human18", 70.0, {}, (marker,), "reference36"), tmp_path / "s.toml")
+    marker = SubjectMarker("C7", "torso", np.array([-0.08, 0.0, 0.3]), 0.005, 0.001)
+    write_subject(Subject("human18", 70.0, FACTORS, (marker,), "reference36"), tmp_path / "s.toml")
     args = command(tmp_path / "s.toml", "--to", "mjcf", "--out", tmp_path / "s.xml")
     assert args.run(args) == 0
     assert "<freejoint" in (tmp_path / "s.xml").read_text()
@@ -56,7 +59,7 @@ def test_a_result_becomes_a_file_from_its_folder_and_from_its_motion(result, tmp
 
 @pytest.mark.parametrize("kind", ["urdf", "mjcf", "c3d", "bvh", "glb"])
 def test_formats_of_the_other_kind_are_refused_with_what_is_needed(result, tmp_path, capsys, kind):
-    write_subject(Subject("human18", 70.0, {}, (), "reference36"), tmp_path / "s.toml")
+    write_subject(Subject("human18", 70.0, FACTORS, (), "reference36"), tmp_path / "s.toml")
     of_result = kind in RESULT_FORMATS
     source = tmp_path / "s.toml" if of_result else result
     assert main(["export", str(source), "--to", kind, "--out", str(tmp_path / "x")]) == 2

@@ -40,7 +40,7 @@ SUBJECTS = st.builds(
     Subject,
     body=TEXT,
     mass_kg=st.floats(0.5, 500.0),
-    scale_factors=st.dictionaries(FACTOR_NAMES, st.floats(0.5, 1.6)),
+    scale_factors=st.dictionaries(FACTOR_NAMES, st.floats(0.5, 1.6), min_size=1),
     markers=st.lists(MARKERS, max_size=4, unique_by=lambda marker: marker.name).map(tuple),
     protocol=TEXT,
     height_m=st.none() | st.floats(0.5, 2.6),
@@ -141,6 +141,7 @@ def test_impossible_masses_are_refused(subject, mass):
         ("head = 1.05", 'head = "big"', "scale_factors: head must be a number between 0.2 and 2, got big"),
         ("[scale_factors]\nhead = 1.05", "scale_factors = 1.05", "scale_factors must be a table"),
         ("[scale_factors]\nhead = 1.05", "", "scale_factors is missing"),
+        ("head = 1.05", "", "scale_factors is empty; it lists all of the body"),
         (
             "position_m = [0.01, -0.05, -0.4]",
             "position_m = [0.01, -0.05]",

@@ -19,6 +19,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError, suggestion
 from mbkf.io.capture import CAPTURES, FORCES, folder_suffixes
+from mbkf.io.plain_data import plain_text
 from mbkf.io.results_folder import MOTION_FILE
 from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.io.toml_lines import line_of
@@ -87,7 +88,7 @@ def strange_trials(
         if name in stems or name in known:
             continue
         if (meant := plain.get(_letters(name)) or plain.get(_letters(Path(name).stem))) is not None:
-            line = line_of(file.read_text(encoding="utf-8-sig"), ("trial", name)) if file.is_file() else None
+            line = line_of(plain_text(file), ("trial", name)) if file.is_file() else None
             raise FileFormatError(file, f"unknown trial '{name}'; did you mean {meant}", line)
         found.append(f"{file}: its trial '{name}' is no capture of this folder; {suggestion(name, stems)}")
     return found
