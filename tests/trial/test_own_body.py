@@ -53,7 +53,7 @@ def test_the_subject_carries_the_body(subject, tmp_path):
     assert reference_body(found).name == "legs"
     assert HumanModel.of(found).nv == 26
     damaged = replace(found, body_text=found.body_text.replace("[roles]", "[rules]"))
-    with pytest.raises(FileFormatError, match="body 'legs' in the subject: not a valid body"):
+    with pytest.raises(FileFormatError, match="body 'legs' in the subject, line 33: unknown entry 'rules'"):
         HumanModel.of(damaged)
 
 
