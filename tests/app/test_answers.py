@@ -1,12 +1,15 @@
 """What the page is told and may state, as plain data."""
 
 import json
+import shutil
 
 import pytest
 
 from mbkf.app import answers
 from mbkf.app.runs import RunState
 from mbkf.app.workspace import Workspace
+from mbkf.errors import FileFormatError
+from mbkf.io.session import SessionNotes
 from tests.studies import study
 
 
@@ -42,3 +45,20 @@ def test_all_sessions_in_short(workspace):
     told = answers.sessions(workspace, States({"P1": RunState("finished")}))
     assert [one["id"] for one in told["sessions"]] == ["P1"]
     assert told["sessions"][0]["run"]["state"] == "finished" and told["folder"] == str(workspace.root)
+
+
+def test_a_damaged_session_file_costs_its_session_and_is_never_written_over(workspace):
+    """The session is shown with the sentence and the mend; its run fails with it, and the other one's does not."""
+    shutil.copytree(workspace.root / "P1", workspace.root / "P2")
+    file = workspace.root / "P1" / "session.toml"
+    file.write_text("mass_kg = 71,9\n", encoding="utf-8")
+    found = answers.session(workspace, States({}), "P1")
+    (problem,) = [one for one in found["problems"] if one["key"] == "session_file"]
+    assert "line 1: not a session file: 'mass_kg = 71,9'" in problem["what"] and problem["grave"]
+    assert "text editor" in problem["todo"] and len(found["trials"]) == 3
+    assert answers.session(workspace, States({}), "P2")["problems"] == []
+    assert all("write mass_kg = 71.9" in trial.fault for trial in workspace.plan("P1").trials)
+    assert not any(trial.fault for trial in workspace.plan("P2").trials)
+    with pytest.raises(FileFormatError, match="line 1"):
+        workspace.change("P1", SessionNotes(), SessionNotes(mass_kg=80.0))
+    assert file.read_text(encoding="utf-8") == "mass_kg = 71,9\n"
