@@ -85,6 +85,7 @@ class Server:
             words, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": path}
         )
         assert self._process.stdout is not None
+        self.pid = self._process.pid
         self.url = self._process.stdout.readline().strip()
         if not self.url:
             raise InvalidInput("mbkf app did not start")

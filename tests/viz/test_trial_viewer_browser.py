@@ -8,7 +8,7 @@ import pytest
 
 from mbkf.app.server import AppServer
 from mbkf.io.results_folder import write_result_files
-from mbkf.io.session import SESSION_FILE, read_session
+from mbkf.io.session import SESSION_FILE, EventKind, FootEvent, read_session
 from mbkf.study.batch.curves import read_curves
 from mbkf.study.batch.trial import CURVES_FILE
 from mbkf.trial.results.summary import summarise
@@ -120,6 +120,26 @@ def test_events_are_deleted_added_and_taken_back(page, server):
     assert page.locator(".event").count() == count - 1
     page.get_by_role("button", name="Back to the detected events").click()
     assert page.locator(".event.found").count() == count
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_events_that_another_page_set_are_chosen_by_the_person(page, server, own):
+    theirs = (FootEvent("left", EventKind.OFF, 0.5),)
+    server.workspace.change_events("P1", "walk1", None, theirs)
+    asked = []
+    page.on(
+        "dialog", lambda dialog: (asked.append(dialog.message), dialog.accept() if own else dialog.dismiss())
+    )
+    chosen(page, "right", "strike")
+    page.keyboard.press("Delete")
+    saved(page)
+    assert len(asked) == 1 and "other events meanwhile: 1, yours:" in asked[0]
+    until(page, f"viewer.events.list.length {'>' if own else '==='} 1")
+    assert (by_hand(server) == theirs) is not own
+    chosen(page, "left", "off")
+    page.keyboard.press("ArrowRight")
+    saved(page)
+    assert len(asked) == 1 and len(by_hand(server)) == page.evaluate("viewer.events.list.length")
 
 
 def test_an_event_is_dragged_and_one_comes_with_a_double_click(page, server):

@@ -33,10 +33,11 @@ function tell(text, bad = false) {
 }
 
 const act = {
-  async save(change) {
-    const notes = structuredClone(shown.notes);
+  // Changes the notes that the person saw, which newer ones may have replaced since.
+  async save(seen, change) {
+    const notes = structuredClone(seen.notes);
     change(notes);
-    await act.write(shown, notes);
+    await act.write(seen, notes);
   },
   // Sends the notes with those that the change began from; the server lays the change over the notes as they are now.
   async write(base, notes) {
@@ -48,8 +49,8 @@ const act = {
     if (!said.differences) tell(word("saved"));
     else differencesDialog(said.differences, (kept) => { if (kept.length) act.write(said, withOwn(said.notes, kept)); }, act.dialog);
   },
-  person: (values) => act.save((notes) => Object.assign(notes, values)),
-  trial: (name, values) => act.save((notes) => {
+  person: (seen, values) => act.save(seen, (notes) => Object.assign(notes, values)),
+  trial: (seen, name, values) => act.save(seen, (notes) => {
     notes.trial = notes.trial || {};
     notes.trial[name] = Object.assign(notes.trial[name] || {}, values);
   }),
@@ -89,7 +90,7 @@ const act = {
 };
 
 function draw(data, turn) {
-  if (turn < drawn) return; // a newer state is shown already
+  if (turn < drawn || data.id !== chosen) return; // a newer state is shown already, or another session
   drawn = turn;
   const focused = document.activeElement, main = place("session");
   if (main.contains(focused) && focused.tagName === "INPUT" && focused.type !== "checkbox" && shown && shown.id === data.id && document.hasFocus() && data.run && data.run.state === "running") return;

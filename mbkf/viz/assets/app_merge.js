@@ -22,6 +22,7 @@ function differencesDialog(differences, choose, dialog) {
     form.closest("dialog").close();
     choose(kept);
   };
+  document.querySelector("form.differences")?.closest("dialog").remove();
   dialog(word("differ_title"), form);
 }
 

@@ -23,12 +23,12 @@ function person(data, act) {
     field(word("sex"), sex), field(word("age"), number("age", "1")));
   if (data.standing_kg) {
     const kg = data.standing_kg.toFixed(1);
-    const take = element("button", { type: "button", onclick: () => act.person({ mass_kg: Number(kg) }) }, word("take"));
+    const take = element("button", { type: "button", onclick: () => act.person(data, { mass_kg: Number(kg) }) }, word("take"));
     form.append(element("span", { className: "offer" }, word("bear", kg) + " ", take));
   }
   form.onchange = (event) => {
     const { name, value, type } = event.target;
-    act.person({ [name]: value === "" ? undefined : type === "number" ? Number(value) : value });
+    act.person(data, { [name]: value === "" ? undefined : type === "number" ? Number(value) : value });
   };
   form.onsubmit = (event) => event.preventDefault();
   return element("section", {}, element("h3", {}, word("person")), form);
@@ -78,14 +78,14 @@ function trials(data, act) {
 }
 
 function trialRow(data, one, act) {
-  const kind = element("select", { onchange: () => act.trial(one.name, { kind: kind.value }) }, ...data.kinds.map((name) =>
+  const kind = element("select", { onchange: () => act.trial(data, one.name, { kind: kind.value }) }, ...data.kinds.map((name) =>
     element("option", { value: name, selected: name === one.kind }, word(KIND_WORDS[name]))));
   kind.setAttribute("aria-label", `${word("kind")}: ${one.name}`);
-  const use = element("input", { type: "checkbox", checked: !one.excluded, onchange: () => act.trial(one.name, { excluded: use.checked ? undefined : "–" }) });
+  const use = element("input", { type: "checkbox", checked: !one.excluded, onchange: () => act.trial(data, one.name, { excluded: use.checked ? undefined : "–" }) });
   use.setAttribute("aria-label", `${word("use")}: ${one.name}`);
   const out = element("td", {}, use);
   if (one.excluded) {
-    const why = element("input", { type: "text", value: one.excluded === "–" ? "" : one.excluded, placeholder: word("why"), onchange: () => act.trial(one.name, { excluded: why.value || "–" }) });
+    const why = element("input", { type: "text", value: one.excluded === "–" ? "" : one.excluded, placeholder: word("why"), onchange: () => act.trial(data, one.name, { excluded: why.value || "–" }) });
     why.setAttribute("aria-label", `${word("why")}: ${one.name}`);
     out.append(" ", why);
   }
