@@ -23,6 +23,9 @@ SETTINGS_BYTES = 1 << 25
 CAPTURE_BYTES = 1 << 34
 """Size of the largest capture or result, 16 GB: days of 100 markers at 100 Hz."""
 
+PIECE_BYTES = 1 << 20
+"""Size of a piece of a file that grows, or states no size."""
+
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),
@@ -173,7 +176,10 @@ def read_bytes(path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str = "n
         OSError: It cannot be read.
     """
     with opened(path, most_bytes, hint) as file:
-        content = file.read(most_bytes + 1)  # files of /proc state no size
+        # Python allocates all that a read asks for: the stated size first, since files of /proc state none.
+        content = file.read(min(os.fstat(file.fileno()).st_size, most_bytes) + 1)
+        while content and len(content) <= most_bytes and (more := file.read(PIECE_BYTES)):
+            content += more
     if len(content) > most_bytes:
         raise _too_large(Path(path), most_bytes, hint)
     return content

@@ -2,6 +2,7 @@
 
 import os
 import socket
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -104,3 +105,14 @@ def test_a_command_sees_the_files_of_its_threads(tmp_path):
         thread.start()
         thread.join()
         assert files.name_of(path) == str(path)
+
+
+def test_a_file_costs_its_own_size(tmp_path):
+    """Not that of the largest file that would be read."""
+    file = tmp_path / "subject.toml"
+    file.write_bytes(b"x" * 1000)
+    tracemalloc.start()
+    content = read_bytes(file)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(content) == 1000 and peak < 1 << 22
