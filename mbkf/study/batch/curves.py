@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
-from mbkf.io.files_read import check_input, own_files_read
+from mbkf.io.files_read import check_input, own_files_read, read_bytes
 from mbkf.io.results import Reconstruction
 from mbkf.io.session import FootEvent
 from mbkf.trial.gait.curves import SideCurve, side_curves
@@ -51,8 +51,9 @@ def read_curves(path: Path) -> pa.Table:
     """
     with own_files_read():  # a batch replaces its own table
         check_input(path, "delete its folder and run the batch again")
+        content = read_bytes(path)
     try:
-        return pq.read_table(path, schema=SCHEMA, page_checksum_verification=True)
+        return pq.read_table(pa.BufferReader(content), schema=SCHEMA, page_checksum_verification=True)
     except (pa.ArrowException, OSError, ValueError) as error:
         reason = f"damaged ({error}); delete its folder and run the batch again"
         raise FileFormatError(path, reason) from error
@@ -78,8 +79,8 @@ def write_curves_table(curves: pa.Table, path: Path) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    with replacing(path) as partial:
-        pq.write_table(curves, partial, compression="zstd", write_page_checksum=True)
+    with replacing(path) as partial, partial.open("wb") as file:
+        pq.write_table(curves, file, compression="zstd", write_page_checksum=True)
 
 
 def curves_of(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> pa.Table:

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 from mbkf.conventions import StageCallback
 from mbkf.errors import FileFormatError, InvalidInput, MbkfWarning
 from mbkf.io.atomic import check_folder
+from mbkf.io.files_read import opened, own_files_read
 from mbkf.io.leftovers import sweep
 from mbkf.study.batch.cluster import ClusterWorkers
 from mbkf.study.batch.folder import plan_of_folder
@@ -99,7 +100,8 @@ def follow(
     """
     out.mkdir(parents=True, exist_ok=True)
     outcomes = outcomes_of(plan, out, settings, executor, progress)
-    return pq.read_table(write_tables(plan, outcomes, out, suffix))
+    with own_files_read(), opened(write_tables(plan, outcomes, out, suffix)) as file:
+        return pq.read_table(file)
 
 
 def plan_of(source: Path) -> Plan:

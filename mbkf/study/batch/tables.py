@@ -170,9 +170,8 @@ def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table | list[Row]])
         rows.write_table(table.cast(plain))
 
     with ExitStack() as files:
-        parquet, text = (
-            files.enter_context(replacing(path.with_suffix(end))) for end in (".parquet", ".csv")
-        )
+        partials = [files.enter_context(replacing(path.with_suffix(end))) for end in (".parquet", ".csv")]
+        parquet, text = (files.enter_context(partial.open("wb")) for partial in partials)
         columns = files.enter_context(pq.ParquetWriter(parquet, schema, compression="zstd"))
         rows = files.enter_context(pa_csv.CSVWriter(text, plain))
         beside = files.enter_context(ThreadPoolExecutor(1))

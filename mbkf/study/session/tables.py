@@ -77,11 +77,14 @@ def write_session_curves(session: Session, path: str | Path) -> None:
     target = Path(path)
     check_curves_file(target)
     table = curves_table(session)
-    with replacing(target) as partial:
+    with (
+        replacing(target) as partial,
+        partial.open("wb") as file,
+    ):  # Arrow takes no name of other bytes than UTF-8
         if target.suffix.lower() == ".csv":
-            pa_csv.write_csv(table, partial)
+            pa_csv.write_csv(table, file)
         else:
-            pq.write_table(table, partial, compression="zstd")
+            pq.write_table(table, file, compression="zstd")
 
 
 def _table(session: Session, gait: MovementGroup, side: SideCycles, key: Key) -> pa.Table:

@@ -1,5 +1,6 @@
 """Curves over cycles: the reconstruction's own numbers at 0 to 100 %, tidy, each with its standard deviation."""
 
+import os
 from dataclasses import replace
 from functools import cache
 
@@ -9,6 +10,7 @@ import pytest
 
 from mbkf.errors import FileFormatError
 from mbkf.io.capture import read_capture
+from mbkf.io.files_read import files_read
 from mbkf.io.subject import read_subject
 from mbkf.study.batch.curves import SCHEMA, curves_of, read_curves, write_curves, write_curves_table
 from mbkf.trial.gait.cycles import POINTS, find_gait, over_cycle
@@ -131,3 +133,12 @@ def test_curves_are_cut_at_events_by_hand():
     own = [value for *key, value in asked if key == ["right", 1, "angle", "knee_angle"]]
     np.testing.assert_allclose(own, knee, rtol=1e-6)
     assert curves_of(walked(), ()).num_rows == 0
+
+
+def test_a_folder_of_any_bytes_holds_curves(tmp_path):
+    path = tmp_path / os.fsdecode(b"walk\xff\xe9") / "curves.parquet"
+    table = SCHEMA.empty_table()
+    write_curves_table(table, path)
+    assert read_curves(path).equals(table)
+    assert files_read().name_of(path) is None, "a batch replaces its own table"
+    write_curves_table(table, path)
