@@ -35,6 +35,18 @@ _KINDS = (
 )
 
 
+class UnreadableFile(FileFormatError):
+    """A file is no regular one, or too large to be read.
+
+    Attributes:
+        found: The reason without advice.
+    """
+
+    def __init__(self, path: Path, found: str, hint: str) -> None:
+        self.found = found
+        super().__init__(path, f"{found}; {hint}")
+
+
 class FilesRead:
     """The files that one task read: a command, a request to a page, or a program that uses mbkf."""
 
@@ -132,7 +144,7 @@ def check_regular(path: str | Path, most_bytes: int = CAPTURE_BYTES, hint: str =
     state = file.stat()
     kind = kind_of(state.st_mode)
     if kind:
-        raise FileFormatError(file, f"cannot be read, it is {kind}; {hint}")
+        raise UnreadableFile(file, f"cannot be read, it is {kind}", hint)
     if state.st_size > most_bytes:
         raise _too_large(file, most_bytes, hint)
     files_read().add(file)
@@ -248,5 +260,5 @@ def opened(
         yield file
 
 
-def _too_large(path: Path, most_bytes: int, hint: str) -> FileFormatError:
-    return FileFormatError(path, f"is larger than {most_bytes >> 20} MB, the most that is read; {hint}")
+def _too_large(path: Path, most_bytes: int, hint: str) -> UnreadableFile:
+    return UnreadableFile(path, f"is larger than {most_bytes >> 20} MB, the most that is read", hint)

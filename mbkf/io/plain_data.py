@@ -27,7 +27,7 @@ _LONG_KEY = re.compile(
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
-def read_toml(path: Path, hint: str = "name a file") -> TomlTable:
+def read_toml(path: Path) -> TomlTable:
     """The table of a TOML file in UTF-8, with or without a byte order mark.
 
     Raises:
@@ -35,22 +35,18 @@ def read_toml(path: Path, hint: str = "name a file") -> TomlTable:
         FileFormatError: It is a folder, pipe, socket or device, or too large.
         ValueError: It is not in UTF-8, or as for :func:`parse_toml`.
     """
-    return parse_toml(plain_text(path, hint))
+    return parse_toml(plain_text(path))
 
 
-def plain_text(path: Path, hint: str = "name a file") -> str:
+def plain_text(path: Path) -> str:
     """The text of a file in UTF-8, with or without a byte order mark.
-
-    Args:
-        path: The file.
-        hint: Advice for a file that is not regular.
 
     Raises:
         OSError: The file does not exist, or it cannot be read.
         FileFormatError: It is a folder, pipe, socket or device, or too large.
         ValueError: It is not in UTF-8.
     """
-    content = read_bytes(path, SETTINGS_BYTES, hint)
+    content = read_bytes(path, SETTINGS_BYTES)
     if content.startswith(_UTF_16):
         raise UnicodeError("it is in UTF-16; save it in UTF-8")
     try:

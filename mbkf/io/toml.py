@@ -15,6 +15,7 @@ import numpy as np
 from mbkf.errors import FileFormatError, InvalidInput, UnknownEntry
 from mbkf.io.atomic import write_text
 from mbkf.io.fields import Field, Record, shown
+from mbkf.io.files_read import UnreadableFile
 from mbkf.io.plain_data import parse_toml, plain_text
 from mbkf.io.toml_lines import Place, TomlMistake, line_of
 from mbkf.io.utf8 import storable
@@ -106,6 +107,8 @@ def one_line_errors(path: Path, kind: str, hint: str) -> Iterator[None]:
     except (FileNotFoundError, IsADirectoryError) as error:
         found = "no such file" if isinstance(error, FileNotFoundError) else "cannot be read, it is a folder"
         raise FileFormatError(path, f"{found}; {hint}") from error
+    except UnreadableFile as error:
+        raise FileFormatError(path, f"{error.found}; {hint}") from error
     except InvalidInput as error:
         raise InvalidInput(f"{path}: {error}") from error
     except TomlMistake as error:
@@ -174,7 +177,7 @@ class Entries:
             FileFormatError: The file is missing or damaged.
         """
         with one_line_errors(Path(path), kind, hint):
-            text = plain_text(Path(path), hint)
+            text = plain_text(Path(path))
             table = parse_toml(text)
         return cls(record, table, Origin(Path(path), text))
 
