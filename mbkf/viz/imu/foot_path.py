@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbkf.io.atomic import replacing
-from mbkf.io.written import MARK
 from mbkf.numerics.runs import runs
 from mbkf.trial.inertial.stride import FootResult, StrideMeasurement
+from mbkf.viz.imu.figure_file import write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,9 +56,7 @@ def foot_path_figure(measured: StrideMeasurement) -> Figure:
 
 def write_foot_path(measured: StrideMeasurement, path: str | Path) -> None:
     """Draws the figure into a file, of the kind its suffix names (.png, .svg, .pdf)."""
-    with replacing(path) as partial:
-        place = "Software" if partial.suffix.lower() == ".png" else "Creator"
-        foot_path_figure(measured).savefig(partial, metadata={place: MARK})
+    write_figure(foot_path_figure(measured), path)
 
 
 def _draw_path(axes: Axes, foot: FootResult, colour: str) -> None:

@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from mbkf.conventions import Array
 from mbkf.imu.frames import conjugate, multiply
 from mbkf.imu.orientation import Orientation
-from mbkf.io.atomic import replacing
-from mbkf.io.written import MARK
+from mbkf.viz.imu.figure_file import write_figure
 
 FIRST, SECOND, DIFFERENCE = "#1f6fb4", "#e06c10", "#444444"
 _DEGREES = 180.0 / np.pi
@@ -58,8 +57,7 @@ def write_comparison(first: Orientation, second: Orientation, path: str | Path) 
     for one in axes.flat:
         one.grid(color="#e4e6e8", linewidth=0.7)
         one.spines[["top", "right"]].set_visible(False)
-    with replacing(path) as partial:
-        figure.savefig(partial, dpi=110, metadata={"Software": MARK})
+    write_figure(figure, path, dpi=110)
 
 
 def _both(axes: Axes, first: Orientation, second: Orientation, a: Array, b: Array, name: str) -> None:

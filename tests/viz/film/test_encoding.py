@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from mbkf.io.written import written_by_mbkf
 from mbkf.viz.film.encoding import write_gif, write_mp4
 
 COUNT, HEIGHT, WIDTH, RATE = 30, 72, 128, 25
@@ -27,6 +28,7 @@ def assert_alike(found):
 
 def test_a_gif_has_its_pictures_pace_and_no_end(tmp_path):
     write_gif(pictures(), RATE, tmp_path / "film")
+    assert written_by_mbkf(tmp_path / "film")
     with Image.open(tmp_path / "film") as film:
         assert (film.format, film.n_frames, film.size) == ("GIF", COUNT, (WIDTH, HEIGHT))
         assert film.info["loop"] == 0
@@ -41,6 +43,7 @@ def test_a_gif_has_its_pictures_pace_and_no_end(tmp_path):
 def test_an_mp4_has_its_pictures_and_pace(tmp_path):
     av = pytest.importorskip("av", reason="PyAV is not installed: pip install '.[film]'")
     write_mp4(pictures(), RATE, tmp_path / "film")
+    assert written_by_mbkf(tmp_path / "film")
     with av.open(str(tmp_path / "film")) as film:
         stream = film.streams.video[0]
         assert (stream.codec_context.name, stream.average_rate, stream.width, stream.height) == (
