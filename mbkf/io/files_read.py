@@ -38,6 +38,11 @@ _KINDS = (
 class UnreadableFile(FileFormatError):
     """A file is no regular one, or too large to be read.
 
+    Args:
+        path: The file.
+        found: The reason without advice.
+        hint: Advice at the end of the message.
+
     Attributes:
         found: The reason without advice.
     """
