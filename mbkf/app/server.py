@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import uvicorn
 from starlette.applications import Starlette
@@ -28,6 +29,9 @@ COOKIE = "mbkf-app-{port}"
 """Browsers share the cookies of a computer between its ports, so each port has its own."""
 
 START_S = 10.0
+
+ANSWERS_S = 1
+"""Longest wait for answers under way when the server ends."""
 
 
 class AppServer:
@@ -62,7 +66,8 @@ class AppServer:
             middleware=[guard],
             exception_handlers=HANDLERS,
         )
-        config = uvicorn.Config(app, log_level="critical", http="h11", ws="none", lifespan="off")
+        options: dict[str, Any] = {"log_level": "critical", "http": "h11", "ws": "none", "lifespan": "off"}
+        config = uvicorn.Config(app, timeout_graceful_shutdown=ANSWERS_S, **options)
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(
             target=self._server.run, kwargs={"sockets": [self._socket]}, name="mbkf-app", daemon=True
@@ -83,8 +88,8 @@ class AppServer:
     def close(self) -> None:
         """Ends server, live run and runs; the next server continues unfinished runs."""
         self._server.should_exit = True
-        self.live.close()
         self.runs.close()
+        self.live.close()
         self._thread.join(timeout=10.0)
         with contextlib.suppress(OSError):
             self._socket.close()

@@ -15,6 +15,9 @@ import argparse
 
 from mbkf.cli.options import add_page_options, count
 
+END_S = 0.5
+"""Longest time that an answer to the page may take after the server has closed."""
+
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
@@ -29,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
 
     from mbkf.app.server import AppServer
     from mbkf.cli.opening import open_page, printed_address
-    from mbkf.cli.stopping import stopped_by_signal
+    from mbkf.cli.stopping import end_within, stopped_by_signal
     from mbkf.io.atomic import check_folder
 
     folder = check_folder(Path.home() / "mbkf" if args.folder is None else args.folder)
@@ -42,4 +45,5 @@ def run(args: argparse.Namespace) -> int:
             stop.wait()
     finally:
         server.close()
+        end_within(END_S)
     return 0

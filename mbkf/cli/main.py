@@ -20,8 +20,10 @@ from typing import NoReturn
 
 from mbkf.cli.closed_streams import open_closed_streams
 from mbkf.cli.postponed import postpone
+from mbkf.cli.stopping import EXIT_INTERRUPTED, EXIT_TERMINATED, Terminated, ended_by_signal
 from mbkf.cli.terminal import guarded_output, show_traceback
 from mbkf.errors import MbkfError, MbkfWarning
+from mbkf.io.leftovers import remove_held
 from mbkf.version import __version__
 
 COMMANDS = (
@@ -32,7 +34,6 @@ COMMANDS = (
 
 EXIT_BUG = 1
 EXIT_BAD_INPUT = 2
-EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
 EXIT_PIPE_CLOSED = 141  # 128 + SIGPIPE
 
 TRACEBACK_VARIABLE = "MBKF_TRACEBACK"
@@ -112,7 +113,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line with the given words, or those of ``sys.argv``.
 
     Returns:
-        0 on success, 2 on bad input, 130 when interrupted, 1 on a bug in mbkf.
+        0 on success, 2 on bad input, 130 when interrupted, 143 when terminated, 1 on a bug in mbkf.
 
     Raises:
         SystemExit: By argparse: 2 on wrong usage, 0 after ``--help`` and ``--version``.
@@ -136,15 +137,17 @@ def _run(words: list[str]) -> int:
     postpone()
     warnings.formatwarning = _formatted
     try:
-        with inputs_protected(args):
+        with ended_by_signal(), inputs_protected(args):
             check_outputs(args)
             code = args.run(args)
-        sys.stdout.flush()  # so that a closed pipe is noticed here
+            sys.stdout.flush()  # so that a closed pipe is noticed here
         return code
     except MbkfError as error:
         return _fail(str(error))
-    except KeyboardInterrupt:
-        return _fail("interrupted", EXIT_INTERRUPTED)
+    except KeyboardInterrupt as interruption:
+        remove_held()  # where it came while an unfinished file was being removed
+        terminated = isinstance(interruption, Terminated)
+        return _fail("interrupted", EXIT_TERMINATED if terminated else EXIT_INTERRUPTED)
     except BrokenPipeError:  # the reader of `mbkf info … | head` has left
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_PIPE_CLOSED

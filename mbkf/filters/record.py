@@ -26,6 +26,9 @@ from mbkf.io.quantities import quantities
 UNASKED = -9
 """Contact of the feet as it stands in a record of a filter that does not decide it."""
 
+AT_ONCE = 1000
+"""Blank records that are copied at once."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Track(TrackEstimates):
@@ -82,11 +85,16 @@ def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:
     """Records without an estimate: numbers NaN, flags off."""
-    empty = np.zeros(rows, dtype=dtype)
+    one = np.zeros(1, dtype=dtype)
     for name in dtype.names or ():
-        if empty[name].dtype.kind == "f":
-            empty[name] = np.nan
-    empty["footing"] = UNASKED
+        if one[name].dtype.kind == "f":
+            one[name] = np.nan
+    one["footing"] = UNASKED
+    empty = np.empty(rows, dtype=dtype)
+    for begin in range(
+        0, rows, AT_ONCE
+    ):  # hours of frames are gigabytes, and a signal waits for a copy's end
+        empty[begin : begin + AT_ONCE] = one
     return empty
 
 

@@ -18,6 +18,12 @@ from pathlib import Path
 OLDEST_S = 86_400.0
 """Age at which an unfinished file is swept on systems without such locks."""
 
+UNFINISHED = re.compile(r"\..*-[0-9a-f]{32}(\..*)?")
+"""Names of unfinished files and folders."""
+
+_held: set[Path] = set()
+"""Unfinished files and folders of this process."""
+
 
 @contextmanager
 def unfinished(target: Path, within: Path | None = None, *, folder: bool = False) -> Iterator[Path]:
@@ -38,24 +44,46 @@ def unfinished(target: Path, within: Path | None = None, *, folder: bool = False
     sweep(target, place)
     while True:
         path = place / f".{target.stem}-{uuid.uuid4().hex}{target.suffix}"
-        if folder:
-            path.mkdir()
-        else:
-            path.touch(exist_ok=False)
+        _held.add(path)  # before it is made, so that an interruption at any moment leaves none
+        try:
+            if folder:
+                path.mkdir()
+            else:
+                path.touch(exist_ok=False)
+        except OSError:
+            _held.discard(path)
+            raise
         with suppress(FileNotFoundError), locked(path, wait=True):
             if not path.exists():
+                _held.discard(path)
                 continue  # swept before the lock was ours
             try:
                 yield path
             finally:
                 _remove(path)
+                _held.discard(path)
             return
+
+
+def remove_held() -> None:
+    """Removes all unfinished files and folders of this process, which is to end before it has finished them."""
+    for path in tuple(_held):
+        with suppress(OSError):
+            _remove(path)
+
+
+def sweep_folder(folder: Path) -> None:
+    """Removes all unfinished files and folders that killed processes left in a folder itself, whatever their target."""
+    _sweep(folder, UNFINISHED)
 
 
 def sweep(target: Path, within: Path | None = None) -> None:
     """Removes unfinished files of a target that killed processes left ``within`` a folder, by default the target's."""
     name = re.compile(rf"\.{re.escape(target.stem)}-[0-9a-f]{{32}}{re.escape(target.suffix)}")
-    place = target.parent if within is None else within
+    _sweep(target.parent if within is None else within, name)
+
+
+def _sweep(place: Path, name: re.Pattern[str]) -> None:
     with suppress(OSError):
         for path in place.iterdir():
             if name.fullmatch(path.name) and not path.is_symlink():

@@ -8,6 +8,8 @@ import urllib.request
 
 import pytest
 
+from tests.waiting import PATIENCE_S
+
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_it_serves_until_it_is_stopped(tmp_path):
@@ -18,7 +20,7 @@ def test_it_serves_until_it_is_stopped(tmp_path):
         with pytest.raises(urllib.error.HTTPError, match="403"):
             urllib.request.urlopen(url.partition("?")[0])
         process.send_signal(signal.SIGTERM)
-        assert process.wait(30) == 0
+        assert process.wait(PATIENCE_S) == 0
     assert (tmp_path / "lab").is_dir()
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mbkf.io import leftovers
-from mbkf.io.leftovers import sweep, unfinished
+from mbkf.io.leftovers import remove_held, sweep, sweep_folder, unfinished
 
 HOLD = """
 import sys, time
@@ -74,3 +74,23 @@ def test_names_of_others_and_links_stay(tmp_path):
     sweep(tmp_path / "result")
     assert len(list(tmp_path.iterdir())) == len(others) + 1
     sweep(tmp_path / "nowhere" / "result")
+
+
+def test_a_process_that_ends_removes_all_that_it_holds(tmp_path):
+    with unfinished(tmp_path / "a.c3d") as file, unfinished(tmp_path / "b", folder=True) as folder:
+        (folder / "motion.h5").touch()
+        remove_held()
+        assert not file.exists() and not folder.exists()
+    assert leftovers._held == set()
+
+
+def test_all_that_killed_processes_left_in_a_folder_is_swept(tmp_path):
+    kept = [tmp_path / ".hidden", tmp_path / f"walk-{'a' * 32}", tmp_path / f".walk-{'a' * 31}"]
+    left = [tmp_path / f".walk-{'b' * 32}.c3d", tmp_path / f".walk 2.x-{'c' * 32}"]
+    for path in (*kept, *left):
+        path.touch()
+    (tmp_path / f".walk-{'d' * 32}").mkdir()
+    with unfinished(tmp_path / "other") as living:
+        sweep_folder(tmp_path)
+        assert set(tmp_path.iterdir()) == {*kept, living}
+    sweep_folder(tmp_path / "missing")
