@@ -9,6 +9,7 @@ from tempfile import mkdtemp
 import pyarrow as pa
 import pytest
 
+from mbkf.study.batch.progress import Progress
 from mbkf.study.batch.run import follow, plan_of
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.synth import synthesise, write_folder
@@ -33,9 +34,12 @@ class ThisProcess:
     def __init__(self, workers: int = 1) -> None:
         self.workers = workers
 
-    def run(self, tasks):
+    def run(self, tasks, watch=None):
         for number, task in enumerate(tasks):
-            yield number, task()
+            if watch is None:
+                yield number, task()
+            else:
+                yield number, task(lambda *stage, at=number: watch({at: Progress(*stage)}))
 
     def close(self):
         pass

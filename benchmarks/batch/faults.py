@@ -15,9 +15,11 @@ import numpy as np
 
 from benchmarks.batch.study import fresh, study
 from benchmarks.checks import Check, Context
+from mbkf.conventions import StageCallback
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Task
+from mbkf.study.batch.progress import Watch, ignored
 from mbkf.study.batch.run import follow, plan_of
 from mbkf.study.batch.workers import LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -40,8 +42,9 @@ KILLED, FULL, CUT, BARE = "walk01", "walk02", "walk03", "walk04"
 class Killed:
     """A task whose worker is killed."""
 
-    def __call__(self) -> Outcome:
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
         """Never comes back."""
+        del progress
         os.kill(os.getpid(), signal.SIGKILL)
         raise AssertionError("a killed process goes on")
 
@@ -52,14 +55,14 @@ class Full:
 
     task: Task
 
-    def __call__(self) -> Outcome:
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
         """The task's outcome."""
         import resource
 
         before = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_BYTES, before[1]))
         try:
-            return self.task()
+            return self.task(progress)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
@@ -70,9 +73,9 @@ class Befallen:
     def __init__(self, workers: int) -> None:
         self._inner = LocalWorkers(workers)
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
+    def run(self, tasks: Iterable[Task], watch: Watch | None = None) -> Iterator[tuple[int, Outcome]]:
         """Outcomes, each with its task's place."""
-        return self._inner.run(map(_befallen, tasks))
+        return self._inner.run(map(_befallen, tasks), watch)
 
     def close(self) -> None:
         """Ends the workers."""

@@ -17,8 +17,10 @@ from pathlib import Path
 from time import perf_counter, sleep
 
 from benchmarks.checks import Check, Context
+from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput
 from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task, peak_memory_mb
+from mbkf.study.batch.progress import Watch, ignored
 from mbkf.study.batch.run import follow, plan_of
 from mbkf.study.batch.workers import LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -37,8 +39,9 @@ class Pause:
 
     folder: Path
 
-    def __call__(self) -> Outcome:
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
         """Done."""
+        del progress
         sleep(PAUSE_S)
         self.folder.mkdir(parents=True, exist_ok=True)
         summary = {f"number_{k}": k / 7.0 for k in range(KEYS)} | {
@@ -54,8 +57,9 @@ class Scaled:
 
     subject: Path
 
-    def __call__(self) -> Outcome:
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
         """Done."""
+        del progress
         return Outcome(Status.DONE, subject=self.subject)
 
 
@@ -65,9 +69,9 @@ class Pausing:
     def __init__(self, out: Path) -> None:
         self._inner, self._out = LocalWorkers(WORKERS), out
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
+    def run(self, tasks: Iterable[Task], watch: Watch | None = None) -> Iterator[tuple[int, Outcome]]:
         """Outcomes, each with its task's place."""
-        return self._inner.run(map(self._pausing, tasks))
+        return self._inner.run(map(self._pausing, tasks), watch)
 
     def close(self) -> None:
         """Ends the workers."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from benchmarks.checks import Check, Context
 from benchmarks.inertial.stride_feet import KINDS, STAND_S, SimulatedFoot, simulated_foot
@@ -38,7 +39,9 @@ class Measured:
 def rows(context: Context) -> list[Check]:
     """The rows of feet that hardly rest."""
     each = (QUICK_FEET if context.quick else FEET) // len(KINDS)
-    found = Parallel(n_jobs=2)(delayed(measured)(kind, seed) for kind in KINDS for seed in range(each))
+    feet = [(kind, seed) for kind in KINDS for seed in range(each)]
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        found = list(pool.map(measured, *zip(*feet, strict=True)))
     return list(checks([one for one in found if one is not None]))
 
 

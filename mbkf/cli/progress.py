@@ -19,7 +19,7 @@ def stages() -> Iterator[StageCallback]:
     """Shows a bar for each stage of the work: the yielded callback is passed on as ``progress``.
 
     Yields:
-        The callback; a stage's bar appears when it first reports.
+        The callback; a stage's bar appears when it first reports, and goes after its stage, when the next one begins.
     """
     if not sys.stderr.isatty():
         yield _ignore
@@ -32,6 +32,9 @@ def stages() -> Iterator[StageCallback]:
 
         def report(stage: str, done: int, total: int) -> None:
             if stage not in tasks:
+                for bar in [one for one in bars.tasks if one.finished]:
+                    bars.remove_task(bar.id)
+                    tasks.pop(bar.description)
                 tasks[stage] = bars.add_task(stage, total=total)
             bars.update(tasks[stage], completed=done, total=total)
 

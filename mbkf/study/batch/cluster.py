@@ -10,7 +10,8 @@ from typing import Any
 
 from mbkf.errors import InvalidInput, MissingDependency
 from mbkf.study.batch.outcome import Outcome, Status, Task, failed
-from mbkf.study.batch.workers import KILLED, ONE_THREAD
+from mbkf.study.batch.progress import Watch
+from mbkf.study.batch.worker_process import KILLED, ONE_THREAD
 
 LOCAL = "local"
 """Instead of an address: a cluster on this computer."""
@@ -62,8 +63,9 @@ class ClusterWorkers:
         except (OSError, ValueError) as error:
             raise InvalidInput(f"no Dask scheduler answers at {address} ({error})") from error
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
-        """Outcomes as they come, each with its task's place in the order given."""
+    def run(self, tasks: Iterable[Task], watch: Watch | None = None) -> Iterator[tuple[int, Outcome]]:
+        """Outcomes as they come, each with its task's place in the order given; progress inside tasks stays there."""
+        del watch
         waiting, places = enumerate(tasks), {}
         done = self._distributed.as_completed()
         most = AHEAD * max(1, sum(self._client.nthreads().values()))

@@ -11,11 +11,13 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Protocol
 
+from mbkf.conventions import StageCallback
 from mbkf.errors import MbkfError
 from mbkf.io.files_read import own_files_read
 from mbkf.numerics.threads import single_threaded
 from mbkf.study.batch.person import subject_of
 from mbkf.study.batch.plan import Person, Trial
+from mbkf.study.batch.progress import ignored
 from mbkf.study.batch.trial import trial_done
 from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -50,8 +52,12 @@ class Outcome:
 class Task(Protocol):
     """Work for a worker; it can be sent to another process."""
 
-    def __call__(self) -> Outcome:
-        """Does it; errors become a reason."""
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
+        """Does it; errors become a reason.
+
+        Args:
+            progress: Called with the stage, items done and items in all.
+        """
 
 
 @dataclass(frozen=True)
@@ -66,9 +72,14 @@ class ScalePerson:
     person: Person
     out: Path
 
-    def __call__(self) -> Outcome:
+    @property
+    def name(self) -> str:
+        """The person, as the folder of the results is called."""
+        return self.person.place.as_posix()
+
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
         """The outcome, with the person's file."""
-        return _outcome(lambda: Outcome(Status.DONE, subject=subject_of(self.person, self.out)))
+        return _outcome(lambda: Outcome(Status.DONE, subject=subject_of(self.person, self.out, progress)))
 
 
 @dataclass(frozen=True)
@@ -87,15 +98,19 @@ class ReconstructTrial:
     out: Path
     settings: ReconstructSettings
 
-    def __call__(self) -> Outcome:
+    @property
+    def name(self) -> str:
+        """The trial, as the folder of its results is called."""
+        return self.trial.place.as_posix()
+
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
         """The outcome."""
-        return _outcome(
-            lambda: Outcome(
-                Status.DONE
-                if trial_done(self.trial, self.subject, self.out, self.settings)
-                else Status.UNCHANGED
-            )
-        )
+
+        def work() -> Outcome:
+            done = trial_done(self.trial, self.subject, self.out, self.settings, progress)
+            return Outcome(Status.DONE if done else Status.UNCHANGED)
+
+        return _outcome(work)
 
 
 def failed(error: BaseException) -> Outcome:

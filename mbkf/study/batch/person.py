@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mbkf.conventions import StageCallback
 from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
@@ -14,6 +15,7 @@ from mbkf.io.subject import Subject, write_subject
 from mbkf.study.batch.inputs import fingerprint, is_made_from, write_record
 from mbkf.study.batch.naming import body_of_points, is_nameless, named
 from mbkf.study.batch.plan import MOST_MOVING, Files, Person
+from mbkf.study.batch.progress import ignored
 from mbkf.trial.protocol.standing import stands_still
 from mbkf.trial.scale import scale
 from mbkf.trial.weighing import PROVISIONAL_KG, weighed
@@ -22,12 +24,13 @@ SUBJECT_FILE, RECORD = "subject.toml", "subject.json"
 """Files of a scaled person in the person's folder: the body, and its inputs."""
 
 
-def subject_of(person: Person, out: Path) -> Path:
+def subject_of(person: Person, out: Path, progress: StageCallback = ignored) -> Path:
     """The person's subject file: the one given, the one made before from the same, or a new one.
 
     Args:
         person: The person.
         out: The batch's folder.
+        progress: Called with the stage, items done and items in all.
 
     Raises:
         MbkfError: The person cannot be scaled.
@@ -44,14 +47,14 @@ def subject_of(person: Person, out: Path) -> Path:
     if is_made_from(place / RECORD, made_from) and (place / SUBJECT_FILE).is_file():
         return place / SUBJECT_FILE
     (place / RECORD).unlink(missing_ok=True)
-    subject = scaled(person)
+    subject = scaled(person, progress)
     place.mkdir(parents=True, exist_ok=True)
     write_subject(subject, place / SUBJECT_FILE)
     write_record(place / RECORD, made_from)
     return place / SUBJECT_FILE
 
 
-def scaled(person: Person) -> Subject:
+def scaled(person: Person, progress: StageCallback = ignored) -> Subject:
     """The person's body: by the first standing trial, by its name or else by standing still, else by the moving ones.
 
     Captures whose points have no names are left out beside one that has names; without such a one, the body is found
@@ -77,7 +80,14 @@ def scaled(person: Person) -> Subject:
     if nameless and trials:
         subject = body_of_points(trials[0], mass_kg, person.height_m, person.protocol)
     else:
-        subject = scale(static, trials, mass_kg=mass_kg, height_m=person.height_m, protocol=person.protocol)
+        subject = scale(
+            static,
+            trials,
+            mass_kg=mass_kg,
+            height_m=person.height_m,
+            protocol=person.protocol,
+            progress=progress,
+        )
     if stated_kg is not None:
         return subject
     if not any(capture.plates for capture in captures):

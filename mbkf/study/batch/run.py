@@ -14,13 +14,14 @@ from mbkf.conventions import StageCallback
 from mbkf.errors import FileFormatError, InvalidInput, MbkfWarning
 from mbkf.io.atomic import check_folder
 from mbkf.io.files_read import opened, own_files_read
-from mbkf.io.leftovers import sweep
+from mbkf.io.leftovers import sweep_folder
 from mbkf.study.batch.cluster import ClusterWorkers
 from mbkf.study.batch.folder import plan_of_folder
 from mbkf.study.batch.lists import plan_of_csv, plan_of_toml
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, ScalePerson, Status, Task
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, ScalePerson, Status
 from mbkf.study.batch.plan import Person, Plan, Trial
 from mbkf.study.batch.tables import TABLES, write_tables
+from mbkf.study.batch.task_stages import TaskStages
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -48,7 +49,8 @@ def batch(
         dask: Address of a Dask scheduler whose workers do it instead; "local" for a cluster on this computer.
         shard: (I, N): only every N-th trial, from the I-th (from 1) on, for jobs that know nothing of each other.
         settings: The filter and its settings.
-        progress: Called with the stage, items done and items in all.
+        progress: Called with the stage ("Scaling", "Trials"), items done and items in all; also with each trial under
+            way, as "P1/walk1: Filtering", frames done and frames in all.
 
     Returns:
         The table of trials: a row for each, with ``status``, ``reason`` and all of its ``summary.json``.
@@ -73,8 +75,7 @@ def batch(
         return follow(plan, target, settings or ReconstructSettings(), executor, progress, suffix)
     finally:
         executor.close()
-        for trial in plan.trials:
-            sweep(target / trial.place)
+        sweep_plan(plan, target)
 
 
 def follow(
@@ -118,6 +119,18 @@ def plan_of(source: Path) -> Plan:
     return LISTS[source.suffix.lower()](source)
 
 
+def sweep_plan(plan: Plan, out: Path) -> None:
+    """Removes the unfinished files and folders that killed workers left.
+
+    Args:
+        plan: The persons and trials.
+        out: The batch's folder.
+    """
+    places = {out / trial.place for trial in plan.trials}
+    for place in places | {place.parent for place in places} | {out / one.place for one in plan.persons}:
+        sweep_folder(place)
+
+
 def outcomes_of(
     plan: Plan,
     out: Path,
@@ -150,7 +163,7 @@ def outcomes_of(
 
 
 def _done(
-    tasks: Iterable[Task] | Sequence[Task],
+    tasks: Iterable[ScalePerson | ReconstructTrial],
     executor: Executor,
     stage: str,
     progress: StageCallback | None,
@@ -167,7 +180,8 @@ def _done(
     """
     total = len(tasks) if isinstance(tasks, Sequence) else count or 0
     found: dict[int, Outcome] = {}
-    for number, outcome in executor.run(tasks):
+    inside = None if progress is None else TaskStages(progress)
+    for number, outcome in executor.run(tasks if inside is None else inside.named(tasks), inside):
         found[number] = outcome
         if progress is not None:
             progress(stage, len(found), total)

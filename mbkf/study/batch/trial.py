@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+from mbkf.conventions import StageCallback
 from mbkf.io.atomic import check_folder, write_text
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.capture import read_capture
@@ -16,6 +17,7 @@ from mbkf.study.batch.curves import write_curves
 from mbkf.study.batch.inputs import RECORD, fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import named
 from mbkf.study.batch.plan import Trial
+from mbkf.study.batch.progress import READING, WRITING, ignored
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
@@ -24,7 +26,13 @@ CURVES_FILE = "curves.parquet"
 """File of a trial's cycles in its result folder."""
 
 
-def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSettings) -> bool:
+def trial_done(
+    trial: Trial,
+    subject: Path,
+    out: Path,
+    settings: ReconstructSettings,
+    progress: StageCallback = ignored,
+) -> bool:
     """Reconstructs a trial, unless its folder was made from the same inputs before; returns whether anything was done.
 
     Where only the events by hand are others than before, only the curves are made again.
@@ -34,11 +42,13 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
         subject: The person's file.
         out: The batch's folder.
         settings: The filter and its settings.
+        progress: Called with the stage, items done and items in all.
 
     Raises:
         MbkfError: An input is unusable.
         OSError: A file cannot be read or written; nothing half-written stays.
     """
+    progress(READING, 0, 1)
     target = out / trial.place
     files = [trial.path, subject, *([] if trial.forces is None else [trial.forces])]
     run_settings = recorded(settings)
@@ -51,7 +61,8 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
     check_folder(target, (*RESULT_FILES, CURVES_FILE))
     person = read_subject(subject)
     given = named(read_capture(trial.path, forces=trial.forces), person)
-    result = reconstruct(given.capture, person, settings=settings)
+    result = reconstruct(given.capture, person, settings=settings, progress=progress)
+    progress(WRITING, 0, 1)
     result = replace(result, warnings=(*result.warnings, *given.warnings))
     with replacing_folder(target, last=RECORD) as partial:
         write_result_files(result, summarise(result), partial)

@@ -1,135 +1,177 @@
-"""Tasks on the processes of one computer; a process that is killed costs only the task that it died of.
+"""Tasks on the processes of one computer; a process that dies or stands still costs at most the task that it had.
 
-When a worker dies, nobody knows which of the tasks that were under way it had. Those are done again one by one, each in
-a process of its own: the one that dies again is reported so, the others are done.
+Such a task is done once more after all others, alone, in a new process: two that need much memory may fit one after the
+other. Where it ends its worker again, it is reported so. When a run is given up, its processes are killed at once;
+results appear as one, so at most an unfinished folder stays, which :mod:`mbkf.io.leftovers` sweeps.
 """
 
 from __future__ import annotations
 
-import os
-import threading
 import time
-import warnings
 from collections.abc import Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass, field
+from queue import Empty, SimpleQueue
 from typing import Protocol
 
-from joblib.externals.loky import ProcessPoolExecutor
-from joblib.externals.loky.process_executor import BrokenProcessPool
-
 from mbkf.study.batch.outcome import Outcome, Status, Task
+from mbkf.study.batch.progress import Progress, Watch
+from mbkf.study.batch.worker_process import Gone, WorkerProcess
 
-AHEAD = 2
-"""So many tasks per worker are handed over before one is awaited: enough to keep it busy, and no more than loky passes
-on at once, whose manager would stumble over tasks that still wait with it when an interruption ends it."""
+TICK_S = 0.25
+"""Longest time between two looks at the workers."""
 
-ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+STILL_S = 20.0
+"""A worker without a sign of life for so long is replaced; it gives one each second."""
 
-WATCH_S = 1.0
-"""So often a worker looks whether its parent still lives."""
+START_S = 60.0
+"""The same for a worker that has just been started, and loads its libraries."""
 
-LEAVES = "A worker stopped while some jobs were given to the executor"
+MOST_MB = 1000.0
+"""A worker whose memory has grown beyond this is replaced after its task, so that the system gets it back."""
 
-KILLED = "the worker was killed while it did this (out of memory?)"
+STOOD_STILL = "the worker gave no sign of life for {:.0f} s while it did this (was it stopped?)"
 
 
 class Executor(Protocol):
     """Does tasks somewhere."""
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
-        """Outcomes as they come, each with its task's place in the order given."""
+    def run(self, tasks: Iterable[Task], watch: Watch | None = None) -> Iterator[tuple[int, Outcome]]:
+        """Outcomes as they come, each with its task's place in the order given.
+
+        Args:
+            tasks: They; asked for as they are needed.
+            watch: Called with the progress of those under way; an error that it raises ends the run.
+        """
 
     def close(self) -> None:
         """Lets go of the workers; tasks under way are given up."""
 
 
+@dataclass
+class _Job:
+    """A task under way, and how long its worker has been silent, s."""
+
+    number: int
+    task: Task
+    progress: Progress = field(default_factory=Progress)
+    silent_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Lost:
+    """A task whose worker has gone, and the reason."""
+
+    task: Task
+    reason: str
+
+
 class LocalWorkers:
-    """Processes of this computer, one thread each."""
+    """Processes of this computer, one thread each; started as tasks come."""
 
     def __init__(self, workers: int) -> None:
         """Args: how many processes."""
-        # loky replaces a worker whose memory has grown, as it may.
-        warnings.filterwarnings("ignore", LEAVES, UserWarning)
         self._workers = workers
-        self._pool = self._started(workers)
+        self._inbox = SimpleQueue[tuple[WorkerProcess, object]]()
+        self._idle: list[WorkerProcess] = []
+        self._living: set[WorkerProcess] = set()
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
+    def run(self, tasks: Iterable[Task], watch: Watch | None = None) -> Iterator[tuple[int, Outcome]]:
         """Outcomes as they come, each with its task's place in the order given."""
-        waiting, under_way = enumerate(tasks), dict[Future[Outcome], tuple[int, Task]]()
-        while True:
-            refused = self._hand_over(waiting, under_way)
-            if not under_way and not refused:
-                return
-            done = wait(under_way, return_when=FIRST_COMPLETED).done if under_way else set()
-            broken = bool(refused) or any(_broke(future) for future in done)
-            for future in [one for one in under_way if one.done() and not _broke(one)]:
-                number, _ = under_way.pop(future)
-                yield number, future.result()
-            if broken:
-                suspects = [*under_way.values(), *refused]
-                under_way.clear()
-                yield from self._alone(suspects)
+        waiting, again = enumerate(tasks), dict[int, Task]()
+        busy, alone = dict[WorkerProcess, _Job](), set[int]()
+        try:
+            while self._hand_out(waiting, again, alone, busy):
+                for number, outcome in self._heard(busy):
+                    if isinstance(outcome, Outcome):
+                        yield number, outcome
+                    elif number in alone:
+                        yield number, Outcome(Status.FAILED, outcome.reason)
+                    else:
+                        again[number] = outcome.task
+                if watch is not None:
+                    watch({job.number: job.progress for job in busy.values()})
+        finally:
+            for worker in tuple(busy):
+                self._given_up(worker, busy)
 
     def close(self) -> None:
         """Ends the processes; tasks under way are given up."""
-        self._pool.shutdown(wait=True, kill_workers=True)
+        self._idle.clear()
+        for worker in tuple(self._living):
+            self._ended(worker)
 
-    def _hand_over(
-        self, waiting: Iterator[tuple[int, Task]], under_way: dict[Future[Outcome], tuple[int, Task]]
-    ) -> list[tuple[int, Task]]:
-        """Hands tasks over until enough are under way; returns the one that dead workers could not take."""
-        while len(under_way) < AHEAD * self._workers:
+    def _hand_out(
+        self,
+        waiting: Iterator[tuple[int, Task]],
+        again: dict[int, Task],
+        alone: set[int],
+        busy: dict[WorkerProcess, _Job],
+    ) -> bool:
+        """Hands tasks to all free workers, or at the end one of those to be done again; false when all are done."""
+        while len(busy) < self._workers:
             found = next(waiting, None)
             if found is None:
-                break
-            try:
-                under_way[self._pool.submit(found[1])] = found
-            except BrokenProcessPool:
-                return [found]
-        return []
+                if busy or not again:
+                    break
+                number = min(again)
+                alone.add(number)
+                found = number, again.pop(number)
+                self.close()
+            worker = self._idle.pop() if self._idle else self._started()
+            busy[worker] = _Job(*found)
+            worker.give(found[1])
+        return bool(busy)
 
-    def _alone(self, suspects: Iterable[tuple[int, Task]]) -> Iterator[tuple[int, Outcome]]:
-        """Tasks one by one, after a worker died of one of them; then there are all workers again."""
-        self._restart(1)
-        for number, task in sorted(suspects, key=lambda one: one[0]):
-            try:
-                found = self._pool.submit(task).result()
-            except BrokenProcessPool:
-                found = Outcome(Status.FAILED, KILLED)
-                self._restart(1)
-            yield number, found
-        self._restart(self._workers)
+    def _heard(self, busy: dict[WorkerProcess, _Job]) -> Iterator[tuple[int, Outcome | _Lost]]:
+        """Takes what the workers have sent since; outcomes, and tasks whose worker has gone."""
+        begin = time.monotonic()
+        messages = list(self._messages())
+        # counted in looks, not by the clock, on which this process may have been stopped as well
+        passed = min(time.monotonic() - begin, 2.0 * TICK_S)
+        for job in busy.values():
+            job.silent_s += passed
+        for worker, message in messages:
+            if worker not in busy:  # it has been given up
+                continue
+            job = busy[worker]
+            job.silent_s, worker.heard = 0.0, True
+            if isinstance(message, Progress):
+                job.progress = message
+            elif isinstance(message, Gone):
+                yield job.number, _Lost(job.task, self._given_up(worker, busy))
+            elif isinstance(message, Outcome):
+                del busy[worker]
+                self._freed(worker, message)
+                yield job.number, message
+        for worker, job in tuple(busy.items()):
+            if job.silent_s > (STILL_S if worker.heard else START_S):
+                self._given_up(worker, busy)
+                yield job.number, _Lost(job.task, STOOD_STILL.format(job.silent_s))
 
-    def _restart(self, workers: int) -> None:
-        self.close()
-        self._pool = self._started(workers)
+    def _messages(self) -> Iterator[tuple[WorkerProcess, object]]:
+        """Waits for a message, not longer than a tick, and takes all that have come."""
+        try:
+            yield self._inbox.get(timeout=TICK_S)
+            while True:
+                yield self._inbox.get_nowait()
+        except Empty:
+            return
 
-    def _started(self, workers: int) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
-            max_workers=workers,
-            timeout=None,
-            env=ONE_THREAD,
-            initializer=end_without,
-            initargs=(os.getpid(),),
-        )
+    def _started(self) -> WorkerProcess:
+        worker = WorkerProcess(self._inbox)
+        self._living.add(worker)
+        return worker
 
+    def _freed(self, worker: WorkerProcess, outcome: Outcome) -> None:
+        if (outcome.peak_memory_mb or 0.0) > MOST_MB:
+            self._ended(worker)
+        else:
+            self._idle.append(worker)
 
-def end_without(parent: int) -> None:
-    """Ends this process soon after its parent has gone, which may have been killed without a word to it.
+    def _given_up(self, worker: WorkerProcess, busy: dict[WorkerProcess, _Job]) -> str:
+        del busy[worker]
+        return self._ended(worker)
 
-    Args:
-        parent: Number of the parent's process.
-    """
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(WATCH_S)
-        os._exit(1)
-
-    if os.getppid() == parent:  # elsewhere a process keeps the number of a parent that is gone
-        threading.Thread(target=watch, name="mbkf-parent", daemon=True).start()
-
-
-def _broke(future: Future[Outcome]) -> bool:
-    """True where a worker died before this was done."""
-    return future.done() and isinstance(future.exception(), BrokenProcessPool)
+    def _ended(self, worker: WorkerProcess) -> str:
+        self._living.discard(worker)
+        return worker.end()

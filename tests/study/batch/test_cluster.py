@@ -8,7 +8,7 @@ from mbkf.errors import InvalidInput
 from mbkf.study.batch import cluster
 from mbkf.study.batch.cluster import LOCAL, ClusterWorkers
 from mbkf.study.batch.outcome import Status
-from mbkf.study.batch.workers import KILLED
+from mbkf.study.batch.worker_process import KILLED
 from tests.batch_tasks import Answer, Die, Fail
 
 pytest.importorskip("distributed", reason="Dask is not installed")
