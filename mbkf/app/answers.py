@@ -55,7 +55,7 @@ def run_state(state: RunState | None) -> Plain | None:
     """The state of a run; None for a session that never ran."""
     if state is None:
         return None
-    names = ("state", "stage", "done", "total", "seconds", "remaining_s", "reason")
+    names = ("state", "stage", "done", "total", "share", "seconds", "remaining_s", "reason")
     return {name: getattr(state, name) for name in names}
 
 
@@ -67,6 +67,7 @@ def live_state(live: LiveRun) -> Plain:
 
 def _trial(found: SurveyedSession, trial: SurveyedTrial, state: RunState | None) -> Plain:
     status, reason = ("", "") if state is None else state.trials.get(trial.name, ("", ""))
+    progress = None if state is None else state.under_way.get(trial.name)
     copied = ("name", "seconds", "rate_hz", "markers", "unnamed", "protocol", "plates", "events", "usable")
     return {
         **{name: getattr(trial, name) for name in copied},
@@ -77,4 +78,5 @@ def _trial(found: SurveyedSession, trial: SurveyedTrial, state: RunState | None)
         "problems": [plain_problem(one) for one in trial.problems],
         "status": status,
         "reason": reason,
+        "under_way": None if progress is None else asdict(progress) | {"share": progress.share},
     }

@@ -1,27 +1,30 @@
 """Runs of sessions, one after the other in a thread, with the state of each trial and the time that is left.
 
-The states stand in a file beside the results, so that a new page, or a server after a crash, continues where the last
-one stopped: trials that are done from the same files are not done again.
+The work is done by processes of its own: a run that is cancelled ends at once, a process that crashes costs its task,
+and memory goes back to the system with the run. Whatever goes wrong in a run ends that run, with its reason; the queue
+goes on. The states stand in a file beside the results, so that a new page, or a server after a crash, continues where
+the last one stopped: trials that are done from the same files are not done again. Where that file cannot be written,
+the states are those of this server alone.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from functools import partial
 from os import cpu_count
 from pathlib import Path
 
 from mbkf.app.workspace import Workspace
-from mbkf.errors import MbkfError
 from mbkf.io.atomic import write_text
 from mbkf.io.files_read import read_state
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task, failed
 from mbkf.study.batch.plan import Plan
-from mbkf.study.batch.run import outcomes_of
+from mbkf.study.batch.progress import Progress, Watch
+from mbkf.study.batch.run import outcomes_of, sweep_plan
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -29,6 +32,9 @@ RUNS_FILE = "runs.json"
 """File in the folder of the results with the state of each session's run."""
 
 WAITING, RUNNING, FINISHED, CANCELLED, FAILED = "waiting", "running", "finished", "cancelled", "failed"
+
+CLOSE_S = 10.0
+"""Longest wait for the thread at the end; its processes are killed at once."""
 
 
 @dataclass
@@ -40,8 +46,10 @@ class RunState:
         stage: "scaled" or "trials".
         done, total: Counts of trials.
         seconds: Time since the run began.
+        scaled_s: Time until the person was scaled.
         reason: Cause of a failure of the whole run; empty without.
         trials: Status of each trial by name ("done", "unchanged" or "failed"), and its reason.
+        under_way: Progress of each trial under way by name; of the scaling under "".
     """
 
     state: str = WAITING
@@ -49,15 +57,23 @@ class RunState:
     done: int = 0
     total: int = 0
     seconds: float = 0.0
+    scaled_s: float = 0.0
     reason: str = ""
     trials: dict[str, tuple[str, str]] = field(default_factory=dict)
+    under_way: dict[str, Progress] = field(default_factory=dict)
 
     @property
     def remaining_s(self) -> float | None:
-        """Estimated time until the end, s; None before the first trial is done."""
-        if self.state != RUNNING or not self.done:
+        """Estimated time until the end, s; None before the first trial is being filtered."""
+        if self.state != RUNNING or not self.total:
             return None
-        return self.seconds / self.done * (self.total - self.done)
+        share = (self.done + self.share) / self.total
+        return None if share <= 0.0 else (self.seconds - self.scaled_s) / share * max(1.0 - share, 0.0)
+
+    @property
+    def share(self) -> float:
+        """Shares of the trials under way that are done, added up."""
+        return sum(one.share for one in self.under_way.values())
 
 
 class Runs:
@@ -72,127 +88,186 @@ class Runs:
         self._workspace, self._workers = workspace, workers or cpu_count() or 1
         self._states = _read(workspace.out / RUNS_FILE)
         self._changed = threading.Condition()
-        self._cancelled: set[str] = set()
         self._closing = False
         for state in self._states.values():
             if state.state == RUNNING:
                 state.state = WAITING
-        self._thread = threading.Thread(target=self._run, name="mbkf-runs", daemon=True)
-        self._thread.start()
+        self._thread = self._started()
 
     def start(self, session: str) -> None:
         """Queues a session, unless it waits or runs already."""
         with self._changed:
+            self._revive()
             known = self._states.get(session)
             if known is None or known.state not in {WAITING, RUNNING}:
                 self._states[session] = RunState(trials={} if known is None else known.trials)
-            self._cancelled.discard(session)
-            self._write()
-            self._changed.notify_all()
+            self._save()
 
     def cancel(self, session: str) -> None:
-        """Ends the run of a session after the trials in progress."""
+        """Ends the run of a session; trials under way are given up, finished ones stay."""
         with self._changed:
             state = self._states.get(session)
             if state is not None and state.state in {WAITING, RUNNING}:
-                self._cancelled.add(session)
-                if state.state == WAITING:
-                    state.state = CANCELLED
-                self._write()
+                state.state, state.under_way = CANCELLED, {}
+                self._save()
 
     def state(self, session: str) -> RunState | None:
         """The state of a session's run; None for one that never ran."""
         with self._changed:
+            self._revive()
             return self._states.get(session)
 
+    def wait(self, reached: Callable[[], bool], timeout_s: float | None = None) -> bool:
+        """Waits for a condition on the states, looked at after every change; false where it is not met in time.
+
+        Args:
+            reached: The condition.
+            timeout_s: Longest wait; None: for ever.
+        """
+        with self._changed:
+            return self._changed.wait_for(reached, timeout_s)
+
     def close(self) -> None:
-        """Ends the thread after the trials in progress; the next server continues."""
+        """Ends the run under way and the thread; the next server continues."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()
-        self._thread.join(timeout=60.0)
+        self._thread.join(CLOSE_S)
+
+    def _started(self) -> threading.Thread:
+        thread = threading.Thread(target=self._run, name="mbkf-runs", daemon=True)
+        thread.start()
+        return thread
+
+    def _revive(self) -> None:
+        """Starts the thread again if an error ended it that nothing could handle; the caller holds the lock."""
+        if not self._closing and not self._thread.is_alive():
+            self._fail("the run's thread ended for an unknown reason")
+            self._thread = self._started()
 
     def _run(self) -> None:
+        """The queue: whatever a run raises ends it as failed, and the next one starts."""
         while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._closing or self._next() is not None)
-                session = self._next()
-                if self._closing or session is None:
+            try:
+                if (taken := self._taken()) is None:
                     return
-                state = self._states[session]
-                state.state, state.done, state.reason = RUNNING, 0, ""
-                self._write()
-            self._run_one(session, state)
+                self._run_one(*taken)
+            except _Stopped:
+                continue
+            except BaseException as error:  # the thread must live: no memory, full disk, a bug
+                self._fail(_reason(error))
+
+    def _taken(self) -> tuple[str, RunState] | None:
+        """Waits for a session and marks it as running; None at the end."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._closing or self._next() is not None)
+            session = self._next()
+            if self._closing or session is None:
+                return None
+            state = self._states[session]
+            state.state, state.done, state.reason = RUNNING, 0, ""
+            self._save()
+            return session, state
 
     def _next(self) -> str | None:
         return next((name for name, state in self._states.items() if state.state == WAITING), None)
 
     def _run_one(self, session: str, state: RunState) -> None:
-        begin = time.monotonic()
-        try:
-            plan = self._workspace.plan(session)
-            state.total = len(plan.trials)
+        plan = self._workspace.plan(session)
+        state.total = len(plan.trials)
+        with contextlib.ExitStack() as ending:
+            ending.callback(sweep_plan, plan, self._workspace.out)
             workers = LocalWorkers(min(self._workers, state.total))
-            watched = _Watched(workers, partial(self._note, session, begin))
-            try:
-                found = outcomes_of(plan, self._workspace.out, ReconstructSettings(), watched)
-            finally:
-                workers.close()
-            self._finish(session, FINISHED, plan, found)
-        except _Stopped:
-            ended = CANCELLED if session in self._cancelled else RUNNING  # closed: the next server continues
-            self._finish(session, ended)
-        except (MbkfError, OSError) as error:
-            state.reason = " ".join(str(error).split())
-            self._finish(session, FAILED)
+            ending.callback(workers.close)
+            watched = _Watched(workers, _Notes(self, state))
+            found = outcomes_of(plan, self._workspace.out, ReconstructSettings(), watched)
+        self._finish(state, plan, found)
 
-    def _note(self, session: str, begin: float, task: Task, found: Outcome) -> None:
-        """Writes the outcome of a task into the states.
-
-        Raises:
-            _Stopped: The run was cancelled, or the page's server ends.
-        """
+    def _finish(self, state: RunState, plan: Plan, found: Iterable[Outcome]) -> None:
         with self._changed:
-            state = self._states[session]
-            state.seconds = time.monotonic() - begin
-            if isinstance(task, ReconstructTrial):
-                state.stage, state.done = "trials", state.done + 1
-                state.trials[task.trial.path.stem] = (found.status.value, found.reason)
-            else:
-                state.stage = "scaled"
-            self._write()
-            if self._closing or session in self._cancelled:
-                raise _Stopped
-
-    def _finish(
-        self, session: str, ended: str, plan: Plan | None = None, found: Iterable[Outcome] = ()
-    ) -> None:
-        with self._changed:
-            state = self._states[session]
-            state.state = ended
-            for trial, outcome in zip(() if plan is None else plan.trials, found, strict=True):
+            for trial, outcome in zip(plan.trials, found, strict=True):
                 state.trials[trial.path.stem] = (outcome.status.value, outcome.reason)
             state.done = sum(status != Status.FAILED for status, _ in state.trials.values())
-            self._write()
+            if state.state == RUNNING:
+                state.state, state.under_way = FINISHED, {}
+            self._save()
 
-    def _write(self) -> None:
-        """Writes all states; the caller holds the lock."""
-        plain = {name: asdict(state) for name, state in self._states.items()}
-        write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1))
+    def _fail(self, reason: str) -> None:
+        """Ends the run under way as failed."""
+        with self._changed:
+            for state in self._states.values():
+                if state.state == RUNNING:
+                    state.state, state.reason, state.under_way = FAILED, reason, {}
+            self._save()
+
+    def _save(self) -> None:
+        """Makes a change known: to all that wait for it, and to the next server; the caller holds the lock."""
+        self._changed.notify_all()
+        with contextlib.suppress(Exception):  # a full disk, which also ends the run if it writes there
+            plain = {name: asdict(state) | {"under_way": {}} for name, state in self._states.items()}
+            write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1))
 
 
 class _Stopped(Exception):
     """The run ends before its last trial."""
 
 
+class _Notes:
+    """Notes outcomes and progress of a run in its state.
+
+    Args:
+        runs: All runs.
+        state: That of this one.
+    """
+
+    def __init__(self, runs: Runs, state: RunState) -> None:
+        self._runs, self._state, self._begin_s = runs, state, time.monotonic()
+
+    def outcome(self, task: Task, found: Outcome) -> None:
+        """Notes an outcome.
+
+        Raises:
+            _Stopped: The run was cancelled, or the page's server ends.
+        """
+        state = self._state
+        with self._runs._changed:
+            state.seconds = time.monotonic() - self._begin_s
+            if isinstance(task, ReconstructTrial):
+                state.stage, state.done = "trials", state.done + 1
+                state.trials[task.trial.path.stem] = (found.status.value, found.reason)
+                state.under_way.pop(task.trial.path.stem, None)
+            else:
+                state.stage, state.scaled_s = "scaled", state.seconds
+            self._runs._save()
+        self.check()
+
+    def progress(self, under_way: Mapping[str, Progress]) -> None:
+        """Notes progress, of each trial by its name.
+
+        Raises:
+            _Stopped: The run was cancelled, or the page's server ends.
+        """
+        self.check()
+        with self._runs._changed:
+            self._state.under_way = dict(under_way)
+            self._state.seconds = time.monotonic() - self._begin_s
+            self._runs._changed.notify_all()
+
+    def check(self) -> None:
+        """Raises _Stopped where the run is to end."""
+        if self._state.state != RUNNING or self._runs._closing:
+            raise _Stopped
+
+
 class _Watched:
-    """An executor that reports each task's outcome as it comes."""
+    """An executor whose tasks' outcomes and progress are noted as they come."""
 
-    def __init__(self, executor: Executor, report: Callable[[Task, Outcome], None]) -> None:
-        self._executor, self._report = executor, report
+    def __init__(self, executor: Executor, notes: _Notes) -> None:
+        self._executor, self._notes = executor, notes
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
+    def run(self, tasks: Iterable[Task], watch: Watch | None = None) -> Iterator[tuple[int, Outcome]]:
         """Outcomes as they come."""
+        del watch
         given: list[Task] = []
 
         def noted() -> Iterator[Task]:
@@ -200,13 +275,28 @@ class _Watched:
                 given.append(task)
                 yield task
 
-        for number, outcome in self._executor.run(noted()):
-            self._report(given[number], outcome)
+        def inside(under_way: Mapping[int, Progress]) -> None:
+            self._notes.progress({_name(given[number]): one for number, one in under_way.items()})
+
+        for number, outcome in self._executor.run(noted(), inside):
+            self._notes.outcome(given[number], outcome)
             yield number, outcome
 
     def close(self) -> None:
         """Ends the workers."""
         self._executor.close()
+
+
+def _name(task: Task) -> str:
+    return task.trial.path.stem if isinstance(task, ReconstructTrial) else ""
+
+
+def _reason(error: BaseException) -> str:
+    """The reason of a failed run."""
+    try:
+        return failed(error).reason
+    except Exception:  # no memory for a sentence
+        return type(error).__name__
 
 
 def _read(file: Path) -> dict[str, RunState]:
@@ -216,6 +306,7 @@ def _read(file: Path) -> dict[str, RunState]:
         found = {str(name): RunState(**one) for name, one in plain.items()}
         for state in found.values():
             state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}
+            state.under_way = {}
         return found
     except (OSError, ValueError, TypeError, AttributeError):
         return {}

@@ -10,6 +10,7 @@ from mbkf.app.runs import RunState
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError
 from mbkf.io.session import SessionNotes
+from mbkf.study.batch.progress import Progress
 from tests.studies import study
 
 
@@ -30,13 +31,18 @@ def workspace(tmp_path):
 
 
 def test_a_session_is_told_whole(workspace):
-    state = RunState("running", "trials", 1, 2, 4.0, trials={"walk1": ("failed", "why")})
+    under_way = {"walk2": Progress("Filtering", 250, 500)}
+    trials = {"walk1": ("failed", "why")}
+    state = RunState("running", "trials", 1, 2, 4.0, trials=trials, under_way=under_way)
     told = answers.session(workspace, States({"P1": state}), "P1")
     assert json.loads(json.dumps(told)) == told
     static, walk1, walk2 = told["trials"]
     assert (static["kind"], walk1["kind"], walk1["markers"], walk2["seconds"]) == ("static", "walk", 36, 2.51)
     assert (walk1["status"], walk1["reason"], walk2["status"]) == ("failed", "why", "")
-    assert told["run"]["remaining_s"] == pytest.approx(4.0)
+    assert told["run"]["remaining_s"] == pytest.approx(4.0 / 1.57 * 0.43)
+    assert told["run"]["share"] == walk2["under_way"]["share"] == pytest.approx(0.57)
+    assert (walk2["under_way"]["done"], walk2["under_way"]["total"]) == (250, 500)
+    assert walk1["under_way"] is None
     assert told["notes"] == {} and told["standing_kg"] == pytest.approx(85.7, abs=0.5)
     assert answers.session(workspace, States({}), "P1")["run"] is None
 

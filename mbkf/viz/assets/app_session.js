@@ -2,6 +2,7 @@
 "use strict";
 
 const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", unknown: "unknown" };
+const STAGE_WORDS = { "Reading": "stage_reading", "Following markers alone": "stage_markers", "Filtering": "stage_filtering", "Writing": "stage_writing" };
 
 function sessionView(data, act) {
   return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data, act), run(data, act), liveSection(data, act), trials(data, act)];
@@ -57,7 +58,7 @@ function run(data, act) {
   if (!state) return element("section", {}, row);
   if (busy) {
     const total = Math.max(state.total, 1);
-    const bar = element("progress", { max: total, value: state.done });
+    const bar = element("progress", { max: total, value: state.done + state.share });
     bar.setAttribute("aria-label", word("trials"));
     const left = state.remaining_s === null ? "" : " · " + word("remaining", duration(state.remaining_s));
     const said = state.state === "waiting" ? word("waiting") : state.done || state.stage ? word("of", state.done, state.total) + left : word("scaling");
@@ -77,6 +78,14 @@ function trials(data, act) {
     element("div", { className: "table" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body))));
 }
 
+function underWay(trial) {
+  const { stage, done, total, share } = trial.under_way;
+  const bar = element("progress", { max: 1, value: share });
+  bar.setAttribute("aria-label", trial.name);
+  const words = STAGE_WORDS[stage] ? word(STAGE_WORDS[stage]) : stage;
+  return element("div", { className: "under-way" }, bar, " " + words + (total > 1 ? ": " + word("frames_of", done, total) : ""));
+}
+
 function trialRow(data, one, act) {
   const kind = element("select", { onchange: () => act.trial(data, one.name, { kind: kind.value }) }, ...data.kinds.map((name) =>
     element("option", { value: name, selected: name === one.kind }, word(KIND_WORDS[name]))));
@@ -92,6 +101,7 @@ function trialRow(data, one, act) {
   const result = element("td", {});
   if (one.status) result.append(element("span", { className: `status ${one.status}` }, word(one.status)));
   if (one.status === "failed") result.append(" " + one.reason);
+  if (one.under_way) result.replaceChildren(underWay(one));
   if (one.status === "done" || one.status === "unchanged") {
     const show = (look) => element("button", { type: "button", onclick: () => act.open(look, one.name) }, word(look));
     result.append(element("div", { className: "buttons" }, show("look"), show("report"), exportSelect(data, one)));
