@@ -1,0 +1,61 @@
+"""Errors at places of a run of the page: counted the same each time, raised once, and without harm to the queue."""
+
+import random
+from types import SimpleNamespace
+
+import pytest
+
+from benchmarks.misuse import injected
+from benchmarks.misuse.injected import ERRORS, HIT, MODES, Places
+from mbkf.app.runs import FAILED, FINISHED, RunState
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    return injected._lab(tmp_path_factory.mktemp("injected") / "lab", MODES[0])
+
+
+@pytest.fixture(scope="module")
+def count(lab):
+    places = Places()
+    assert injected._case(lab, MODES[0], places) == ""
+    return places.count
+
+
+def test_places_lie_in_scaling_filters_writing_and_the_queue(count):
+    assert count > 500
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")  # the first place of all
+@pytest.mark.parametrize("part", range(8))
+def test_an_error_anywhere_costs_only_its_run(lab, count, part):
+    at = 1 + part * count // 8 + 3 * part
+    places = Places(at, ERRORS[part % len(ERRORS)])
+    assert injected._case(lab, MODES[0], places) == ""
+    assert places.count >= at
+
+
+@pytest.mark.parametrize(
+    ("state", "fault"),
+    [
+        (RunState(FAILED, reason="No space left on device: motion.h5"), ""),
+        (RunState(FINISHED, trials={"walk01": ("failed", "unforeseen MemoryError")}), ""),
+        (RunState(FAILED), "no reason"),
+        (RunState(FINISHED, trials={"walk01": ("failed", "")}), "no reason"),
+        (RunState(FINISHED, trials={"walk01": ("done", "")}), "results of P1"),
+    ],
+)
+def test_a_run_has_a_reason_or_whole_results(tmp_path, state, fault):
+    found = injected._of_hit(SimpleNamespace(state={HIT: state}.get), tmp_path)
+    assert fault in found and bool(fault) == bool(found)
+
+
+def test_an_unreadable_result_is_a_fault(lab):
+    assert injected._case(lab, MODES[0], Places()) == ""
+    (lab / "results" / HIT / "walk01" / "motion.h5").write_bytes(b"")
+    assert "results of P1" in injected._unreadable(lab, HIT)
+
+
+def test_places_are_spread_over_the_whole_run():
+    found = injected._spread(1000, 10, random.Random(1))
+    assert [place // 100 for place in (number - 1 for number in found)] == list(range(10))
