@@ -4,9 +4,11 @@ import http.client
 import json
 from contextlib import closing
 
+from tests.waiting import PATIENCE_S
+
 
 def asked(server, path, method="GET", body=None, **headers):
-    with closing(http.client.HTTPConnection("127.0.0.1", server.port, timeout=30.0)) as connection:
+    with closing(http.client.HTTPConnection("127.0.0.1", server.port, timeout=PATIENCE_S)) as connection:
         connection.request(method, path, body, headers)
         answer = connection.getresponse()
         return answer, answer.read()

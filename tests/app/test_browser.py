@@ -5,6 +5,7 @@ import pytest
 from mbkf.app.server import AppServer
 from mbkf.io.session import read_session
 from tests.studies import runs_here, study, walk_folder
+from tests.waiting import PATIENCE_S
 
 NAME = "<img src=x onerror=window.hit=1>'{{words}}"
 
@@ -37,7 +38,7 @@ def test_a_dropped_folder_becomes_a_report(page, lab, tmp_path):
     page.wait_for_selector(".problems", state="detached")
     assert read_session(lab.workspace.root / "P1" / "session.toml").mass_kg == pytest.approx(85.7, abs=0.5)
     page.locator("button.main").first.click()
-    page.wait_for_selector("text=Done in", timeout=60_000)
+    page.wait_for_selector("text=Done in", timeout=1e3 * PATIENCE_S)
     page.locator("#session-report").click()
     report = page.frame_locator("dialog iframe")
     report.locator("#gait-walk svg").first.wait_for()
@@ -56,7 +57,7 @@ def test_a_run_goes_on_while_the_page_is_loaded_again(page, lab):
     page.locator("button.main").first.click()
     page.wait_for_selector("progress")
     page.reload()
-    page.wait_for_selector("text=Done in", timeout=60_000)
+    page.wait_for_selector("text=Done in", timeout=1e3 * PATIENCE_S)
     assert page.locator(".status.done").count() >= 2
 
 

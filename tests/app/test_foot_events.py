@@ -1,7 +1,6 @@
 """Events by hand go into the session's file and into the curves; what cannot be is told and changes nothing."""
 
 import json
-import time
 
 import numpy as np
 import pytest
@@ -16,6 +15,7 @@ from mbkf.study.batch.trial import CURVES_FILE
 from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.app.asking import asked, changed, plain
 from tests.studies import batch_here
+from tests.waiting import PATIENCE_S
 
 EVENTS = "/trial/events?session=P1&trial=walk1"
 
@@ -24,8 +24,8 @@ EVENTS = "/trial/events?session=P1&trial=walk1"
 def run(server, cookie):
     """The folder of the trial's results, and what a page draws of them."""
     plain(server, cookie, "/run?session=P1&do=start", "POST")
-    while plain(server, cookie, "/session?session=P1")[1]["run"]["state"] in {"waiting", "running"}:
-        time.sleep(0.05)
+    ended = {"finished", "cancelled", "failed"}
+    assert server.runs.wait(lambda: server.runs.state("P1").state in ended, PATIENCE_S)
     status, told = plain(server, cookie, "/trial/recording?session=P1&trial=walk1")
     assert status == 200
     return server.workspace.result("P1", "walk1"), told

@@ -2,7 +2,6 @@
 
 import json
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -11,8 +10,7 @@ from mbkf.app import live_run as module
 from mbkf.app.live_run import LiveRun
 from mbkf.errors import InvalidInput
 from mbkf.stream.run.folder import LOG_FOLDER
-
-PATIENCE_S = 20.0
+from tests.waiting import until
 
 SAYS = """
 import json, pathlib, sys
@@ -49,18 +47,12 @@ def begun(tmp_path):
 
 
 def once(run, state):
-    until = time.monotonic() + PATIENCE_S
-    while run.state().state != state:
-        assert time.monotonic() < until, run.state()
-        time.sleep(0.01)
+    until(lambda: run.state().state == state, run.state)
     return run.state()
 
 
 def said(run, text):
-    until = time.monotonic() + PATIENCE_S
-    while text not in run.state().said:
-        assert time.monotonic() < until, run.state()
-        time.sleep(0.01)
+    until(lambda: text in run.state().said, run.state)
     return run.state()
 
 

@@ -1,7 +1,6 @@
 """A live run from the page: asked for, framed, ended, and then a trial of the session with playback and report."""
 
 import json
-import time
 
 import pytest
 
@@ -11,8 +10,8 @@ from mbkf.stream.lsl.discovery import FoundStream
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.trial.live.log import FRAMES_FILE
 from tests.app.asking import asked, plain
+from tests.waiting import until
 
-PATIENCE_S = 60.0
 SOME_FRAMES = 200_000
 """Bytes of a log."""
 
@@ -23,11 +22,14 @@ STATIC = json.dumps({"source": "file", "trial": "static", "body": "standing"})
 
 def once(server, cookie, wanted):
     """The run's state as soon as it is as wanted."""
-    until = time.monotonic() + PATIENCE_S
-    while not wanted(now := plain(server, cookie, "/live/state")[1]["run"]):
-        assert time.monotonic() < until, now
-        time.sleep(0.05)
-    return now
+    seen = []
+
+    def reached():
+        seen.append(plain(server, cookie, "/live/state")[1]["run"])
+        return wanted(seen[-1])
+
+    until(reached, lambda: seen[-1])
+    return seen[-1]
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ from mbkf.app.marker_sets import SET_FILE, file_of_set
 from mbkf.io.session import SessionNotes
 from tests.app.asking import asked, plain
 from tests.studies import study
+from tests.waiting import PATIENCE_S
 
 
 def test_the_page_and_what_it_says(server, cookie):
@@ -31,7 +32,7 @@ def test_a_set_is_changed_and_saved_by_clicks(server, browser):
     page.wait_for_selector("h2:has-text('more/P1')")
     page.locator("button.marker-set").first.click()
     editor = page.frame_locator("dialog iframe")
-    editor.locator(".item", has_text="RASI").click(timeout=60_000)
+    editor.locator(".item", has_text="RASI").click(timeout=1e3 * PATIENCE_S)
     editor.locator("#segment").select_option("")
     editor.locator("#save").click()
     editor.locator("#state", has_text="saved:").wait_for()

@@ -7,7 +7,6 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 import uuid
 from dataclasses import replace
 from typing import ClassVar
@@ -27,6 +26,7 @@ from mbkf.trial.live.results import live_results
 from mbkf.viz.live.page import LivePage
 from mbkf.viz.live.standing_page import StandingPage
 from tests.captures import MASS_KG, made_capture
+from tests.waiting import PATIENCE_S, until
 
 pytestmark = pytest.mark.slow
 
@@ -139,6 +139,10 @@ def test_a_damaged_log_is_recovered_as_far_as_it_is_whole(person, tmp_path, caps
     assert told.err == "mbkf: 1 frames are left out: frames.log is damaged from there on\n"
 
 
+SOME_FRAMES = 50_000
+"""Bytes of a log."""
+
+
 def test_ctrl_c_leaves_complete_files(person, tmp_path):
     out = tmp_path / "out"
     words = [
@@ -153,12 +157,10 @@ def test_ctrl_c_leaves_complete_files(person, tmp_path):
         out,
     ]
     process = begun(words)
-    until = time.monotonic() + 20.0
-    while not (out / LOG_FOLDER).is_dir() and time.monotonic() < until:
-        time.sleep(0.02)
-    time.sleep(1.2)
+    frames = out / LOG_FOLDER / FRAMES_FILE
+    until(lambda: frames.is_file() and frames.stat().st_size > SOME_FRAMES)
     process.send_signal(signal.SIGINT)
-    printed, errors = process.communicate(timeout=20.0)
+    printed, errors = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0, errors
     assert "it was stopped" in printed
     assert 0 < read_reconstruction(out).frames < 60
@@ -316,11 +318,9 @@ def test_ctrl_c_before_a_person_stood_still_leaves_a_report(visit, tmp_path):
     out = tmp_path / "out"
     words = ["live", "--from", f"file:{visit}", "--speed", "0.2", "--out", out]
     process = begun(words)
-    until = time.monotonic() + 20.0
-    while not (out / "live.json").is_file() and time.monotonic() < until:
-        time.sleep(0.02)
+    until((out / "live.json").is_file)
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=20.0)
+    _, errors = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 2
     assert errors.splitlines()[-1].startswith("mbkf: error: stopped before a person was scaled")
     assert json.loads((out / "live.json").read_text())["ended_by"] == "it was stopped"

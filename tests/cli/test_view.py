@@ -11,6 +11,7 @@ from mbkf.cli.main import main
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
+from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.slow
 
@@ -36,11 +37,11 @@ def test_the_page_is_served_until_interrupted(result):
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
             url = process.stdout.readline().strip()
-            with urllib.request.urlopen(url, timeout=20) as answer:
+            with urllib.request.urlopen(url, timeout=PATIENCE_S) as answer:
                 assert b"walk" in answer.read()
         finally:
             process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 0, process.stderr.read()
+        assert process.wait(PATIENCE_S) == 0, process.stderr.read()
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from websockets.sync.client import connect
 
 from mbkf.errors import InvalidInput
 from mbkf.viz.server import PageServer
+from tests.waiting import PATIENCE_S
 
 
 @pytest.fixture
@@ -36,7 +37,9 @@ def guarded():
 
 def fetch(url, **headers):
     try:
-        with urllib.request.urlopen(urllib.request.Request(url, headers=headers), timeout=5) as answer:
+        with urllib.request.urlopen(
+            urllib.request.Request(url, headers=headers), timeout=PATIENCE_S
+        ) as answer:
             return answer.status, answer.read().decode(), dict(answer.headers)
     except urllib.error.HTTPError as refusal:
         with refusal:

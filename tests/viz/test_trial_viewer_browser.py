@@ -1,6 +1,5 @@
 """A trial's page in a real browser: events are moved, added, deleted and undone, another trial lies beside."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +13,8 @@ from mbkf.study.batch.trial import CURVES_FILE
 from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
 from tests.studies import runs_here, study
-from tests.viz.browsing import PATIENCE_S, until
+from tests.viz.browsing import until
+from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.slow
 
@@ -28,10 +28,7 @@ def server(tmp_path_factory):
     with runs_here():
         made = AppServer(folder, workers=1)
         made.runs.start("P1")
-        ends = time.monotonic() + 4 * PATIENCE_S
-        while made.runs.state("P1").state != "finished":
-            assert time.monotonic() < ends, made.runs.state("P1")
-            time.sleep(0.05)
+        assert made.runs.wait(lambda: made.runs.state("P1").state == "finished", PATIENCE_S)
     yield made
     made.close()
 

@@ -3,7 +3,6 @@
 import io
 import json
 import os
-import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +15,7 @@ from benchmarks.robustness.stream_child import ACCOUNTS
 from mbkf.errors import InvalidInput
 from mbkf.stream.played import played
 from tests.captures import made_capture
+from tests.waiting import until
 
 
 class Wire:
@@ -53,9 +53,7 @@ def test_laps_go_on_counting(monkeypatch):
 def test_memory_is_compared_with_that_of_a_warm_run(monkeypatch):
     monkeypatch.setattr(soak, "WARM_SHARE", 0.0)
     memory = soak.Memory(os.getpid(), 1.0)
-    until = time.monotonic() + 10.0
-    while not memory.bytes and time.monotonic() < until:
-        time.sleep(0.05)
+    until(lambda: memory.bytes)
     memory.end()
     assert memory.bytes[0] > 2**20
     memory.bytes = [100, 104, 97]
@@ -86,9 +84,7 @@ def test_frames_that_are_in_no_count_break_the_bound(tmp_path, monkeypatch):
 
 def test_readers_take_addresses_from_what_is_said():
     readers = soak.Readers(io.StringIO("waiting\npage: http://127.0.0.1:1/\nresults: ws://127.0.0.1:1/\n"))
-    until = time.monotonic() + 10.0
-    while len(readers.lines) < 3 and time.monotonic() < until:
-        time.sleep(0.01)
+    until(lambda: len(readers.lines) >= 3)
     assert readers.messages == 0
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from mbkf.stream.receiving.receiver import Receiver
 from tests.captures import made_capture
 from tests.stream.scripted import ScriptedSource, frames_of
+from tests.waiting import PATIENCE_S
 
 
 def received(script, stream):
@@ -49,7 +50,7 @@ def test_frames_that_are_not_taken_in_time_are_overwritten():
     receiver.start()
     for thread in threading.enumerate():
         if thread.name == "mbkf-reader":
-            thread.join(5.0)
+            thread.join(PATIENCE_S)
     counts = receiver.counts()
     assert counts.overwritten > 0
     assert (counts.received, counts.overwritten + counts.queued) == (30, 30)

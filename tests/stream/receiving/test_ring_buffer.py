@@ -3,6 +3,7 @@
 import threading
 
 from mbkf.stream.receiving.ring_buffer import RingBuffer
+from tests.waiting import PATIENCE_S
 
 
 def test_the_latest_item_wins():
@@ -45,7 +46,7 @@ def test_a_patient_slot_keeps_the_giver_waiting():
         if item is not None:
             taken.append(item)
             assert len(buffer.left()) <= 2
-    giver.join(1.0)
+    giver.join(PATIENCE_S)
     assert taken == list(range(50))
 
 
@@ -55,7 +56,7 @@ def test_closing_frees_whoever_waits():
     giver = threading.Thread(target=buffer.put, args=(1,))
     giver.start()
     buffer.close()
-    giver.join(1.0)
+    giver.join(PATIENCE_S)
     assert not giver.is_alive()
     assert buffer.put(2) == []
     assert buffer.left() == [0, 1, 2]  # what came too late to be taken can still be counted

@@ -5,6 +5,7 @@ import threading
 import pytest
 
 from mbkf.stream.results.sending import SendingThread
+from tests.waiting import PATIENCE_S
 
 
 @pytest.mark.parametrize("held", [2, 256])
@@ -12,7 +13,7 @@ def test_a_slow_receiver_does_not_hold_up_the_sender(held):
     got, gate = [], threading.Event()
 
     def slow(frame):
-        gate.wait(5.0)
+        gate.wait(PATIENCE_S)
         got.append(frame)
 
     sending = SendingThread(slow, "test", held)

@@ -16,6 +16,7 @@ from mbkf.model.human import HumanModel
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.values import ResultValues
 from mbkf.stream.results.websocket import WebSocketResults, parse_address
+from tests.waiting import PATIENCE_S
 
 MODEL = HumanModel.scaled(mass_kg=75.0)
 
@@ -58,7 +59,7 @@ def served():
 
 def next_frame(client, results, frame):
     """The next message after the frame was taken, given again until it is there."""
-    until = time.monotonic() + 5.0
+    until = time.monotonic() + PATIENCE_S
     while time.monotonic() < until:
         results.take(frame)
         try:
@@ -118,7 +119,7 @@ def test_declared_estimates_stand_last_and_are_unknown_where_a_frame_lacks_them(
 
 def test_a_client_gets_names_and_then_frames(served):
     with connect(served.url) as client:
-        greeting = json.loads(client.recv(timeout=5.0))
+        greeting = json.loads(client.recv(timeout=PATIENCE_S))
         assert greeting["names"][0] == "pelvis_tilt"
         assert len(greeting["units"]) == len(greeting["names"])
         message = next_frame(client, served, shown_frame(MODEL, 7))
@@ -131,7 +132,7 @@ def test_a_client_gets_names_and_then_frames(served):
 def test_a_client_may_leave_and_come_back(served):
     for number in range(2):
         with connect(served.url) as client:
-            client.recv(timeout=5.0)
+            client.recv(timeout=PATIENCE_S)
             assert next_frame(client, served, shown_frame(MODEL, number))["frame"] in (0, number)
 
 
@@ -141,14 +142,14 @@ def test_a_page_of_another_site_may_not_listen(served):
     with pytest.raises(InvalidStatus, match="403"):
         connect(served.url, origin="null")
     with connect(served.url, origin="http://localhost:8000") as client:
-        assert client.recv(timeout=5.0)
+        assert client.recv(timeout=PATIENCE_S)
 
 
 def test_a_name_that_is_not_this_computers_is_refused(served):
     """A page may have given its own name this computer's address; its browser then asks for that name."""
     port = served.url.split(":")[2].strip("/")
     for host in (f"evil.example:{port}", "[", ""):
-        with socket.create_connection(("127.0.0.1", int(port)), timeout=5.0) as one:
+        with socket.create_connection(("127.0.0.1", int(port)), timeout=PATIENCE_S) as one:
             asked = f"GET / HTTP/1.1\r\nHost: {host}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
             one.sendall(
                 f"{asked}Sec-WebSocket-Key: {16 * 'A'}==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
@@ -166,7 +167,7 @@ def test_another_address_needs_a_token():
         with pytest.raises(InvalidStatus, match="403"):
             connect(f"{address}?token=wrong")
         with connect(results.url) as client:
-            assert client.recv(timeout=5.0)
+            assert client.recv(timeout=PATIENCE_S)
     finally:
         results.close()
 

@@ -16,6 +16,7 @@ from mbkf.stream.run.log_writer import LogWriter
 from mbkf.stream.run.session import LiveSession
 from mbkf.stream.source import UNCOUNTED, PlateSamples
 from tests.stream.scripted import SETTINGS, Collected, ScriptedSource, follow, frames_of, kinds
+from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.slow
 
@@ -193,8 +194,8 @@ def test_a_sending_thread_that_dies_raises_at_the_next_frame():
     sending = SendingThread(send, "x")
     sending.take(None)
     sending._buffer.put("frame")
-    assert done.wait(5.0)
-    sending._thread.join(5.0)
+    assert done.wait(PATIENCE_S)
+    sending._thread.join(PATIENCE_S)
     with pytest.raises(OSError, match="cable"):
         sending.take("frame")
     sending.close()

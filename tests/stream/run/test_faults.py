@@ -4,7 +4,6 @@ import errno
 import json
 import subprocess
 import sys
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -30,6 +29,7 @@ from tests.stream.scripted import (
     with_hidden,
     without_plates,
 )
+from tests.waiting import until
 
 pytestmark = pytest.mark.slow
 
@@ -222,9 +222,7 @@ def test_a_disk_that_was_full_gets_the_rows_later(log, monkeypatch):
     writer = LogWriter(log, failures.append)
     for number in range(20):
         writer.put_row(row(log, number))
-    until = time.monotonic() + 5.0
-    while len(failures) < 3 and time.monotonic() < until:
-        time.sleep(0.01)
+    until(lambda: len(failures) >= 3)
     assert writer.close() == (20, 0)
     assert len(failures) == 3
     assert rows_of(log) == list(range(20))

@@ -6,6 +6,7 @@ import pytest
 
 from mbkf.errors import NotObservable
 from mbkf.stream.run.scaling_job import ScalingJob
+from tests.waiting import PATIENCE_S
 
 
 def failing(error):
@@ -21,19 +22,19 @@ def failing(error):
 )
 def test_a_failure_gives_its_reason(error, why):
     job = ScalingJob(failing(error), None)
-    job.wait(5.0)
+    job.wait(PATIENCE_S)
     assert job.done
     assert job.outcome() == why
 
 
 def test_the_result_is_that_of_scaling_and_the_latest_frames_are_kept():
     gate = threading.Event()
-    job = ScalingJob(lambda: gate.wait(5.0) and "person", 3)
+    job = ScalingJob(lambda: gate.wait(PATIENCE_S) and "person", 3)
     assert not job.done
     for frame in range(5):
         job.keep(frame)
     gate.set()
-    job.wait(5.0)
+    job.wait(PATIENCE_S)
     assert job.outcome() == "person"
     assert (list(job.kept), job.left_out) == ([2, 3, 4], 2)
 

@@ -17,6 +17,7 @@ from mbkf.trial.protocol.standing import stand_beside
 from mbkf.viz.protocol.edit import EditPage
 from tests.captures import made_capture
 from tests.viz.browsing import until
+from tests.waiting import PATIENCE_S
 
 PROTOCOL = load_protocol("reference36")
 HARM = "<img src=x onerror=window.harmed=1>"
@@ -108,7 +109,9 @@ def test_only_who_has_the_token_may_speak(page_of, tmp_path):
         with pytest.raises(InvalidStatus, match="403"), connect(url, additional_headers=headers):
             pass
     with pytest.raises(urllib.error.HTTPError, match="403") as refused:
-        urllib.request.urlopen(urllib.request.Request(page.url, headers={"Host": "evil.example"}), timeout=5)
+        urllib.request.urlopen(
+            urllib.request.Request(page.url, headers={"Host": "evil.example"}), timeout=PATIENCE_S
+        )
     refused.value.close()
     with connect(f"{there}?token={token}") as mine:
         mine.recv(5)
@@ -153,7 +156,7 @@ def test_a_person_moves_a_marker_leaves_one_out_and_saves(opened, page_of, tmp_p
         assert "LFHD" not in found and "RFHD" in found
         assert dict(load_protocol(tmp_path / "mine.toml").ignored) == {"LFHD": "left out by hand"}
         shown.click("#done")
-        assert page.done.wait(10)
+        assert page.done.wait(PATIENCE_S)
         page.close()
         until(shown, "document.getElementById('state').textContent.startsWith('done')")
 
