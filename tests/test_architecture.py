@@ -252,6 +252,7 @@ DOORS = {
     "mbkf/io/imu/xsens_text.py": "looks at a file that the door has checked",
     "mbkf/cli/main.py": "opens the null device",
     "mbkf/cli/closed_streams.py": "opens the null device",
+    "mbkf/study/batch/worker.py": "opens the null device",
 }
 """Files that open others by themselves, each with its reason."""
 

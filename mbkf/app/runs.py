@@ -205,7 +205,7 @@ class Runs:
         self._changed.notify_all()
         with contextlib.suppress(Exception):  # a full disk, which also ends the run if it writes there
             plain = {name: asdict(state) | {"under_way": {}} for name, state in self._states.items()}
-            write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1))
+            write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1), edits=True)
 
 
 class _Stopped(Exception):

@@ -216,7 +216,7 @@ def test_a_thread_that_could_not_even_fail_is_started_again(workspace, monkeypat
 
 @pytest.mark.usefixtures("quick")
 def test_a_full_disk_costs_the_file_of_states_alone(workspace, monkeypatch):
-    def full(*_):
+    def full(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "runs.json")
 
     monkeypatch.setattr(module, "write_text", full)
