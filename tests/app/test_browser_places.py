@@ -1,5 +1,7 @@
 """The page in a real browser: two pages of one session, and an address that never leads to another person."""
 
+import shutil
+
 import pytest
 
 from mbkf.app.server import AppServer
@@ -115,13 +117,19 @@ def test_an_unknown_session_is_not_another_person(pages, name):
     assert page.locator("button.session[aria-current=true]").count() == 0
 
 
-def test_a_session_that_is_removed_or_damaged_leaves_nobody_on_the_page(pages, lab):
-    page = pages("?session=P1")
+def test_a_damaged_or_removed_session_is_not_another_person(pages, lab):
+    page, folder = pages("?session=P1"), lab.workspace.root / "P2"
     shown(page, "P1")
-    (lab.workspace.root / "P2" / "session.toml").write_text("mass_kg = [", encoding="utf-8")
+    (folder / "session.toml").write_text("mass_kg = [", encoding="utf-8")
+    page.locator("button.session", has_text="P2").click()
+    shown(page, "P2")
+    assert "session.toml" in page.locator("main").inner_text() and page.locator("h2").count() == 1
+    page.locator("button.session", has_text="P1").click()
+    shown(page, "P1")
+    shutil.rmtree(folder)
     page.locator("button.session", has_text="P2").click()
     page.wait_for_selector(".lack")
-    assert page.locator("h2").count() == 0 and "session.toml" in page.locator(".lack").inner_text()
+    assert page.locator("h2").count() == 0 and "P2" in page.locator(".lack").inner_text()
 
 
 def test_a_folder_without_captures_says_so(pages, lab, tmp_path):
