@@ -7,6 +7,7 @@ column that is not declared is refused, a row that cannot be right costs only it
 from __future__ import annotations
 
 import csv
+import io
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -55,7 +56,7 @@ def read_edited_csv(file: Path, record: Record) -> list[CsvRow]:
         text = plain_text(file)
     except (OSError, ValueError) as error:
         raise FileFormatError(file, f"cannot be read as a {record.name} in CSV ({error})") from error
-    lines, first = text.splitlines(keepends=True), 0
+    lines, first = list(io.StringIO(text, newline="")), 0
     stated = _STATED.fullmatch(lines[0].strip(" \r\n")) if lines else None
     if stated is not None:
         first = 1

@@ -13,6 +13,9 @@ from dataclasses import dataclass
 Place = tuple[str | int, ...]
 """Way to an entry: keys, and after that of a list of tables the number of the table, from 0."""
 
+LONGEST_LINE = 500
+"""Length of the longest line that is searched for a common mistake; a person's line is shorter."""
+
 _TITLE = re.compile(r"\s*(\[\[?)(.+?)\]\]?\s*(?:#.*)?")
 _ENTRY = re.compile(
     r"\s*((?:[\w-]+|\"(?:[^\"\\]|\\.)*\"|'[^']*')(?:\s*\.\s*(?:[\w-]+|\"(?:[^\"\\]|\\.)*\"|'[^']*'))*)\s*="
@@ -58,11 +61,11 @@ def line_of(text: str, place: Place) -> int | None:
 def mistake(text: str, error: tomllib.TOMLDecodeError) -> TomlMistake:
     """An error of the parser with its line and, where the mistake is a common one, its mend."""
     match = _AT_LINE.search(str(error))
-    lines = text.splitlines()
+    lines = text.split("\n")
     number = int(match[1]) if match is not None and match[1] else max(len(lines), 1)
     line = lines[number - 1].strip() if number <= len(lines) else ""
     reason = str(error)[: match.start()] if match is not None else str(error)
-    advice = _advice(line, reason)
+    advice = _advice(line, reason) if len(line) <= LONGEST_LINE else ""
     said = f"'{line[:60]}': {advice or reason[:120]}" if line else reason[:120]
     return TomlMistake(said, number)
 
@@ -91,7 +94,7 @@ def _advice(line: str, reason: str) -> str:
 def _places(text: str) -> Iterator[tuple[int, Place]]:
     """Lines with the way to the entry or table that stands on each."""
     course, closing = _Course((), {}), ""
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(text.split("\n"), start=1):
         if closing:
             closing = "" if line.count(closing) % 2 else closing
             continue

@@ -49,6 +49,11 @@ def test_lines_count_rows_of_several_lines_and_blank_ones(tmp_path):
         found[1].entries.get(MASS)
 
 
+def test_only_ends_of_line_end_a_row(tmp_path):
+    first, second = rows(tmp_path, "name,mass_kg\ra\u2028b,1\rc,2\r")
+    assert (first.cells["name"], second.cells["name"], second.line) == ("a\u2028b", "c", 3)
+
+
 def test_a_row_with_more_cells_is_its_own_fault(tmp_path):
     first, second = rows(tmp_path, "name,mass_kg\na,71,9\nb,72\n")
     assert isinstance(first.entries, FileFormatError) and "3 cells for 2 columns" in str(first.entries)

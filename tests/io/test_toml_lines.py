@@ -64,6 +64,8 @@ def test_an_entry_is_found_on_its_line(place, line):
         ('p = "C:\\x"', 1, "a backslash is not possible in a text, write / instead"),
         ("a = [1, 2", 1, "'a = [1, 2': "),
         ("a = 1\n]", 2, "']': "),
+        ("a = '\u2028\x85'\nb = 1,5", 2, "write b = 1.5"),
+        ("a = b" + " " * 100_000 + "c", 1, "'a = b"),
     ],
 )
 def test_a_mistake_is_said_with_its_line_and_mend(text, line, advice):
