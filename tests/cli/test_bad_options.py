@@ -17,7 +17,7 @@ def test_mass_that_cannot_be(mass, person, refuse_scale):
 def test_subject_whose_mass_cannot_be(mass, person, tmp_path, refuse_reconstruct):
     path = tmp_path / "person.toml"
     path.write_text(person.subject.read_text().replace("mass_kg = 75.0", f"mass_kg = {mass}"))
-    refuse_reconstruct([person.trial, "--subject", path], "mass must be positive", mass)
+    refuse_reconstruct([person.trial, "--subject", path], "mass_kg must be a number between", "kg", mass)
 
 
 def test_mass_that_nobody_states(person, refuse_scale):
@@ -116,16 +116,19 @@ def test_output_in_a_missing_parent_is_made(person, tmp_path, capsys):
     ("change", "fragments"),
     [
         (None, ["no such file", "mbkf scale"]),
-        (lambda text: "", ["not a subject file", "body", "mbkf scale"]),
-        (lambda text: "\x00\xff", ["not a subject file", "mbkf scale"]),
-        (lambda text: text[: len(text) // 2], ["not a subject file", "mbkf scale"]),
-        (lambda text: text.replace("position_m = [", "position_m = [nan, "), ["not a subject file", "three"]),
+        (lambda text: "", ["scale_factors is missing"]),
+        (lambda text: "\x00\xff", ["line 1: not a subject file"]),
+        (lambda text: text[: len(text) // 2], ["not a subject file", "Unclosed array"]),
+        (
+            lambda text: text.replace("position_m = [", "position_m = [nan, "),
+            ["line", "position_m must be 3 numbers"],
+        ),
         (
             lambda text: text.replace('segment = "pelvis"', 'segment = "tail"'),
             ["unknown segment 'tail'", "pelvis"],
         ),
         (lambda text: text.replace('body = "human18"', 'body = "human19"'), ["'human19'", "human18"]),
-        (lambda text: text.replace("head = ", "haed = "), ["unknown scale factor 'haed'", "head"]),
+        (lambda text: text.replace("head = ", "haed = "), ["scale_factors", "head is missing"]),
         (lambda text: text.partition("[[marker]]")[0], ["0 of the subject's markers"]),
     ],
     ids=["missing", "empty", "binary", "cut", "position", "segment", "body", "factor", "no markers"],
