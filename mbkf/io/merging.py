@@ -66,10 +66,18 @@ def _merged(
             for key in dict.fromkeys([*now, *after, *before])
         }
         return {key: value for key, value in values.items() if value is not None} or None
-    old, new, present = (None if one == {} else one for one in (base, mine, theirs))
+    old, new, present = (_plain(one) for one in (base, mine, theirs))
     if new in (old, present):
         return present
     if present != old:
         differences.append(Difference(field, old, new, present))
         return present
     return new
+
+
+def _plain(value: object) -> object:
+    """The value without missing fields; None for a table without any other."""
+    if not isinstance(value, Mapping):
+        return value
+    fields = {key: _plain(one) for key, one in value.items()}
+    return {key: one for key, one in fields.items() if one is not None} or None

@@ -1,6 +1,6 @@
 """A late change is laid over others: each field by itself, and a field that both changed differently is reported."""
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mbkf.io.merging import Difference, merged
@@ -40,6 +40,7 @@ def test_the_same_change_twice_is_no_difference():
 
 
 @given(TABLES, TABLES)
+@example({"b": 0}, {"b": {"x": None}})
 def test_without_another_change_mine_stands_and_without_mine_theirs(base, other):
     def plain(table):
         return merged({}, table, {}).table

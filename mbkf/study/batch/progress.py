@@ -9,7 +9,7 @@ READING, MARKERS, FILTERING, WRITING = "Reading", "Following markers alone", "Fi
 """Stages of a trial; those in the middle are named by :func:`mbkf.trial.reconstruct.reconstruct`."""
 
 SHARES = {READING: 0.02, MARKERS: 0.20, FILTERING: 0.70, WRITING: 0.08}
-"""Share of a trial's time that each stage takes, in their order; of a treadmill walk of 60 000 frames."""
+"""Share of a trial's time that each stage takes, in their order; estimated, for the time left that is shown."""
 
 
 @dataclass(frozen=True)

@@ -126,7 +126,7 @@ def test_another_tree_is_named_on_the_command_line(tmp_path, monkeypatch):
     monkeypatch.setenv(runner.OLD_VARIABLE, str(tmp_path))
     found = runner._parser().parse_args([])
     assert runner.context_of(found, tmp_path).old == Path(tmp_path)
-    named = argparse.Namespace(data=None, quick=True, old=None, minutes=None, seed=0)
+    named = argparse.Namespace(data=None, quick=True, old=None, minutes=None, seed=0, only=())
     assert runner.context_of(named, tmp_path).old is None
 
 
