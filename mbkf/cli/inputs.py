@@ -1,4 +1,7 @@
-"""Files named on the command line: inputs are protected, and outputs looked at, before a command begins its work."""
+"""Files named on the command line: inputs are protected, and outputs looked at, before a command begins its work.
+
+Of a folder of results all parts are inputs of a command that makes one file of it, also those that it does not read.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,12 @@ from mbkf.io.atomic import check_file
 from mbkf.io.files_read import files_read, own_files_read
 from mbkf.io.written import overwriting
 
+OTHER_PARTS = (
+    "batch.json", "labels.json", "live.json", "subject.json", "subject.toml", "mounts.toml",
+    "curves.csv", "curves.parquet", "summary.csv", "summary.parquet",
+)  # fmt: skip
+"""Names of files that batches, live runs and inertial commands write into folders, besides those of every result."""
+
 
 @contextmanager
 def inputs_protected(args: argparse.Namespace) -> Iterator[None]:
@@ -21,10 +30,11 @@ def inputs_protected(args: argparse.Namespace) -> Iterator[None]:
         ProtectedFile: An output is an input.
     """
     outputs = {one.dest for one in outputs_of(args)}
+    makes_a_file = any(not one.folder for one in outputs_of(args))
     with own_files_read(everywhere=True), overwriting(getattr(args, "overwrite", False)):
         for name, value in vars(args).items():
             if name not in outputs:
-                for path in _files(value):
+                for path in (*_files(value), *(_in_folders(value) if makes_a_file else ())):
                     files_read().add(path)
         yield
 
@@ -66,3 +76,14 @@ def _files(value: object) -> Iterator[Path]:
                 with suppress(OSError, ValueError):  # a text that cannot be a name
                     if Path(text).is_file():
                         yield Path(text)
+
+
+def _in_folders(value: object) -> Iterator[Path]:
+    """The parts of results in the folders that a value names."""
+    from mbkf.io.results_folder import RESULT_FILES
+
+    parts = {*RESULT_FILES, *OTHER_PARTS}
+    for one in value if isinstance(value, list | tuple) else [value]:
+        if isinstance(one, str) and one:
+            with suppress(OSError, ValueError):
+                yield from (path for path in Path(one).rglob("*") if path.name in parts)

@@ -6,6 +6,8 @@ import pytest
 
 from mbkf.cli.main import build_parser, main
 from mbkf.cli.options import OUTPUTS
+from mbkf.io.results_folder import write_reconstruction
+from tests.io.reconstructions import made_up
 
 NAMES = ("walk.c3d", "person.toml", "imus.csv", "motion.h5", "labels.json", "page.html")
 """Inputs by kind, one of which each option takes; a command refuses before it reads them."""
@@ -136,3 +138,18 @@ def test_a_marker_set_is_edited_in_its_own_file_and_in_no_other(tmp_path):
     args.out = str(other)
     with inputs_protected(args), pytest.raises(ProtectedFile):
         check_outputs(args)
+
+
+def test_parts_of_a_folder_of_results_stay_where_a_command_makes_one_file_of_it(tmp_path, capsys):
+    place = tmp_path / "results" / "P1" / "trial"
+    write_reconstruction(made_up(), {"frames": 3}, place)
+    part = place / "angles.mot"
+    before = part.read_bytes()
+    (tmp_path / "link.bvh").symlink_to(part)
+    for out in (part, tmp_path / "link.bvh"):
+        assert main(["export", str(place), "--to", "bvh", "--out", str(out), "--overwrite"]) == 2
+        assert "input" in capsys.readouterr().err
+        assert part.read_bytes() == before
+    (place / "own.bvh").write_text("HIERARCHY  \t\n")  # an earlier export beside them is none
+    main(["export", str(place), "--to", "bvh", "--out", str(place / "own.bvh")])
+    assert "input" not in capsys.readouterr().err
