@@ -39,9 +39,9 @@ def run(args: argparse.Namespace) -> int:
     server = AppServer(folder, args.port, args.workers)
     try:
         print(f"{printed_address(server, not args.no_browser)}\nCtrl-C ends", flush=True)
-        if not args.no_browser:
-            open_page(server)
         with stopped_by_signal() as stop:
+            if not args.no_browser:
+                open_page(server)
             stop.wait()
     finally:
         server.close()

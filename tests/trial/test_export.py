@@ -9,13 +9,14 @@ import mbkf
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.io.written import written_by_mbkf
+from mbkf.model.body_file import load_body
 from mbkf.trial.export import FORMATS, RESULT_FORMATS, export_result, export_subject
 from tests.recordings import walk
 
 SUBJECT = Subject(
     "human18",
     70.0,
-    {"head": 1.1},
+    {name: 1.1 if name == "head" else 1.0 for name in load_body().scale_factors},
     (SubjectMarker("C7", "torso", np.array([-0.08, 0, 0.3]), 0.005, 0.0),),
     "p",
 )
