@@ -21,8 +21,14 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_sessionstart() -> None:
-    """Looks for circles of references less often: thousands of collected tests would be gone through each time."""
-    gc.set_threshold(20_000, 20, 20)
+    """Nothing that collects tests is garbage."""
+    gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    """Circles of references are looked for among what tests make, not among thousands of collected tests."""
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
