@@ -82,6 +82,23 @@ def test_a_field_that_two_pages_changed_is_chosen(pages, lab, choice, kept):
     assert notes(lab).mass_kg == kept
 
 
+def test_notes_are_not_asked_for_while_a_change_is_on_its_way(pages, lab):
+    """Else an answer from before the change, which comes later, would be shown as the newer one."""
+    page = pages("?session=P1")
+    shown(page, "P1")
+    order = []
+    page.on("request", lambda request: order.append((request.method, "begins")))
+    page.on("response", lambda answer: order.append((answer.request.method, "ends")))
+    page.evaluate("act.person(shown, { mass_kg: 71.5 }); act.person(shown, { age: 30 }); refresh()")
+    until(page, "document.querySelector('input[name=mass_kg]').value === '71.5'")
+    until(page, "document.querySelector('input[name=age]').value === '30'")
+    page.wait_for_load_state("networkidle")
+    changes = [step for step in order if step[0] == "POST"]
+    assert changes == [("POST", "begins"), ("POST", "ends")] * 2
+    assert order[: len(changes)] == changes and ("GET", "begins") in order
+    assert (notes(lab).mass_kg, notes(lab).age) == (71.5, 30.0)
+
+
 def test_reload_back_and_forward_stay_with_their_session(pages):
     page = pages()
     shown(page, "P1")

@@ -4,12 +4,13 @@
 const AGAIN_MS = 1000;
 const place = (id) => document.getElementById(id);
 let chosen = null, shown = null, timer = 0, turns = 0, drawn = 0;
+const written = new Map(); // the last change of each session, by its path
 
 // A reply for a session that is shown no more is dropped, unless the request belongs to no session (still).
-async function ask(path, options = {}, still = here()) {
+async function ask(path, options = {}, still = here(), send = fetch) {
   let answer;
   try {
-    answer = await fetch(path, options);
+    answer = await send(path, options);
   } catch (error) {
     await whileHere(still);
     tell(word("lost"), true);
@@ -23,7 +24,15 @@ async function ask(path, options = {}, still = here()) {
   return said;
 }
 
+// The changes of a session are sent one after the other, so that the last reply has them all.
+function write(path, options) {
+  const reply = Promise.resolve(written.get(path)).then(() => fetch(path, options));
+  written.set(path, reply.catch(() => {}));
+  return reply;
+}
+
 const query = (values) => new URLSearchParams(values).toString();
+const notesOf = (session) => "session?" + query({ session });
 
 function tell(text, bad = false) {
   const told = place("told");
@@ -42,9 +51,9 @@ const act = {
   // Sends the notes with those that the change began from; the server lays the change over the notes as they are now.
   async write(base, notes) {
     const turn = ++turns;
-    const said = await ask("session?" + query({ session: base.id }), {
+    const said = await ask(notesOf(base.id), {
       method: "POST", headers: { "If-Match": `"${base.version}"` }, body: JSON.stringify({ base: base.notes, notes }),
-    });
+    }, here(), write);
     draw(said, turn);
     if (!said.differences) tell(word("saved"));
     else differencesDialog(said.differences, (kept) => { if (kept.length) act.write(said, withOwn(said.notes, kept)); }, act.dialog);
@@ -134,7 +143,9 @@ function lack(text) {
   place("session").replaceChildren(element("p", { className: "lack" }, text));
 }
 
+// Waits for changes on their way: an answer without them would be taken for a newer one.
 async function refresh() {
+  await written.get(notesOf(chosen));
   const turn = ++turns, known = await ask("sessions");
   place("folder").textContent = known.folder;
   if (chosen === null && known.sessions.length) {
@@ -147,7 +158,7 @@ async function refresh() {
     shown = null;
     lack(word("no_captures", chosen));
   } else {
-    await ask("session?" + query({ session: chosen })).then((data) => draw(data, turn), (error) => {
+    await ask(notesOf(chosen)).then((data) => draw(data, turn), (error) => {
       shown = null;
       lack(error.message);
     });
