@@ -15,7 +15,7 @@ from benchmarks.app.visit import Server, served
 from benchmarks.checks import Check, Context
 from benchmarks.misuse.world import made_world
 from mbkf.app.workspace import Workspace
-from mbkf.io.toml import write_toml
+from mbkf.io.toml import toml_text
 
 INTERLEAVINGS, EDITS = 50, 6
 BY_HAND, LOADED_AGAIN, OWN = 0.2, 0.2, 0.5
@@ -104,7 +104,7 @@ def _lost(tabs: list[Tab], file: Path, dice: random.Random) -> int:
         key = dice.choice(list(VALUES))
         value = dice.choice(VALUES[key])
         if dice.random() < BY_HAND:
-            write_toml(file, "by hand", {**_held(file), key: value})
+            file.write_text(toml_text("by hand", {**_held(file), key: value}), encoding="utf-8")
             meant[key] = value
             continue
         tab = dice.choice(tabs)
