@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -32,6 +33,9 @@ RUNS_FILE = "runs.json"
 """File in the folder of the results with the state of each session's run."""
 
 WAITING, RUNNING, FINISHED, CANCELLED, FAILED = "waiting", "running", "finished", "cancelled", "failed"
+
+LOOK_S = 1.0
+"""Time between two looks at the states while nothing changes."""
 
 CLOSE_S = 10.0
 """Longest wait for the thread at the end; its processes are killed at once."""
@@ -120,12 +124,19 @@ class Runs:
     def wait(self, reached: Callable[[], bool], timeout_s: float | None = None) -> bool:
         """Waits for a condition on the states, looked at after every change; false where it is not met in time.
 
+        It is looked at now and then besides: a thread that an error ended sends no notice of it.
+
         Args:
             reached: The condition.
             timeout_s: Longest wait; None: for ever.
         """
+        ends = math.inf if timeout_s is None else time.monotonic() + timeout_s
         with self._changed:
-            return self._changed.wait_for(reached, timeout_s)
+            while not self._changed.wait_for(reached, min(LOOK_S, max(ends - time.monotonic(), 0.0))):
+                if time.monotonic() >= ends:
+                    return False
+                self._revive()
+        return True
 
     def close(self) -> None:
         """Ends the run under way and the thread; the next server continues."""

@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import threading
 
 import numpy as np
 import pytest
@@ -211,6 +212,30 @@ def test_a_thread_that_could_not_even_fail_is_started_again(workspace, monkeypat
     for name in ("P1", "P2"):
         runs.start(name)
         wait_for(runs, name, FINISHED)
+    runs.close()
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_thread_that_ends_while_somebody_waits_is_started_again(workspace, monkeypatch):
+    ends, looks = threading.Event(), []
+    with monkeypatch.context() as patch:
+        patch.setattr(Runs, "_run", lambda _: ends.wait())
+        runs = Runs(workspace, 1)
+        runs.start("P1")
+
+    def finished():
+        looks.append(None)
+        ends.set()  # from here on the thread ends, and nothing changes by itself
+        return runs._states["P1"].state == FINISHED
+
+    assert runs.wait(finished, PATIENCE_S)
+    assert len(looks) > 1
+    runs.close()
+
+
+def test_a_wait_in_vain_ends(workspace):
+    runs = Runs(workspace, 1)
+    assert not runs.wait(lambda: False, 0.0)
     runs.close()
 
 
