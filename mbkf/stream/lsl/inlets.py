@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import ModuleType
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
+from mbkf.errors import MbkfError
 from mbkf.stream.lsl.format import StreamInfo
+
+T = TypeVar("T")
 
 Inlet: TypeAlias = Any
 """An inlet as pylsl holds it; the library carries no types."""
@@ -51,6 +55,7 @@ class LostStream:
 
     def __init__(self, library: ModuleType, name: str) -> None:
         """Args: pylsl, and the stream's name."""
+        self._lsl = library
         self._resolver = library.ContinuousResolver("name", name, forget_after=2.0)
         self._refused: set[str] = set()
 
@@ -62,6 +67,27 @@ class LostStream:
         others = [one for one in self._resolver.results() if one.uid() not in self._refused]
         return max(others, key=lambda one: one.created_at(), default=None)
 
-    def refuse(self, info: StreamInfo) -> None:
-        """Passes over a stream that has the name and is another one."""
-        self._refused.add(info.uid())
+    def returned(
+        self, synchronised: bool, read: Callable[[StreamInfo], T], refused: Callable[[MbkfError], object]
+    ) -> tuple[StreamInfo, Inlet, T] | None:
+        """The stream once it is back: its information, its inlet, which receives, and its description.
+
+        Args:
+            synchronised: As for :func:`inlet_of`.
+            read: Description of a stream from its full information; raises MbkfError where the stream that has the name
+                is another one, which is passed over from then on.
+            refused: Called with that error.
+        """
+        info = self.found()
+        if info is None:
+            return None
+        inlet = inlet_of(self._lsl, info, synchronised)
+        try:
+            description = read(inlet.info(OPEN_S))
+        except MbkfError as error:
+            self._refused.add(info.uid())
+            refused(error)
+            return None
+        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
+            return None
+        return (info, inlet, description) if opened(self._lsl, inlet, synchronised) else None

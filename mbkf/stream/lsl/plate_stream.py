@@ -10,6 +10,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
@@ -118,31 +119,29 @@ class PlateStream:
 
     def find_again(self) -> None:
         """Takes the stream up again once it is back; its plates are found by where they lie."""
-        info = None if self._lost is None else self._lost.found()
-        if self._lost is None or info is None:
-            return
-        try:
-            found = described_plates(self._lsl, info)
-            if found is None:
-                return
-            order = plate_order(self._known, found.plates)
-            if self._frames is None and found.layout.counter is None:
+        counted = self._frames is None
+
+        def same(full: StreamInfo) -> tuple[tuple[PlateReadings, ...], PlateLayout, NDArray[np.intp]]:
+            plates, layout = read_plates_info(full)
+            if counted and layout.counter is None:
                 raise InvalidInput("it has no count of samples any more")
-        except MbkfError as error:
-            self._lost.refuse(info)
-            self._tell(
-                "plates refused",
-                f"the stream '{self._name}' came back with other plates: {error}; going on without plates",
-            )
+            return plates, layout, plate_order(self._known, plates)
+
+        back = None if self._lost is None else self._lost.returned(not counted, same, self._refuse)
+        if back is None:
             return
-        inlet = inlet_of(self._lsl, info, self._frames is not None)
-        if not opened(self._lsl, inlet, self._frames is not None):
-            return
-        self._inlet, self._lost, self._layout, self._heard_s = inlet, None, found.layout.reordered(order), 0.0
-        self._ahead = moved_counts(self._known[0], found.plates[order[0]])
+        _, self._inlet, (plates, layout, order) = back
+        self._lost, self._layout, self._heard_s = None, layout.reordered(order), 0.0
+        self._ahead = moved_counts(self._known[0], plates[order[0]])
         mapped = np.array_equal(order, np.arange(len(order)))
         told = "" if mapped else ", its plates in another order, and is read by where they lie"
         self._tell("plates back", f"the stream '{self._name}' is back{told}")
+
+    def _refuse(self, error: MbkfError) -> None:
+        self._tell(
+            "plates refused",
+            f"the stream '{self._name}' came back with other plates: {error}; going on without plates",
+        )
 
     def samples(self, number: int, arrival_s: float) -> PlateSamples:
         """Samples since the frame before, waited for until the end of a frame.

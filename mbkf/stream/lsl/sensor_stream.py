@@ -14,7 +14,7 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.identity import named_columns, same_rate
 from mbkf.stream.lsl.format import StreamInfo
-from mbkf.stream.lsl.inlets import OPEN_S, Inlet, LostStream, inlet_of, opened
+from mbkf.stream.lsl.inlets import Inlet, LostStream, inlet_of, opened
 from mbkf.stream.lsl.sensor_format import SensorLayout, read_sensor_info
 from mbkf.stream.lsl.stamp_numbering import StampedItems, StampNumbering
 from mbkf.stream.source import counts
@@ -107,32 +107,31 @@ class SensorStream:
         times_s = origin_s + numbers / self.layout.rate_hz
         return Samples(numbers, times_s, np.array([reading for _, reading in found]))
 
+    def _refuse(self, error: MbkfError) -> None:
+        self._tell("refused", f"the stream '{self._name}' came back as another one: {error}")
+
     def _lose(self) -> None:
         self._tell("sensors gone", f"the stream '{self._name}' broke off and is looked for")
         self._inlet, self._lost = None, LostStream(self._lsl, self._name)
 
     def _found_again(self) -> bool:
         """True once the stream is back; its sensors are found by their names."""
-        info = None if self._lost is None else self._lost.found()
-        if self._lost is None or info is None:
-            return False
-        inlet = inlet_of(self._lsl, info, self._stamped is not None)
-        try:
-            found, known = read_sensor_info(inlet.info(OPEN_S), self._units), self.layout
+        known, counted = self.layout, self._stamped is None
+
+        def same(full: StreamInfo) -> SensorLayout:
+            found = read_sensor_info(full, self._units)
             if found is None:
                 raise InvalidInput("it has no sensors any more")
             same_rate(known.rate_hz, found.rate_hz)
             layout = found.reordered(named_columns("sensors", known.sensors, found.sensors))
-            if self._stamped is None and layout.counter is None:
+            if counted and layout.counter is None:
                 raise InvalidInput("it has no count of samples any more")
-        except MbkfError as error:
-            self._lost.refuse(info)
-            self._tell("refused", f"the stream '{self._name}' came back as another one: {error}")
+            return layout
+
+        back = None if self._lost is None else self._lost.returned(not counted, same, self._refuse)
+        if back is None:
             return False
-        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
-            return False
-        if not opened(self._lsl, inlet, self._stamped is not None):
-            return False
-        self._inlet, self.layout, self._lost = inlet, layout, None
+        _, self._inlet, self.layout = back
+        self._lost = None
         self._tell("sensors back", f"the stream '{self._name}' is back")
         return True

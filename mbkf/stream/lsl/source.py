@@ -13,7 +13,7 @@ from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.identity import moved_counts, named_columns, same_rate
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl.discovery import streams_of
-from mbkf.stream.lsl.format import MARKER_TYPES, StreamInfo, read_marker_info
+from mbkf.stream.lsl.format import MARKER_TYPES, MarkerLayout, StreamInfo, read_marker_info
 from mbkf.stream.lsl.inlets import OPEN_S, Inlet, LostStream, inlet_of, opened
 from mbkf.stream.lsl.plate_stream import FoundPlates, PlateStream, described_plates, from_first_frame
 from mbkf.stream.lsl.stamp_numbering import StampedItems, StampNumbering
@@ -218,6 +218,9 @@ class LslSource:
         found = int(counts(sample[self._layout.counter]))
         return found if found == UNCOUNTED else found + self._ahead
 
+    def _refuse(self, error: MbkfError) -> None:
+        self._tell("refused", f"the stream '{self._name}' came back as another one: {error}")
+
     def _lose(self) -> None:
         """The marker stream broke off; it is looked for in the background, and its plates are, too."""
         self._tell("markers gone", f"the stream '{self._name}' broke off and is looked for")
@@ -229,28 +232,24 @@ class LslSource:
     def _found_again(self, timeout_s: float) -> bool:
         """True once the marker stream is back; its markers are found by their names."""
         assert self._stream is not None and self._lost is not None
-        known, info = self._stream, self._lost.found()
-        if info is None:
-            time.sleep(timeout_s)
-            return False
-        inlet = inlet_of(self._lsl, info, self._stamped is not None)
-        try:
-            found, layout, _ = read_marker_info(inlet.info(OPEN_S))
+        known, counted = self._stream, self._stamped is None
+
+        def same(full: StreamInfo) -> tuple[StreamDescription, MarkerLayout]:
+            found, layout, _ = read_marker_info(full)
             same_rate(known.rate_hz, found.rate_hz)
             layout = layout.reordered(named_columns("markers", known.marker_names, found.marker_names))
-            if self._stamped is None and layout.counter is None:
+            if counted and layout.counter is None:
                 raise InvalidInput("it has no count of frames any more")
-        except MbkfError as error:
-            self._lost.refuse(info)
-            self._tell("refused", f"the stream '{self._name}' came back as another one: {error}")
+            return found, layout
+
+        back = self._lost.returned(not counted, same, self._refuse)
+        if back is None:
+            time.sleep(timeout_s)
             return False
-        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
-            return False
-        if not opened(self._lsl, inlet, self._stamped is not None):
-            return False
-        self._markers, self._layout, self._lost = inlet, layout, None
+        info, self._markers, (found, self._layout) = back
+        self._lost = None
         self._restarted, self._uid = self._restarted or info.uid() != self._uid, str(info.uid())
-        self._ahead = 0 if self._stamped is not None else moved_counts(known, found)
+        self._ahead = moved_counts(known, found) if counted else 0
         if self._plates is not None:
             self._plates.frames_ahead = 0
         self._tell("markers back", f"the stream '{self._name}' is back")

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from mbkf.errors import InvalidInput
 from mbkf.stream.lsl.inlets import LostStream, inlet_of, opened
 
 LOST, LATE = type("LostError", (Exception,), {}), type("TimeoutError", (Exception,), {})
@@ -57,22 +58,37 @@ def test_a_stream_that_does_not_answer_is_not_open(inlet):
     assert not opened(Library(), inlet, True)
 
 
-def stream(uid, created_s):
-    return SimpleNamespace(uid=lambda: uid, created_at=lambda: created_s)
+class Stream(Inlet):
+    """The information of a stream, which is its inlet as well."""
+
+    def __init__(self, uid, created_s, **errors):
+        super().__init__(**errors)
+        self.uid, self.created_at, self.info = lambda: uid, lambda: created_s, lambda timeout: uid
 
 
 def test_the_newest_stream_of_a_name_is_the_one_that_is_back():
     """The one that broke off is listed for a while."""
-    old, new = stream("a", 1.0), stream("b", 2.0)
+    old, new = Stream("a", 1.0), Stream("b", 2.0)
     assert LostStream(Library(old, new), "walk").found() is new
 
 
 def test_a_refused_stream_is_passed_over_for_the_next_of_its_name():
-    one, other = stream("a", 2.0), stream("b", 1.0)
-    library = Library(one)
+    one, other = Stream("a", 2.0), Stream("b", 1.0)
+    library, refusals = Library(one), []
     lost = LostStream(library, "walk")
-    assert lost.found() is one
-    lost.refuse(one)
-    assert lost.found() is None
+
+    def read(full):
+        if full == "a":
+            raise InvalidInput("it is another one")
+        return full.upper()
+
+    assert lost.returned(True, read, refusals.append) is None and lost.found() is None
     library.found.append(other)
-    assert lost.found() is other
+    assert lost.returned(True, read, refusals.append) == (other, other, "B")
+    assert [str(error) for error in refusals] == ["it is another one"] and other.calls == ["time", "open"]
+
+
+def test_a_stream_that_is_gone_again_is_not_refused():
+    late = Stream("a", 1.0, opening=LATE)
+    lost = LostStream(Library(late), "walk")
+    assert lost.returned(False, str, pytest.fail) is None and lost.found() is late
