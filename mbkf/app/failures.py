@@ -12,6 +12,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.types import ExceptionHandler
 
 from mbkf.errors import MbkfError
+from mbkf.io.utf8 import storable
 
 BAD_REQUEST, FORBIDDEN, NOT_FOUND, CONFLICT, OVERTAKEN = 400, 403, 404, 409, 412
 TOO_LARGE, WITHOUT_VERSION, SERVER_ERROR, UNAVAILABLE, DISK_FULL = 413, 428, 500, 503, 507
@@ -62,7 +63,7 @@ def failure(error: MbkfError | OSError) -> tuple[int, str]:
             f"the computer cannot read or write the file ({error.strerror or error or type(error).__name__})"
         )
     name = Path(os.fsdecode(error.filename)).name if isinstance(error.filename, str | bytes) else ""
-    return status, " ".join((f"{_printable(name[:80])}: {text}" if name else text).split())
+    return status, " ".join((f"{storable(name[:80])}: {text}" if name else text).split())
 
 
 def failed(error: MbkfError | OSError) -> Response:
@@ -73,12 +74,7 @@ def failed(error: MbkfError | OSError) -> Response:
 
 def sentence(error: Exception) -> str:
     """The text of an error in one line."""
-    return _printable(" ".join(str(error).split()))
-
-
-def _printable(text: str) -> str:
-    """A text that UTF-8 can hold."""
-    return text.encode("utf-8", errors="backslashreplace").decode("utf-8")
+    return storable(" ".join(str(error).split()))
 
 
 async def _unforeseen(_request: Request, error: Exception) -> Response:
