@@ -4,9 +4,12 @@ from argparse import ArgumentParser, _SubParsersAction
 
 import pytest
 
+from mbkf.cli.inputs import OTHER_PARTS
 from mbkf.cli.main import build_parser, main
 from mbkf.cli.options import OUTPUTS
-from mbkf.io.results_folder import write_reconstruction
+from mbkf.io.results_folder import LABELS_FILE, write_reconstruction
+from mbkf.stream.run import report, sensor_standing
+from mbkf.study.batch import inputs, person, tables
 from tests.io.reconstructions import made_up
 
 NAMES = ("walk.c3d", "person.toml", "imus.csv", "motion.h5", "labels.json", "page.html")
@@ -153,3 +156,12 @@ def test_parts_of_a_folder_of_results_stay_where_a_command_makes_one_file_of_it(
     (place / "own.bvh").write_text("HIERARCHY  \t\n")  # an earlier export beside them is none
     main(["export", str(place), "--to", "bvh", "--out", str(place / "own.bvh")])
     assert "input" not in capsys.readouterr().err
+
+
+def test_the_other_parts_of_results_are_named_as_their_writers_name_them():
+    """The command line keeps the names itself: the modules that write these files load libraries."""
+    written = {
+        inputs.RECORD, person.RECORD, person.SUBJECT_FILE, LABELS_FILE, report.LIVE_FILE, sensor_standing.MOUNTS_FILE,
+        *tables.TABLES,
+    }  # fmt: skip
+    assert written == set(OTHER_PARTS)
