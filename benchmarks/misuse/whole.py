@@ -10,11 +10,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import h5py
+import pyarrow as pa
 import pyarrow.parquet as pq
 
 from mbkf.errors import MbkfError
 from mbkf.io.capture import read_capture
 from mbkf.io.storage import read_storage
+
+TRC_HEADER_LINES = 6
 
 SIGNATURES = {".png": b"\x89PNG", ".gif": b"GIF8", ".mp4": b"\x00\x00\x00"}
 
@@ -43,6 +46,21 @@ def _table(path: Path) -> None:
     assert len({len(row) for row in csv.reader(lines)}) == 1, "rows of other lengths"
 
 
+def _trc(path: Path) -> None:
+    """A result of inertial sensors alone has frames without markers, which no capture has."""
+    lines = path.read_text("utf-8").splitlines()
+    header = lines[2].split("\t") if len(lines) > 2 else []
+    if len(header) > 3 and header[3] == "0":
+        assert len(lines) == TRC_HEADER_LINES + int(header[2]), "frames missing"
+    else:
+        read_capture(path)
+
+
+def _parquet(path: Path) -> None:
+    """Arrow takes no path whose bytes are not UTF-8."""
+    pq.read_table(pa.BufferReader(path.read_bytes()))
+
+
 def _page(path: Path) -> None:
     assert path.read_text("utf-8").rstrip().endswith("</html>"), "the page has no end"
 
@@ -66,7 +84,7 @@ def _bvh(path: Path) -> None:
 READERS: Mapping[str, Callable[[Path], object]] = {
     ".toml": lambda path: tomllib.loads(path.read_text("utf-8")),
     ".json": lambda path: json.loads(path.read_text("utf-8")),
-    ".c3d": read_capture, ".trc": read_capture, ".mot": read_storage, ".sto": read_storage, ".h5": _motion,
-    ".parquet": pq.read_table, ".csv": _table, ".html": _page, ".xml": ET.parse, ".urdf": ET.parse, ".glb": _glb,
+    ".c3d": read_capture, ".trc": _trc, ".mot": read_storage, ".sto": read_storage, ".h5": _motion,
+    ".parquet": _parquet, ".csv": _table, ".html": _page, ".xml": ET.parse, ".urdf": ET.parse, ".glb": _glb,
     ".bvh": _bvh,
 }  # fmt: skip
