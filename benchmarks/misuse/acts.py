@@ -89,7 +89,7 @@ class Act:
         return self.case.call({name: str(path) for name, path in {**inputs, **given}.items()}, str(out))
 
     def must_stay(self, place: Path, name: str) -> bool:
-        """Whether a file of the act's folder may not change: where the command has leave, the inputs only."""
+        """True for a file that must stay as it is: where the command may overwrite, an input."""
         return self.must != "done" or (place / name).is_relative_to(place / IN)
 
 

@@ -74,7 +74,7 @@ class Ending:
 
     @property
     def unclean(self) -> str:
-        """The reason why this is no clean end of a command; empty for success or a refusal in one sentence."""
+        """The fault in how a command ended; empty after success or a refusal in one sentence."""
         if self.code is None:
             return f"hung for {self.seconds:.0f} s"
         if any(word in self.err for word in CRY_FOR_HELP):

@@ -33,7 +33,7 @@ class Case:
     Attributes:
         command: The command, of one or two words.
         words: What follows it: ``{name}`` is an input of :data:`benchmarks.misuse.world.INPUTS`, ``{OUT}`` the output.
-        out: Name of the output where nothing is in the way; "" where there is no output. A folder has no suffix.
+        out: Name of an output that can be written, without suffix for a folder; "" for a command without output.
         sides: Suffixes of the files that are written beside an output file under its name.
         again: Whether the same call takes the place of its own earlier output.
         slow: Whether it takes many seconds, so that it runs where it is refused only.

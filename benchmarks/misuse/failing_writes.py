@@ -77,7 +77,7 @@ def small_disk(folder: Path, kilobytes: int) -> Iterator[Path]:
     try:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
     except FileNotFoundError:
-        raise NotHere("there is no command called mount") from None
+        raise NotHere("this system lacks the command mount") from None
     if done.returncode:
         raise NotHere(f"this user may not mount a disk in memory ({done.stderr.strip()})")
     try:

@@ -199,6 +199,6 @@ KINDS: Mapping[str, Callable[[Path], object]] = {
     "an empty file": lambda path: path.write_bytes(b""),
     "without end": _endless,
 }  # fmt: skip
-"""What stands in the place of a file, by its name."""
+"""Makers of the things that take the place of an input file, by name."""
 
 MAY_BE_TAKEN = {"a folder", "an empty file"}

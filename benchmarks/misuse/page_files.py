@@ -112,7 +112,7 @@ def read_everything(page: Page) -> list[str]:
 
 
 def dropped(page: Page, name: str) -> str:
-    """Drops a file; the reason why the answer is no sentence, "" where it is one or the file was put elsewhere.
+    """Drops a file and returns the fault of the answer: empty where it is a sentence, or the file was stored.
 
     Args:
         page: The page.

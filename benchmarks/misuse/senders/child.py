@@ -74,7 +74,7 @@ class Answers:
 
 
 def outcome(name: str, seed: int, walk: Played, folder: Path) -> dict[str, object]:
-    """What becomes of the frames of a sender.
+    """Plays a sender to a live run and accounts for each frame that it sent.
 
     Args:
         name: Its kind.

@@ -90,7 +90,7 @@ def strange_trials(
         if (meant := plain.get(_letters(name)) or plain.get(_letters(Path(name).stem))) is not None:
             line = line_of(plain_text(file), ("trial", name)) if file.is_file() else None
             raise FileFormatError(file, f"unknown trial '{name}'; did you mean {meant}", line)
-        found.append(f"{file}: its trial '{name}' is no capture of this folder; {suggestion(name, stems)}")
+        found.append(f"{file}: this folder has no capture of its trial '{name}'; {suggestion(name, stems)}")
     return found
 
 

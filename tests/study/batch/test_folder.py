@@ -162,7 +162,7 @@ def test_a_statement_about_a_capture_that_is_gone_is_a_remark(tmp_path):
     plan = plan_of_folder(tmp_path)
     assert [one.fault for one in plan.trials] == ["", ""]
     (note,) = plan.notes
-    assert "its trial 'w3' is no capture of this folder; did you mean w2, w1" in note
+    assert "this folder has no capture of its trial 'w3'; did you mean w2, w1" in note
 
 
 def test_a_person_scaled_before_is_taken(tmp_path):

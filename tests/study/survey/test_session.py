@@ -76,5 +76,5 @@ def test_a_damaged_session_file_is_a_problem_of_its_session(folder):
 def test_a_statement_about_no_capture_is_a_problem_unless_it_is_a_live_run(folder):
     write_session(SessionNotes(trials={"gone": TrialNotes(excluded="fell")}), folder / SESSION_FILE)
     (problem,) = survey_session(folder).problems
-    assert problem.key == "strange_trial" and "'gone' is no capture of this folder" in problem.what
+    assert problem.key == "strange_trial" and "no capture of its trial 'gone'" in problem.what
     assert survey_session(folder, live_runs=("gone",)).problems == ()
