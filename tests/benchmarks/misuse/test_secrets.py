@@ -2,6 +2,9 @@
 
 import subprocess
 import sys
+from pathlib import Path
+
+import pytest
 
 from benchmarks.misuse.marked_secrets import FIRST, MARK
 from benchmarks.misuse.secrets import _in_processes, _readable
@@ -31,12 +34,13 @@ def test_files_that_only_their_owner_reads_may_hold_secrets(tmp_path):
     assert list(_readable(tmp_path)) == ["everybody's may be read by others"]
 
 
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="no /proc here")
 def test_words_of_processes_are_seen():
-    if sys.platform.startswith("linux"):
-        with subprocess.Popen(
-            [sys.executable, "-c", "input()", f"{FIRST}x"], stdin=subprocess.PIPE
-        ) as process:
-            try:
-                assert any("python" in one for one in _in_processes())
-            finally:
-                process.kill()
+    """The process speaks first: its words are complete only after it has begun."""
+    command = [sys.executable, "-c", "print('begun', flush=True); input()", f"{FIRST}x"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        try:
+            process.stdout.readline()
+            assert any("python" in one for one in _in_processes())
+        finally:
+            process.kill()
