@@ -250,6 +250,9 @@ DOORS = {
     "mbkf/stream/run/report.py": "rewrites in place a file that it has opened by the door",
     "mbkf/io/imu/movella_dot.py": "looks at a file that the door has checked",
     "mbkf/io/imu/xsens_text.py": "looks at a file that the door has checked",
+    "mbkf/stream/run/folder.py": "removes the log that the run has made",
+    "mbkf/cli/opening.py": "removes a temporary file that it has made",
+    "mbkf/conventions.py": "files of the package",
     "mbkf/cli/main.py": "opens the null device",
     "mbkf/cli/closed_streams.py": "opens the null device",
     "mbkf/study/batch/worker.py": "opens the null device",
@@ -259,11 +262,22 @@ DOORS = {
 NO_FILE = re.compile(r"(partial|temporary|Image|av|webbrowser|files_read|sets|waiting|self\._plates)\b")
 """Names of things that are no files, and of temporary files, which the door gave."""
 
-OPENING = {"open", "read_text", "read_bytes", "write_text", "write_bytes", "touch"}
+OPENING = {
+    "open",
+    "read_text",
+    "read_bytes",
+    "write_text",
+    "write_bytes",
+    "touch",
+    "unlink",
+    "rmtree",
+    "resolve",
+}
+"""Methods that open or remove a file, or raise an unforeseen error of a link to itself."""
 
 
 def opened_directly(source: str) -> list[str]:
-    """Calls that open a file and pass neither door; a temporary file, which the door gave, may be opened."""
+    """Calls that open or remove a file and pass neither door; a temporary file, which the door gave, may be opened."""
     found = []
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in OPENING:
@@ -286,6 +300,8 @@ def test_files_are_read_and_written_by_two_doors():
     [
         ("path.open('wb')", ["path.open"]),
         ("open(path)", ["open"]),
+        ("(folder / 'a').unlink(missing_ok=True)", ["(folder / 'a').unlink"]),
+        ("shutil.rmtree(folder)", ["shutil.rmtree"]),
         ("(folder / 'a').write_text('b')", ["(folder / 'a').write_text"]),
         ("partial.write_bytes(b'')", []),
         ("write_text(path, 'a')", []),

@@ -138,7 +138,7 @@ def _file_over_inputs(case: Case, world: Path) -> Iterator[Act]:
     for name in case.guarded:
         source = world / INPUTS[name]
         files = sorted(str(path.relative_to(source)) for path in source.rglob("*") if path.is_file()) or [""]
-        for k, file in enumerate(files):
+        for k, file in enumerate(file for file in files if file not in case.rewrites):
             for way, alias in WAYS.items() if k == 0 else [("itself", _itself)]:
                 title = f"{case.command}: output over {name} {file}, {way}"
                 yield Act(

@@ -36,6 +36,7 @@ class Call:
         memory_mb: Address space that it may take; 0 for any.
         unprivileged: Whether it obeys the modes of files also where root runs it.
         fault: Writes that fail, as :meth:`benchmarks.misuse.failing_writes.FailingWrites.fault` states them.
+        serves: It serves the laboratory's page, which is asked for its sessions; then it is ended with SIGTERM.
     """
 
     words: Sequence[str]
@@ -45,6 +46,7 @@ class Call:
     memory_mb: float = 0.0
     unprivileged: bool = False
     fault: Mapping[str, Any] = field(default_factory=dict)
+    serves: bool = False
 
     @property
     def line(self) -> str:
@@ -63,6 +65,7 @@ class Ending:
         seconds: Wall time, s.
         memory_mb: Memory that it took beyond the loaded libraries.
         writes: Its writes to the folder of the call's fault.
+        unanswered: The question that its page did not answer; "" without.
     """
 
     code: int | None
@@ -71,6 +74,7 @@ class Ending:
     seconds: float
     memory_mb: float
     writes: int = 0
+    unanswered: str = ""
 
     @property
     def unclean(self) -> str:
@@ -79,6 +83,8 @@ class Ending:
             return f"hung for {self.seconds:.0f} s"
         if any(word in self.err for word in CRY_FOR_HELP):
             return self.last_line
+        if self.unanswered:
+            return self.unanswered
         if self.code == 0:
             return ""
         if self.code != USER_ERROR:

@@ -40,6 +40,8 @@ class Case:
         runs: Whether it ends by itself, and well, where nothing is in the way.
         writes: Files that it would write into a folder, where it does not run.
         edits: Inputs that it may replace, since it is there to change them.
+        serves: Whether it serves the laboratory's page until it is stopped.
+        rewrites: Files of an input folder that are its own output, which it wrote there without ``--out``.
     """
 
     command: str
@@ -51,6 +53,8 @@ class Case:
     runs: bool = True
     writes: tuple[str, ...] = ()
     edits: tuple[str, ...] = ()
+    serves: bool = False
+    rewrites: tuple[str, ...] = ()
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
@@ -112,11 +116,11 @@ CASES = (
     Case("live", "--recover {result}", runs=False),
     Case("view", "{result} --html {OUT}", "new.html"),
     Case("report", "{result} --labels {labels} --out {OUT}", "new.html"),
-    Case("report", "{session} --against {result} --norms {norms} --out {OUT}", "new.html"),
+    Case("report", "{session} --against {result} --norms {norms} --out {OUT}", "new.html", rewrites=("report.html",)),
     Case("report", "{session} --curves {OUT}", "new.csv"),
     Case("report", "{session} --curves {OUT}", "new.parquet"),
     Case("norms build", "{session} --out {OUT}", "new.toml"),
-    Case("app", "{study} --no-browser", runs=False),
+    Case("app", "{study} --no-browser", runs=False, serves=True),
     Case("tune", "{trc} {trial} --subject {subject} --forces {forces} --hold-out {trial} --name new --runs 1"
          " --out {OUT}", "new.toml", slow=True),
     Case("observability", "{protocol}"),

@@ -1,6 +1,7 @@
 """Every input of every command replaced by a folder, pipe, device, socket, dangling link, empty or endless file.
 
-A command then ends with a sentence, in bounded time and memory.
+A command then ends with a sentence, in bounded time and memory. The laboratory's page, which goes on until it is
+stopped, answers all questions about its sessions instead, and ends when it is asked to.
 """
 
 from __future__ import annotations
@@ -111,7 +112,14 @@ def met(run: Commands, strange: Strange, world: Path, place: Path) -> Ending:
     words = strange.case.call({name: str(one) for name, one in inputs.items()}, str(place / strange.case.out))
     try:
         return run.run(
-            Call(words, place, seconds=HANGS_S, memory_mb=4 * BOUND_MB, unprivileged=held == SECRET)
+            Call(
+                words,
+                place,
+                seconds=HANGS_S,
+                memory_mb=4 * BOUND_MB,
+                unprivileged=held == SECRET,
+                serves=strange.case.serves,
+            )
         )
     finally:
         if isinstance(held, socket.socket):

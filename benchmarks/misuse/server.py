@@ -21,6 +21,8 @@ import traceback
 from pathlib import Path
 from typing import Any
 
+from benchmarks.misuse.asking import unanswered as unanswered_by
+
 LOADED = (
     "mbkf.cli.main", "mbkf.trial.reconstruct", "mbkf.trial.scale", "mbkf.trial.label", "mbkf.trial.export",
     "mbkf.io.results_folder", "mbkf.trial.results.summary", "mbkf.viz.report.document", "rich.table", "pyarrow.parquet",
@@ -48,12 +50,13 @@ def ended(call: dict[str, Any]) -> dict[str, Any]:
     """Runs a call in a fork and returns its end."""
     out, err = Path(call["scratch"]) / "stdout", Path(call["scratch"]) / "stderr"
     writes = Path(call["scratch"]) / "writes"
-    writes.unlink(missing_ok=True)
+    for left in (out, writes):  # of the call before
+        left.unlink(missing_ok=True)
     begun = time.monotonic()
     child = os.fork()
     if child == 0:
         _be_the_command(call, out, err, writes)
-    late = False
+    late, unanswered, asked = False, "", not call["serves"]
     while True:
         pid, status, used = os.wait4(child, os.WNOHANG)
         if pid:
@@ -61,6 +64,9 @@ def ended(call: dict[str, Any]) -> dict[str, Any]:
         if not late and time.monotonic() - begun > call["seconds"]:
             late = True
             os.killpg(child, signal.SIGKILL)
+        if not asked and (address := _address(out)):
+            asked, unanswered = True, unanswered_by(address)
+            os.kill(child, signal.SIGTERM)
         time.sleep(POLL_S)
     with contextlib.suppress(ProcessLookupError):  # workers that the command left behind
         os.killpg(child, signal.SIGKILL)
@@ -70,9 +76,16 @@ def ended(call: dict[str, Any]) -> dict[str, Any]:
         "out": out.read_text("utf-8", "surrogateescape"),
         "err": err.read_text("utf-8", "surrogateescape"),
         "seconds": time.monotonic() - begun,
+        "unanswered": unanswered,
         "writes": int(writes.read_text("ascii")) if writes.exists() else 0,
         "memory_mb": max(0, used.ru_maxrss - shared) / 1024.0,
     }
+
+
+def _address(out: Path) -> str:
+    """The address that a command has printed as its first line; "" before that."""
+    first, end, _ = out.read_text("utf-8", "replace").partition("\n") if out.exists() else ("", "", "")
+    return first if end and first.startswith("http") else ""
 
 
 def _be_the_command(call: dict[str, Any], out: Path, err: Path, writes: Path) -> None:

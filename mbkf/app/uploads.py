@@ -15,6 +15,7 @@ from typing import BinaryIO
 from mbkf.app.failures import CONFLICT, Refused
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import flush
+from mbkf.io.files_read import place_of
 from mbkf.io.leftovers import unfinished
 from mbkf.study.batch.plan import FORBIDDEN
 
@@ -91,7 +92,7 @@ def _target(root: Path, name: str) -> Path:
     if parts[0] == RESULTS:
         raise InvalidInput(f"{shown} would lie among the results; rename the folder '{RESULTS}'")
     target = root.joinpath(*parts)
-    if not target.parent.resolve().is_relative_to(root.resolve()):
+    if not place_of(target.parent).is_relative_to(place_of(root)):
         raise InvalidInput(f"{shown} leads out of the folder")
     return target
 

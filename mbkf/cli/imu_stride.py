@@ -83,12 +83,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _draw(measured: StrideMeasurement, path: Path) -> None:
     from mbkf.errors import MissingDependency
-    from mbkf.io.atomic import check_file
+    from mbkf.io.atomic import remove_file
 
     try:
         from mbkf.viz.imu.foot_path import write_foot_path
     except MissingDependency as missing:
-        check_file(path).unlink(missing_ok=True)  # an earlier run's picture shows other strides
+        remove_file(path)  # an earlier run's picture shows other strides
         print(f"note: {path.name} was not drawn. {missing}", file=sys.stderr)
     else:
         write_foot_path(measured, path)

@@ -13,7 +13,7 @@ from pathlib import Path
 from mbkf.cli.options import OUTPUTS, Output
 from mbkf.io.atomic import check_file
 from mbkf.io.files_read import files_read, own_files_read
-from mbkf.io.written import overwriting
+from mbkf.io.written import FORM_OF_SUFFIX, overwriting
 
 OTHER_PARTS = (
     "batch.json", "labels.json", "live.json", "subject.json", "subject.toml", "mounts.toml",
@@ -43,14 +43,14 @@ def check_outputs(args: argparse.Namespace) -> None:
     """Looks at the files that a command is to write; those in a folder are looked at by the command.
 
     Raises:
-        ProtectedFile: One was read, or mbkf did not write it.
+        ProtectedFile: One was read, mbkf did not write it, or it holds another format.
         FileFormatError: A file stands in the place of its folder.
         PermissionError: Its folder may not be written to.
     """
     for one in outputs_of(args):
         path = getattr(args, one.dest)
         if path is not None and not one.folder:
-            check_file(path, edits=edits_own_file(args, one))
+            check_file(path, edits=edits_own_file(args, one), form=FORM_OF_SUFFIX.get(one.suffix))
 
 
 def outputs_of(args: argparse.Namespace) -> tuple[Output, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
+from pathlib import PurePath
 from typing import NamedTuple, TypedDict
 
 from mbkf.io.capture import CAPTURES, FORCES
@@ -28,11 +29,13 @@ class Output(NamedTuple):
         dest: Its name among the parsed options.
         folder: It names a folder.
         edits: Name of the option whose file it may replace, since the command edits that; empty for none.
+        suffix: Of the one format that it is written in; empty where the name decides.
     """
 
     dest: str
     folder: bool
     edits: str
+    suffix: str
 
 
 class AxesOptions(TypedDict):
@@ -80,7 +83,7 @@ def add_out(
 
     Args:
         parser: The command's parser, or a group of it.
-        metavar: "DIR" for a folder; the name of a file otherwise.
+        metavar: "DIR" for a folder; the name of a file otherwise, with the suffix of its format.
         text: Its help.
         required: It must be given.
         default: Value where it is not given.
@@ -88,8 +91,9 @@ def add_out(
         edits: As for :class:`Output`.
     """
     before: tuple[Output, ...] = parser.get_default(OUTPUTS) or ()
+    suffix = "" if "|" in metavar else PurePath(metavar).suffix
     action = parser.add_argument(option, metavar=metavar, help=text, required=required, default=default)
-    parser.set_defaults(**{OUTPUTS: (*before, Output(action.dest, metavar == "DIR", edits))})
+    parser.set_defaults(**{OUTPUTS: (*before, Output(action.dest, metavar == "DIR", edits, suffix))})
     if not before:
         add_overwrite(parser)
 

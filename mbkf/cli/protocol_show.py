@@ -42,5 +42,5 @@ def run(args: argparse.Namespace) -> int:
     write_text(out, show_page(protocol))
     console.print(str(out), soft_wrap=True)
     if not args.no_browser:
-        webbrowser.open(out.resolve().as_uri())
+        webbrowser.open(out.absolute().as_uri())
     return 0

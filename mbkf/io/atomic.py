@@ -16,7 +16,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.files_read import files_read
 from mbkf.io.leftovers import unfinished
 from mbkf.io.utf8 import encoded
-from mbkf.io.written import check_replaceable
+from mbkf.io.written import check_replaceable, form_of
 
 
 @contextmanager
@@ -53,7 +53,7 @@ def _take_place(temporary: Path, target: Path, edits: bool) -> None:
         else:
             files_read().wrote(target)
             return
-    check_replaceable(target, edits=edits)
+    check_replaceable(target, edits=edits, form=form_of(temporary))
     temporary.replace(target)
     files_read().wrote(target)
 
@@ -105,6 +105,17 @@ def new_file(path: str | Path) -> BinaryIO:
     return file
 
 
+def remove_file(path: str | Path) -> None:
+    """Removes an earlier output, which is not to stay beside new ones; a file that is missing passes.
+
+    Raises:
+        ProtectedFile: The file was read, or mbkf did not write it.
+        OSError: It cannot be removed.
+    """
+    check_replaceable(path)
+    Path(path).unlink(missing_ok=True)
+
+
 def flush(path: Path) -> None:
     """Waits until a file is on the disk; does nothing on systems that only flush files open for writing.
 
@@ -120,8 +131,13 @@ def flush(path: Path) -> None:
         os.close(descriptor)
 
 
-def check_file(path: str | Path, *, edits: bool = False) -> Path:
+def check_file(path: str | Path, *, edits: bool = False, form: str | None = None) -> Path:
     """The absolute path of a file that can be written, in a folder that can be made. Commands call it before long work.
+
+    Args:
+        path: The file.
+        edits: As for :func:`replacing`.
+        form: The format to be written, as for :func:`check_replaceable`.
 
     Raises:
         FileFormatError: A folder stands there, or a file in the place of its folder.
@@ -131,7 +147,7 @@ def check_file(path: str | Path, *, edits: bool = False) -> Path:
     target = Path(path)
     if target.is_dir():
         raise FileFormatError(target, "is a folder; name a file for --out")
-    check_replaceable(target, edits=edits)
+    check_replaceable(target, edits=edits, form=form)
     return check_folder(target.parent) / target.name
 
 

@@ -17,8 +17,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from mbkf.io.atomic import check_folder, flush
-from mbkf.io.files_read import files_read
+from mbkf.io.files_read import files_read, place_of
 from mbkf.io.leftovers import unfinished
+from mbkf.io.written import check_replaceable, form_of
 
 _AT_FDCWD = -100
 _EXCHANGE = 2
@@ -38,7 +39,7 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
         ProtectedFile: A file that would be replaced was read, or mbkf did not write it.
         OSError: The folder cannot be made or written to.
     """
-    target = check_folder(folder).resolve()
+    target = place_of(check_folder(folder))
     as_one = _can_be_renamed(target)
     place = target.parent if as_one else target
     place.mkdir(parents=True, exist_ok=True)
@@ -47,6 +48,7 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
         files = [path.name for path in partial.iterdir() if path.is_file()]
         check_folder(target, files)
         for name in files:
+            check_replaceable(target / name, form=form_of(partial / name))
             flush(partial / name)
         if not target.exists():
             partial.rename(target)

@@ -63,7 +63,7 @@ class FilesRead:
     def add(self, path: Path) -> None:
         """Remembers a file, unless this task wrote it."""
         with suppress(OSError):
-            place, state = path.resolve(), path.stat()
+            place, state = place_of(path), path.stat()
             if place not in self._own:
                 self._by_place.setdefault(place, str(path))
                 self._by_node.setdefault((state.st_dev, state.st_ino), {})[place] = str(path)
@@ -74,7 +74,7 @@ class FilesRead:
         A removed file's inode may belong to a new one; so each place is looked at again.
         """
         try:
-            place, state = path.resolve(), path.stat()
+            place, state = place_of(path), path.stat()
         except OSError:
             return None
         if place in self._by_place:
@@ -88,16 +88,24 @@ class FilesRead:
     def wrote(self, path: Path) -> None:
         """Remembers that a file is this task's own, which it may read and replace."""
         with suppress(OSError):
-            place = path.resolve()
+            place = place_of(path)
             self._own[place] = _identity(place.stat())
             self._by_place.pop(place, None)
 
     def is_own(self, path: Path) -> bool:
         """True for a file that this task wrote and nobody changed since."""
         with suppress(OSError):
-            place = path.resolve()
+            place = place_of(path)
             return self._own.get(place) == _identity(place.stat())
         return False
+
+
+def place_of(path: Path) -> Path:
+    """The absolute path of a file behind all links; a link that leads to itself is its own place.
+
+    Unlike ``Path.resolve``, which such a link ends with a RuntimeError before Python 3.13.
+    """
+    return Path(os.path.realpath(path))
 
 
 def _identity(state: os.stat_result) -> tuple[int, ...]:

@@ -1,15 +1,15 @@
 """The guard of everything that is written: files that were read stay, and so do those that mbkf did not write.
 
-mbkf recognises its own files by their content: :data:`MARK` in their heading or in the format's place for the program's
-name. Formats without such a place, and files of earlier versions, are recognised by headings that no other program
-writes.
+mbkf recognises its own files and their formats by their content: :data:`MARK` in their heading or in the format's place
+for the program's name. Formats without such a place, and files of earlier versions, are recognised by headings that no
+other program writes.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -30,50 +30,75 @@ _HEAD_BYTES, _TAIL_BYTES = 1 << 20, 1 << 18
 
 _MARK = MARK.encode()
 
-_TABLES = (
-    rb"(?:#[^\n]*\n){0,3}#[^\n]*" + _MARK,  # TOML and CSV
-    rb"# (?:Settings of a filter of mbkf;|Reference bands of a laboratory\.\n|Inertial sensors on a body; )",
-    rb"# orientation: sensor -> ",
-    rb"foot,(?:stride,start_s,end_s|time_s,x_m,y_m),",
-    rb'"session","kind","trial","side","start_s","duration_s","toe_off_percent",',
-    rb'"subject","session","trial","(?:capture","status","reason|side","cycle)"',
-    rb"PathFileType[^\n]*\t" + _MARK,
-    rb"PathFileType\t4\t\(X/Y/Z\)\tmarkers\.trc\n[^\n]*\n([\d.]+)\t\1\t\d+\t\d+\tmm\t\1\t1\t\d+\n"
-    rb"[^\n]*\n[^\n]*\n\n1\t\d+\.\d{8}\t(?:-?\d+\.\d{6}|NaN)\t",
-    rb"[^\n]*\nversion=1\nnRows=\d+\n(?:[^\n=]*=[^\n]*\n){0,40}?(?:Run=[0-9a-f]{32}|Source="
-    + _MARK
-    + rb")\n",
-)
-_JSON = (
-    rb"\{?\s*\}?\s*\Z",  # the room reserved for live.json, or cut short at once
-    rb'\{"format": "mbkf ',
-    rb'\{\s*"run_id": "[0-9a-f]{32}"',
-    rb'\{\s*"trial": [^\n]*\s*"protocol": [^\n]*\s*"filter": ',
-    rb'\{\s*"version": [^\n]*\s*"method": [^\n]*\s*"method_meaning": ',
-    rb'\{\s*"method": [^\n]*\s*"compared_with": ',
-    rb'\{\s*"filter": [^\n]*\s*"samples": \d+,\s*"range_deg": ',
-    rb'\{\s*"frames": \d+,\s*"markers": \d+,\s*"assigned_fraction": ',
-    rb'\{\s*"files": \{.*"settings": \{.*"version": ',
-    rb'\{\s*"state": "[^\n]*\s*"source": ',
-    rb'\{\s*"sensors": \[\s*\{\s*"name": [^\n]*\s*"procedure": ',
-    rb'\{\s*"[^\n]*": \{\s*"state": "\w+",\s*"stage": ',
-)
-_OTHER = (
-    rb"mbkf: \d+ bytes after this block",  # HDF5
-    rb"\0*\x89HDF.*mbkf (?:reconstruction|truth)",
-    rb".P.*MANUFACTURER.*" + _MARK,  # C3D
-    rb"HIERARCHY" + BVH_BLANKS.encode() + rb"\r?\n",
-    rb'glTF.{16}.{0,200}"generator": ?"mbkf ',
-    rb"<\?xml[^\n]*\n<!-- " + _MARK,
-    rb'<!DOCTYPE html>.*(?:<meta name="generator" content="mbkf|<title>mbkf</title>|<nav><b>mbkf</b>)',
-    rb"(?:GIF8|.{4}ftyp|\x89PNG|%PDF|<\?xml[^\n]*\n<!DOCTYPE svg).*" + _MARK,
-    rb"PAR1.*(?:" + _MARK + rb"|toe_off_percent|peak_memory_mb)",
-)
-_OURS = tuple(re.compile(pattern, re.DOTALL) for pattern in (*_TABLES, *_JSON, *_OTHER))
+_HEADED = rb"(?:#[^\n]*\n){0,3}#[^\n]*" + _MARK
+
+PAGE, SETTINGS, TABLE, DATA = "a page (HTML)", "settings (TOML)", "a table (CSV)", "data (JSON)"
+
+_FORMS: Mapping[str, tuple[bytes, ...]] = {
+    SETTINGS: (
+        rb"(?=(?:#[^\n]*\n|[ \t\r]*\n)*(?:\[|[\w\"'-]+ = ))" + _HEADED,
+        rb"# (?:Settings of a filter of mbkf;|Reference bands of a laboratory\.\n|Inertial sensors on a body; )",
+    ),
+    TABLE: (
+        _HEADED,
+        rb"# orientation: sensor -> ",
+        rb"foot,(?:stride,start_s,end_s|time_s,x_m,y_m),",
+        rb'"session","kind","trial","side","start_s","duration_s","toe_off_percent",',
+        rb'"subject","session","trial","(?:capture","status","reason|side","cycle)"',
+    ),
+    "markers (TRC)": (
+        rb"PathFileType[^\n]*\t" + _MARK,
+        rb"PathFileType\t4\t\(X/Y/Z\)\tmarkers\.trc\n[^\n]*\n([\d.]+)\t\1\t\d+\t\d+\tmm\t\1\t1\t\d+\n"
+        rb"[^\n]*\n[^\n]*\n\n1\t\d+\.\d{8}\t(?:-?\d+\.\d{6}|NaN)\t",
+    ),
+    "curves (MOT)": (
+        rb"[^\n]*\nversion=1\nnRows=\d+\n(?:[^\n=]*=[^\n]*\n){0,40}?(?:Run=[0-9a-f]{32}|Source="
+        + _MARK
+        + rb")\n",
+    ),
+    DATA: (
+        rb"\{?\s*\}?\s*\Z",  # the room reserved for live.json, or cut short at once
+        rb'\{"format": "mbkf ',
+        rb'\{\s*"run_id": "[0-9a-f]{32}"',
+        rb'\{\s*"trial": [^\n]*\s*"protocol": [^\n]*\s*"filter": ',
+        rb'\{\s*"version": [^\n]*\s*"method": [^\n]*\s*"method_meaning": ',
+        rb'\{\s*"method": [^\n]*\s*"compared_with": ',
+        rb'\{\s*"filter": [^\n]*\s*"samples": \d+,\s*"range_deg": ',
+        rb'\{\s*"frames": \d+,\s*"markers": \d+,\s*"assigned_fraction": ',
+        rb'\{\s*"files": \{.*"settings": \{.*"version": ',
+        rb'\{\s*"state": "[^\n]*\s*"source": ',
+        rb'\{\s*"sensors": \[\s*\{\s*"name": [^\n]*\s*"procedure": ',
+        rb'\{\s*"[^\n]*": \{\s*"state": "\w+",\s*"stage": ',
+    ),
+    "arrays (HDF5)": (
+        rb"mbkf: \d+ bytes after this block",
+        rb"\0*\x89HDF.*mbkf (?:reconstruction|truth)",
+    ),
+    "a capture (C3D)": (rb".P.*MANUFACTURER.*" + _MARK,),
+    "a motion (BVH)": (rb"HIERARCHY" + BVH_BLANKS.encode() + rb"\r?\n",),
+    "a scene (glTF)": (rb'glTF.{16}.{0,200}"generator": ?"mbkf ',),
+    "a model (XML)": (rb"<\?xml[^\n]*\n<!-- " + _MARK,),
+    PAGE: (
+        rb'<!DOCTYPE html>.*(?:<meta name="generator" content="mbkf|<title>mbkf</title>|<nav><b>mbkf</b>)',
+    ),
+    "a picture or film": (rb"(?:GIF8|.{4}ftyp|\x89PNG|%PDF|<\?xml[^\n]*\n<!DOCTYPE svg).*" + _MARK,),
+    "a table (Parquet)": (rb"PAR1.*(?:" + _MARK + rb"|toe_off_percent|peak_memory_mb)",),
+}
+"""Formats, and the headings of mbkf's files in each; a file has the first format with a heading that fits."""
+
+_OURS = {form: [re.compile(one, re.DOTALL) for one in headings] for form, headings in _FORMS.items()}
+
+FORM_OF_SUFFIX = {".html": PAGE, ".toml": SETTINGS, ".csv": TABLE, ".json": DATA}
+"""Formats of the files that a command always writes in the same one."""
 
 
-def written_by_mbkf(path: str | Path) -> bool:
-    """True for a file whose content shows that mbkf wrote it, and for an empty one.
+_OTHER_PLACE = (
+    "name another file or folder, or replace it with --overwrite (in Python: with mbkf.overwriting())"
+)
+
+
+def form_of(path: str | Path) -> str | None:
+    """The format of a file of mbkf; "" for an empty file, None for one whose content does not show that mbkf wrote it.
 
     Raises:
         OSError: It cannot be read.
@@ -84,19 +109,33 @@ def written_by_mbkf(path: str | Path) -> bool:
         if size > _HEAD_BYTES:
             file.seek(max(size - _TAIL_BYTES, _HEAD_BYTES))
             head += file.read(_TAIL_BYTES)
-    return not head or any(pattern.match(head) for pattern in _OURS)
+    if not head:
+        return ""
+    fits = (form for form, headings in _OURS.items() if any(heading.match(head) for heading in headings))
+    return next(fits, None)
 
 
-def check_replaceable(path: str | Path, *, edits: bool = False) -> None:
+def written_by_mbkf(path: str | Path) -> bool:
+    """True for a file whose content shows that mbkf wrote it, and for an empty one.
+
+    Raises:
+        OSError: It cannot be read.
+    """
+    return form_of(path) is not None
+
+
+def check_replaceable(path: str | Path, *, edits: bool = False, form: str | None = None) -> None:
     """Makes sure that nothing of value is lost when a file is written; a path without a file passes.
 
     Args:
         path: The file to write.
         edits: The file is one of the user's that this change is meant for: it may have been read, and need not be
             mbkf's own.
+        form: The format of the file that takes its place, as :func:`form_of` names it, where it is known.
 
     Raises:
-        ProtectedFile: This task read the file, or mbkf did not write it and :func:`overwriting` is off.
+        ProtectedFile: This task read the file; or :func:`overwriting` is off, and mbkf did not write the file, or wrote
+            it in another format.
         OSError: It cannot be looked at.
     """
     target = Path(path)
@@ -115,12 +154,13 @@ def check_replaceable(path: str | Path, *, edits: bool = False) -> None:
         raise ProtectedFile(
             target, f"{same}, and inputs are never replaced; name another file or folder to write"
         )
-    if not (overwrite_permitted() or files_read().is_own(target) or written_by_mbkf(target)):
-        raise ProtectedFile(
-            target,
-            "exists and was not written by mbkf; name another file or folder, or replace it with --overwrite "
-            "(in Python: with mbkf.overwriting())",
-        )
+    if overwrite_permitted() or files_read().is_own(target):
+        return
+    was = form_of(target)
+    if was is None:
+        raise ProtectedFile(target, f"exists and was not written by mbkf; {_OTHER_PLACE}")
+    if was and form and was != form:
+        raise ProtectedFile(target, f"holds {was} that mbkf wrote, not {form}; {_OTHER_PLACE}")
 
 
 def overwrite_permitted() -> bool:

@@ -36,6 +36,12 @@ def test_files_are_put_into_the_folder_only(root, tmp_path):
     assert not (tmp_path / "x.c3d").exists()
 
 
+def test_a_folder_that_is_a_link_to_itself_is_an_error_of_the_disk(root):
+    (root / "loop").symlink_to(root / "loop")
+    with pytest.raises(OSError, match="loop"):
+        put(root, "loop/x.c3d")
+
+
 def test_names_are_measured_in_bytes(root):
     with pytest.raises(InvalidInput, match="244 bytes is too long"):
         put(root, "P1/" + "😀" * 60 + ".c3d")

@@ -132,7 +132,7 @@ def test_a_marker_set_is_edited_in_its_own_file_and_in_no_other(tmp_path):
     own, other = tmp_path / "own.toml", tmp_path / "other.toml"
     for file in (own, other):
         file.write_text("name = 'mine'\n")
-    outputs = (Output("out", False, "protocol"),)
+    outputs = (Output("out", False, "protocol", ".toml"),)
     args = Namespace(
         outputs=outputs, protocol=str(own), out=str(tmp_path / "." / "own.toml"), capture="walk.c3d"
     )

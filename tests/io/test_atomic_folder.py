@@ -157,3 +157,11 @@ def test_a_kill_at_any_step_leaves_the_old_or_the_new(tmp_path):
     assert seen == sorted(seen, reverse=True) and set(seen) == {"old", "new"}
     write(target, "next")
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
+
+
+def test_a_folder_that_is_a_link_to_itself_is_an_error_of_the_disk(tmp_path):
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    with pytest.raises(OSError, match="loop"), replacing_folder(loop) as partial:
+        (partial / "a.txt").write_text("new")
+    assert [path.name for path in tmp_path.iterdir()] == ["loop"]

@@ -14,6 +14,7 @@ from mbkf.io.files_read import (
     files_read,
     opened,
     own_files_read,
+    place_of,
     read_bytes,
     read_state,
     read_text,
@@ -35,6 +36,18 @@ def thing(request, tmp_path):
     else:
         path.symlink_to("/dev/zero")
     yield path, request.param
+
+
+def test_a_link_to_itself_is_no_file_and_its_own_place(tmp_path):
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    assert place_of(loop) == tmp_path.resolve() / "loop"
+    with own_files_read() as files:
+        files.add(loop)
+        files.wrote(loop)
+        assert files.name_of(loop) is None and not files.is_own(loop)
+    with pytest.raises(OSError, match="symbolic links"):
+        read_bytes(loop)
 
 
 @pytest.mark.parametrize("read", [read_bytes, read_text, read_state, check_regular])

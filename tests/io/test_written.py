@@ -7,10 +7,19 @@ from pathlib import Path
 import pytest
 
 from mbkf.errors import ProtectedFile
-from mbkf.io.atomic import check_file, check_folder, new_file, replacing, write_text
+from mbkf.io.atomic import check_file, check_folder, new_file, remove_file, replacing, write_text
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.files_read import own_files_read, read_bytes
-from mbkf.io.written import MARK, check_replaceable, overwriting, written_by_mbkf
+from mbkf.io.written import (
+    FORM_OF_SUFFIX,
+    MARK,
+    PAGE,
+    SETTINGS,
+    check_replaceable,
+    form_of,
+    overwriting,
+    written_by_mbkf,
+)
 
 OURS = "# Something, written by mbkf.\n"
 
@@ -41,6 +50,7 @@ def test_a_file_that_was_read_is_never_replaced(by, permitted, tmp_path, task, m
             lambda: write_text(target, "lost"),
             lambda: new_file(target),
             lambda: check_file(target),
+            lambda: remove_file(target),
         ):
             with pytest.raises(ProtectedFile, match="input"):
                 write()
@@ -213,3 +223,48 @@ def test_the_permission_ends_with_its_block(monkeypatch):
         assert overwrite_permitted()
     assert not overwrite_permitted()
     assert MARK in OURS
+
+
+REPORT = '<!DOCTYPE html>\n<meta name="generator" content="mbkf 1">'
+
+
+def test_a_file_of_ours_in_another_format_is_replaced_with_leave_only(tmp_path):
+    target = tmp_path / "report.html"
+    target.write_text(REPORT)
+    check_file(target, form=PAGE)
+    with pytest.raises(ProtectedFile, match=r"holds a page \(HTML\) that mbkf wrote, not settings \(TOML\)"):
+        check_file(target, form=SETTINGS)
+    with pytest.raises(ProtectedFile, match="page"):
+        write_text(target, OURS + "mass_kg = 70\n")
+    with pytest.raises(ProtectedFile, match="page"), replacing_folder(tmp_path) as partial:
+        (partial / target.name).write_text(OURS + "mass_kg = 70\n")
+    assert target.read_text() == REPORT
+    write_text(target, REPORT + "2")
+    assert target.read_text() == REPORT + "2"
+    with overwriting():
+        write_text(target, OURS + "mass_kg = 70\n")
+    assert target.read_text() == OURS + "mass_kg = 70\n"
+
+
+def test_settings_and_tables_are_told_apart_by_what_follows_the_heading(tmp_path):
+    for text, suffix in ((OURS + "\n[[curve]]\n", ".toml"), (OURS + "\n# a = 1\na,b = c\n", ".csv")):
+        (tmp_path / "file").write_text(text)
+        assert form_of(tmp_path / "file") == FORM_OF_SUFFIX[suffix]
+
+
+@pytest.mark.parametrize("name", EARLIER)
+def test_the_format_of_a_file_of_ours_is_that_of_its_suffix(name, tmp_path):
+    (tmp_path / name).write_bytes(EARLIER[name])
+    assert form_of(tmp_path / name) == FORM_OF_SUFFIX.get(Path(name).suffix, form_of(tmp_path / name))
+
+
+def test_an_output_that_is_not_ours_is_not_removed(tmp_path, task):
+    target = tmp_path / "subject.json"
+    remove_file(target)
+    target.write_text("a photo")
+    with pytest.raises(ProtectedFile, match="not written by mbkf"):
+        remove_file(target)
+    assert target.read_text() == "a photo"
+    target.write_text("")
+    remove_file(target)
+    assert not target.exists()

@@ -9,9 +9,11 @@ import numpy as np
 
 from mbkf.conventions import StageCallback
 from mbkf.errors import FileFormatError, InvalidInput, MbkfError
+from mbkf.io.atomic import check_file, remove_file
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, write_subject
+from mbkf.io.written import SETTINGS
 from mbkf.study.batch.inputs import fingerprint, is_made_from, write_record
 from mbkf.study.batch.naming import body_of_points, is_nameless, named
 from mbkf.study.batch.plan import MOST_MOVING, Files, Person
@@ -46,7 +48,8 @@ def subject_of(person: Person, out: Path, progress: StageCallback = ignored) -> 
     made_from = fingerprint([file for pair in used for file in pair if file is not None], _stated(person))
     if is_made_from(place / RECORD, made_from) and (place / SUBJECT_FILE).is_file():
         return place / SUBJECT_FILE
-    (place / RECORD).unlink(missing_ok=True)
+    check_file(place / SUBJECT_FILE, form=SETTINGS)  # before the work
+    remove_file(place / RECORD)
     subject = scaled(person, progress)
     place.mkdir(parents=True, exist_ok=True)
     write_subject(subject, place / SUBJECT_FILE)

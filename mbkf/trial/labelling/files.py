@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from mbkf.io.atomic import check_file, write_text
+from mbkf.io.atomic import check_file, remove_file, write_text
 from mbkf.io.capture import write_capture
 from mbkf.io.records import Capture
 from mbkf.trial.labelling.result import Labelling, LabelSummary, label_summary, labelled_capture
@@ -29,9 +29,8 @@ def write_labels(
     path = Path(path)
     beside = path.with_suffix(".json")
     labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
-    for one in (path, beside):
-        check_file(one)
-    beside.unlink(missing_ok=True)  # a summary must not stay beside another capture
+    check_file(path)
+    remove_file(beside)  # a summary must not stay beside another capture
     write_capture(labelled, path)
     write_text(beside, json.dumps(summary, indent=2) + "\n")
     return summary

@@ -42,6 +42,15 @@ def test_an_output_file_gets_acts_of_every_way_and_side(tmp_path, world):
     assert {act.must for act in acts if "foreign" in act.kind} == {"refused", "done"}
 
 
+def test_a_file_that_the_command_wrote_itself_is_no_input(world):
+    (world / INPUTS["session"]).mkdir()
+    for name in ("report.html", "curves.parquet"):
+        (world / INPUTS["session"] / name).write_text(name)
+    own = Case("report", "{session} --out {OUT}", "new.html", rewrites=("report.html",))
+    over = [act.title for act in acts_of(own, world, ()) if act.kind == "output over an input"]
+    assert len(over) == len(WAYS) and all("curves.parquet" in title for title in over)
+
+
 def test_an_input_takes_the_name_of_an_output(tmp_path, world):
     acts = acts_of(BATCH, world, ("summary.csv", "P/motion.h5"))
     act = next(act for act in acts if "list is summary.csv" in act.title)

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -47,6 +48,14 @@ def test_commands_run_in_their_folder_and_print_as_usual(run: Commands, tmp_path
 def test_a_command_that_waits_for_ever_is_ended(run: Commands, tmp_path):
     waits = Call(["app", str(tmp_path / "lab"), "--no-browser"], tmp_path, seconds=0.5)
     assert run.run(waits).code is None
+
+
+def test_a_page_is_asked_for_its_sessions_and_ended(run: Commands, tmp_path):
+    (tmp_path / "lab" / "P1").mkdir(parents=True)
+    (tmp_path / "lab" / "P1" / "walk.c3d").write_bytes(b"no capture")
+    end = run.run(Call(["app", str(tmp_path / "lab"), "--no-browser"], tmp_path, serves=True))
+    assert (end.code, end.unclean) == (0, "")
+    assert replace(end, unanswered="/session: URLError").unclean == "/session: URLError"
 
 
 @pytest.mark.skipif(

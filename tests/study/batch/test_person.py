@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import FileFormatError, InvalidInput, ProtectedFile
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
@@ -28,6 +28,18 @@ def test_a_person_is_scaled_once_from_the_same(person, tmp_path):
     (tmp_path / "P" / RECORD).unlink()
     subject_of(person, tmp_path)
     assert read_subject(file).mass_kg == 70.0
+
+
+@pytest.mark.parametrize("name", [SUBJECT_FILE, RECORD])
+def test_a_file_of_others_in_the_place_of_the_persons_stays_and_costs_no_work(
+    name, person, tmp_path, monkeypatch
+):
+    (tmp_path / "P").mkdir()
+    (tmp_path / "P" / name).write_text("a photo")
+    monkeypatch.setattr("mbkf.study.batch.person.scaled", None)
+    with pytest.raises(ProtectedFile, match="not written by mbkf"):
+        subject_of(person, tmp_path)
+    assert [(path.name, path.read_text()) for path in (tmp_path / "P").iterdir()] == [(name, "a photo")]
 
 
 def test_a_mass_that_nothing_states_is_weighed(person):
