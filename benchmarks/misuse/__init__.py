@@ -10,6 +10,7 @@ import ast
 import importlib
 import pkgutil
 import shutil
+import signal
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,9 @@ def run(context: Context) -> list[Check]:
         UnknownName: A part of ``--only`` does not exist.
     """
     known = parts()
+    signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # a job in a shell's background is born ignoring it
     for name in context.only:
         if name not in known:
             raise UnknownName("part", name, known, "--only")

@@ -136,7 +136,11 @@ def leaks(name: str, words: tuple[str, ...], world: Path, folder: Path) -> Leaks
         finally:
             (folder / "looked").touch()
             process.send_signal(signal.SIGINT)
-            process.wait(PATIENCE_S)
+            try:
+                process.wait(PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                found.trouble = f"goes on for {PATIENCE_S:g} s after Ctrl-C"
     found.printed += [
         f"{name} prints {line[:80]!r}"
         for line in (folder / "printed").read_text("utf-8").splitlines()
