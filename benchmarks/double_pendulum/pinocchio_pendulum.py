@@ -29,7 +29,7 @@ class PinocchioPendulum(PlainCoordinates):
         self.shape, self.residual = shape, residual
         self.nu = len(EFFORTS) + len(RESIDUALS) * residual
         self.pin_model = _chain(shape)
-        self._data = self.pin_model.createData()
+        self._data = pin.Data(self.pin_model)
         self._back = np.linalg.inv(FROM_ABSOLUTE)
         self._loads = pin.StdVec_Force()
         for _ in range(self.pin_model.njoints):
@@ -136,6 +136,6 @@ def _chain(shape: PendulumShape) -> pin.Model:
         around = np.diag([1.0, 0.0, 1.0]) * mass * L**2 / 12.0
         bar = pin.Inertia(mass, np.array([0.0, -0.5 * L, 0.0]), around)
         model.appendBodyToJoint(joint, bar, here)
-    if not model.check(model.createData()):
+    if not model.check(pin.Data(model)):
         raise InvalidInput("Pinocchio finds the pendulum's chain inconsistent")
     return model

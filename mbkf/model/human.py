@@ -7,7 +7,8 @@ Pinocchio: J. Carpentier et al., IEEE/SICE Int. Symp. System Integration 2019, 6
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -72,8 +73,7 @@ class HumanModel(Body):
         for segment in description.segments:
             joints[segment.name] = self._add(segment, joints)
         self.joints = joints
-        self._data = self.pin_model.createData()
-        if not self.pin_model.check(self._data):
+        if not _depth_first(self.pin_model.parents):
             raise InvalidInput(
                 f"body {description.name} is not in depth-first order; list each segment after its parent's branch"
             )
@@ -84,7 +84,6 @@ class HumanModel(Body):
         self.movement_sd = read_only(np.concatenate([_per_dof(s.movement_sd, s) for s in segments]))
         self.limits = read_only(np.concatenate([s.limits_rad for s in segments]))
         self.supports = self._supports()
-        self._frames = _frames_in(self._data)
         self._tree: CompiledTree | None = None
 
     @classmethod
@@ -126,6 +125,15 @@ class HumanModel(Body):
         """
         body = reference_body(subject)
         return cls(body, scale_of(subject, body), subject.mass_kg, subject.inertia)
+
+    @cached_property
+    def _data(self) -> pin.Data:
+        """Pinocchio's working memory, 5 MB: made where a function of this body needs it."""
+        return pin.Data(self.pin_model)
+
+    @cached_property
+    def _frames(self) -> Array:
+        return _frames_in(self._data)
 
     @property
     def root(self) -> SegmentJoint:
@@ -273,6 +281,16 @@ class HumanModel(Body):
         jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
         jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
         return jacobian
+
+
+def _depth_first(parents: Sequence[int]) -> bool:
+    """True where each joint hangs on the one before it or on an ancestor of that; joint 0 is the world."""
+    branch = [0]
+    for joint, parent in enumerate(list(parents)[1:], 1):
+        if parent not in branch:
+            return False
+        branch = [*branch[: branch.index(parent) + 1], joint]
+    return True
 
 
 def _own_inertia(

@@ -101,7 +101,7 @@ class HumanDynamics(ForcedBody):
         self._foot_ids = [model.joint(name).joint_id for name in model.roles.feet]
         on_com = 1.0 if wrench_frame == "thesis" else 0.0
         self._points = [on_com * model.pin_model.inertias[k].lever for k in self._foot_ids]
-        self._data = model.pin_model.createData()
+        self._data = pin.Data(model.pin_model)
         self._weightless = model.pin_model.copy()
         self._weightless.gravity.linear = np.zeros(3)
         self._loads = pin.StdVec_Force([pin.Force.Zero()] * model.pin_model.njoints)

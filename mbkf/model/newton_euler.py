@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
@@ -74,7 +75,7 @@ class NewtonEuler:
 
     def __init__(self, model: Body) -> None:
         self.model = model
-        self._pin, self._data = model.pin_model, model.pin_model.createData()
+        self._pin = model.pin_model
         ids = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
@@ -82,8 +83,13 @@ class NewtonEuler:
         self._tree = model.tree
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
         self._columns = Layout.dynamic(model.nv)
-        self._J = self._data.J
+        self._J = np.zeros((ROOT, model.nv))
         self._moves_feet = np.array(self._moves, dtype=bool)
+
+    @cached_property
+    def _data(self) -> pin.Data:
+        """Pinocchio's working memory, 5 MB: made where no compiled kernel does the work."""
+        return pin.Data(self._pin)
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
         """The pelvis's equations for the feet's wrenches (12,).

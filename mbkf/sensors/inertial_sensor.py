@@ -49,7 +49,7 @@ class InertialSensor:
 
     def __init__(self, model: Body, mounts: Sequence[ImuMount]) -> None:
         self.model, self.mounts = model, tuple(mounts)
-        self._data = model.pin_model.createData()
+        self._data = pin.Data(model.pin_model)
         self._joints = [model.joint(mount.segment).joint_id for mount in mounts]
         rotations = quaternion_matrices(np.array([mount.rotation for mount in mounts]).reshape(-1, 4))
         self._to_sensor = rotations.transpose(0, 2, 1)

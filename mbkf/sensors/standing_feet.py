@@ -106,7 +106,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         """
         self._model, self.settings = model, settings
         self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
-        self._data = model.pin_model.createData()
+        self._data = pin.Data(model.pin_model)
         self._lever_m = settings.standing_lever_m * max(settings.stance_s / dt_s, 1.0) ** 0.5
         self._stays_after = round(settings.stays_after_s / dt_s)
         self._on_floor_m = np.zeros((2, SOLE_ENDS))

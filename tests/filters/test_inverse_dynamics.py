@@ -98,7 +98,7 @@ def test_torques_equal_newton_euler_with_forces_on_the_feet(model, rng):
     motion = moving(model, rng)
     wrench = exact_foot_wrenches(model, motion, rng)
     found = inverse_dynamics(model, motion, wrench)
-    data = model.pin_model.createData()
+    data = pin.Data(model.pin_model)
     for t in range(len(motion.q)):
         pin.forwardKinematics(model.pin_model, data, motion.q[t])
         outside = [pin.Force.Zero() for _ in range(model.pin_model.njoints)]
@@ -120,7 +120,7 @@ def test_loads_on_other_parts_count_as_those_on_the_feet(model, rng):
     wrench, support = exact_foot_wrenches(model, motion, rng), supported(model, motion, rng)
     found = inverse_dynamics(model, motion, wrench, support)
     parts = model.description.bearings.values()
-    data = model.pin_model.createData()
+    data = pin.Data(model.pin_model)
     for t in range(len(motion.q)):
         pin.forwardKinematics(model.pin_model, data, motion.q[t])
         outside = [pin.Force.Zero() for _ in range(model.pin_model.njoints)]

@@ -55,7 +55,7 @@ def test_generalised_forces_drive_pinocchios_forward_dynamics(force_state, frame
     _, _, jacobian = m.model.placements_and_jacobian(m.q)
     for name, wrench in zip(m.model.roles.feet, m.wrench, strict=True):
         tau = tau + np.where(m.model.supports[m.model.joint(name).joint_id], wrench @ jacobian, 0.0)
-    data = m.model.pin_model.createData()
+    data = pin.Data(m.model.pin_model)
     assert_near(pin.aba(m.model.pin_model, data, m.q, m.v, tau), m.a, 1e-7)
 
 

@@ -21,7 +21,7 @@ def rng():
 
 def test_momentum_is_pinocchios(rng):
     q, v = moderate_pose(MODEL, rng), rng.normal(size=MODEL.nv)
-    data = MODEL.pin_model.createData()
+    data = pin.Data(MODEL.pin_model)
     pin.computeCentroidalMomentum(MODEL.pin_model, data, q, v)
     expected = data.hg.vector.copy()
     expected[3:] += np.cross(data.com[0], expected[:3])

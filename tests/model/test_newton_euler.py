@@ -30,7 +30,7 @@ def test_torques_and_wrenches_cause_the_motion(seed):
     """Inverse, then forward dynamics by articulated bodies returns the acceleration."""
     model, balance, s = made(seed)
     tau = balance.tau(s.q, s.v, s.a, s.w)
-    data = model.pin_model.createData()
+    data = pin.Data(model.pin_model)
     a = pin.aba(model.pin_model, data, s.q, s.v, tau + pushed(model, s.q, s.w))
     assert worst(a - s.a) < 1e-8 * worst(s.a)
 
@@ -67,7 +67,7 @@ def test_the_kernel_finds_the_same_torques_and_derivatives(seed, monkeypatch):
 def test_the_residual_is_what_the_momentum_lacks(seed):
     """Rate of momentum about the centre of mass − weight − wrenches, moved to the pelvis and into its axes."""
     model, balance, s = made(seed)
-    data = model.pin_model.createData()
+    data = pin.Data(model.pin_model)
     pin.computeCentroidalMomentumTimeVariation(model.pin_model, data, s.q, s.v, s.a)
     rate, com, total = data.dhg, data.com[0], s.w[:6] + s.w[6:]
     force = rate.linear - model.mass_kg * model.pin_model.gravity.linear - total[:3]

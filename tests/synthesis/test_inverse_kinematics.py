@@ -30,7 +30,7 @@ def test_momentum_is_pinocchios(body, standing):
     times = np.linspace(0, 1, 5)
     pose = composition.pose(times)
     q, v, _ = composition.coordinates(times)
-    data = body.pin_model.createData()
+    data = pin.Data(body.pin_model)
     expected = [
         pin.computeCentroidalMomentum(body.pin_model, data, *state).angular.copy()
         for state in zip(q, v, strict=True)

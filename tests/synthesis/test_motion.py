@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 def momentum(body, motion):
     """(T, 6) linear momentum and angular momentum about the centre of mass."""
-    data = body.pin_model.createData()
+    data = pin.Data(body.pin_model)
     return np.array(
         [
             pin.computeCentroidalMomentum(body.pin_model, data, q, v).vector.copy()

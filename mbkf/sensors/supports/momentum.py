@@ -43,7 +43,7 @@ class WholeBody:
             q: (T, nq) configurations, NaN where untracked.
             v: (T, nv) velocities.
         """
-        data = model.pin_model.createData()
+        data = pin.Data(model.pin_model)
         centre, momentum = np.full((len(q), 3), np.nan), np.full((len(q), 6), np.nan)
         for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
             pin.computeCentroidalMomentum(model.pin_model, data, q[t], v[t])
