@@ -232,11 +232,12 @@ def _turning(one: ImuReadings) -> list[Problem]:
 
 def _mean_force(turns: Array, force: Array) -> float:
     """Median size of the mean of forces (W, L, 3), turned by successive rotations (W, L, 3), rad."""
-    q = np.tile([0.0, 0.0, 0.0, 1.0], (len(turns), 1))
-    total = np.zeros((len(turns), 3))
-    for k in range(turns.shape[1]):
-        total += rotate(q, force[:, k])
-        q = multiply(q, exponential(turns[:, k]))
+    q = exponential(turns[:, :-1])
+    reach = 1  # products of 1, 2, 4, … successive rotations
+    while reach < q.shape[1]:
+        q[:, reach:] = multiply(q[:, :-reach], q[:, reach:])
+        reach *= 2
+    total = force[:, 0] + rotate(q, force[:, 1:]).sum(axis=1)
     return float(np.median(np.sqrt((total**2).sum(axis=1)))) / turns.shape[1]
 
 

@@ -17,11 +17,11 @@ _DIAGONAL = np.diag_indices(3)
 
 def skew(vectors: Array) -> Array:
     """(…, 3, 3) matrices [v]× of vectors (…, 3)."""
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    zero = np.zeros_like(x)
-    return np.stack(
-        [np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2
-    )
+    v = np.asarray(vectors)
+    matrices = np.zeros((*v.shape, 3))
+    matrices[..., 2, 1], matrices[..., 0, 2], matrices[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
+    matrices[..., 1, 2], matrices[..., 2, 0], matrices[..., 0, 1] = -v[..., 0], -v[..., 1], -v[..., 2]
+    return matrices
 
 
 def quaternion_of(rotation: Array) -> Array:
