@@ -60,6 +60,15 @@ def one_thread():
         yield
 
 
+@pytest.fixture(scope="module", autouse=True)
+def own_caches(request: pytest.FixtureRequest):
+    """The cached results of a file of tests end with it: a filter's steps with their covariances hold 900 MB."""
+    yield
+    for one in vars(request.module).values():
+        if hasattr(one, "cache_clear") and one.__module__ == request.module.__name__:
+            one.cache_clear()
+
+
 @pytest.fixture(params=[COMPILED, REFERENCE])
 def either_kernel(request, monkeypatch) -> str:
     """The test runs twice: with the compiled kernel, skipped where none is built, and with the reference."""
