@@ -18,7 +18,7 @@ from numpy.lib.stride_tricks import as_strided
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
 from mbkf.io.inertia import SegmentInertia
-from mbkf.io.subject import Subject
+from mbkf.io.subject import STANDING_KEY, Subject
 from mbkf.kernel.loading import library
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body, SegmentJoint
@@ -121,10 +121,17 @@ class HumanModel(Body):
         Raises:
             UnknownName: The subject's reference body or a scale factor is unknown.
             FileFormatError: The body file that the subject carries is damaged.
-            InvalidInput: A scale factor of the body is missing.
+            InvalidInput: A scale factor of the body is missing, or the standing posture belongs to another body.
         """
         body = reference_body(subject)
-        return cls(body, scale_of(subject, body), subject.mass_kg, subject.inertia)
+        model = cls(body, scale_of(subject, body), subject.mass_kg, subject.inertia)
+        posture = subject.standing_q
+        if posture is not None and posture.shape != (model.nq,):
+            raise InvalidInput(
+                f"the subject's standing posture ({STANDING_KEY} in its report) holds {posture.size} numbers instead "
+                f"of the {model.nq} of the body '{body.name}'; scale the person again"
+            )
+        return model
 
     @cached_property
     def _data(self) -> pin.Data:

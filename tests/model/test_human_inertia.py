@@ -42,3 +42,11 @@ def test_a_deleted_scale_factor_is_missed_and_not_1():
     with pytest.raises(UnknownName, match="unknown scale factor 'right_thig'; did you mean right_thigh"):
         HumanModel.of(replace(subject, scale_factors={**FACTORS, "right_thig": 1.0}))
     assert (HumanModel.of(replace(subject, scale_factors={})).scale == 1.0).all()
+
+
+def test_a_standing_posture_of_another_body_is_refused():
+    subject = Subject("human18", 75.0, FACTORS, (), "reference36")
+    posture = HumanModel.of(subject).neutral()
+    assert HumanModel.of(replace(subject, report={"standing_q": posture})).nq == len(posture)
+    with pytest.raises(InvalidInput, match="holds 66 numbers instead of the 67 of the body 'human18'"):
+        HumanModel.of(replace(subject, report={"standing_q": posture[1:]}))
