@@ -1,18 +1,24 @@
-"""The laboratory's page and its files: exports change nothing, dropped files and norms replace nothing."""
+"""The laboratory's page and its files: exports change nothing; dropped files, norms and runs replace nothing."""
 
 from __future__ import annotations
 
 import http.cookiejar
+import json
 import shutil
+import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 from benchmarks.checks import Check, Context, information
 from benchmarks.misuse.leftovers import leftovers
 from benchmarks.misuse.world import PERSONS, changed, digests, made_world
 from mbkf.app.reports import NORMS_FILE
+from mbkf.app.runs import FAILED, FINISHED
 from mbkf.app.server import AppServer
 from mbkf.trial.export import RESULT_FORMATS
 
@@ -33,6 +39,10 @@ DROPPED = (
 """Names of dropped files that are there already, lead elsewhere, or are no names."""
 
 FOREIGN = b"our own norms, by hand\n"
+IN_THE_WAY = {"P1": "P1/subject.json", "P2": f"P2/{TRIAL}/motion.h5", "": "runs.json"}
+"""Files of another program among the results, and the session whose run each is in the way of; "" for any."""
+
+NOT_OURS, PATIENCE_S = "not written by mbkf", 120.0
 
 
 @dataclass(frozen=True)
@@ -68,15 +78,10 @@ def rows(context: Context) -> list[Check]:
     (root / "door").symlink_to(world)
     (root / NORMS_FILE).write_bytes(FOREIGN)
     before, outside = digests(root.parent), digests(world)
-    server = AppServer(root)
-    try:
-        cookies = urllib.request.HTTPCookieProcessor(http.cookiejar.CookieJar())
-        page = Page(server, urllib.request.build_opener(cookies))
-        page.opener.open(server.url).close()
+    with opened(root) as page:
         failed, refused_norms = read_everything(page), page.ask("/norms", b"{}")[0]
         wrong = [f"dropped as {name!r}: {fault}" for name in DROPPED if (fault := dropped(page, name))]
-    finally:
-        server.close()
+    ran_over, silent = run_over_foreign(world, context.out / "runs")
     lost = [*changed(before, root.parent), *changed(outside, world)]
     made = sorted(set(digests(root.parent)) - set(before))
     stray = [name for name in made if not name.startswith("study/")]
@@ -86,8 +91,54 @@ def rows(context: Context) -> list[Check]:
         Check("exports and pages that did not work", len(failed), 0, "<="),
         Check("dropped files without a sentence", len(wrong), 0, "<="),
         Check("norms over a file of another program: status", refused_norms, 400, ">="),
-        *(information(line, 1.0) for line in (*lost, *stray, *failed, *wrong)),
+        Check("runs over files of another program: files changed or lost", len(ran_over), 0, "<="),
+        Check("runs over files of another program: without a sentence", len(silent), 0, "<="),
+        *(information(line, 1.0) for line in (*lost, *stray, *failed, *wrong, *ran_over, *silent)),
     ]
+
+
+@contextmanager
+def opened(root: Path) -> Iterator[Page]:
+    """The page of a folder, with a browser that is let in; served until the block ends."""
+    server = AppServer(root)
+    try:
+        cookies = urllib.request.HTTPCookieProcessor(http.cookiejar.CookieJar())
+        page = Page(server, urllib.request.build_opener(cookies))
+        page.opener.open(server.url).close()
+        yield page
+    finally:
+        server.close()
+
+
+def run_over_foreign(world: Path, root: Path) -> tuple[list[str], list[str]]:
+    """Runs sessions whose results have files of another program in their way; files lost, and silent sessions.
+
+    Args:
+        world: The laboratory.
+        root: The page's folder, to be made.
+    """
+    shutil.copytree(world / "lab", root)
+    for name in IN_THE_WAY.values():
+        path = root / "results" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(FOREIGN)
+    before = digests(root)
+    with opened(root) as page:
+        silent = [person for person in PERSONS if not _says_so(page, person)]
+    return changed(before, root), silent
+
+
+def _says_so(page: Page, person: str) -> bool:
+    """Runs a session to its end; true where it then says that mbkf did not write a file."""
+    page.ask(f"/run?session={person}&do=start", b"")
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        _, content = page.ask(f"/session?session={person}")
+        run = json.loads(content)["run"]
+        if run is not None and run["state"] in {FINISHED, FAILED}:
+            return NOT_OURS in content.decode("utf-8")
+        time.sleep(0.1)
+    return False
 
 
 def read_everything(page: Page) -> list[str]:

@@ -4,7 +4,7 @@ The work is done by processes of its own: a run that is cancelled ends at once, 
 and memory goes back to the system with the run. Whatever goes wrong in a run ends that run, with its reason; the queue
 goes on. The states stand in a file beside the results, so that a new page, or a server after a crash, continues where
 the last one stopped: trials that are done from the same files are not done again. Where that file cannot be written,
-the states are those of this server alone.
+or a file of another program has its name, the states are those of this server alone.
 """
 
 from __future__ import annotations
@@ -216,7 +216,7 @@ class Runs:
         self._changed.notify_all()
         with contextlib.suppress(Exception):  # a full disk, which also ends the run if it writes there
             plain = {name: asdict(state) | {"under_way": {}} for name, state in self._states.items()}
-            write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1), edits=True)
+            write_text(self._workspace.out / RUNS_FILE, json.dumps(plain, indent=1))
 
 
 class _Stopped(Exception):

@@ -68,7 +68,7 @@ _FORMS: Mapping[str, tuple[bytes, ...]] = {
         rb'\{\s*"files": \{.*"settings": \{.*"version": ',
         rb'\{\s*"state": "[^\n]*\s*"source": ',
         rb'\{\s*"sensors": \[\s*\{\s*"name": [^\n]*\s*"procedure": ',
-        rb'\{\s*"[^\n]*": \{\s*"state": "\w+",\s*"stage": ',
+        rb'\{\s*"[^\n]*": \{\s*"state": "(?:waiting|running|finished|cancelled|failed)"',
     ),
     "arrays (HDF5)": (
         rb"mbkf: \d+ bytes after this block",

@@ -286,6 +286,17 @@ def test_a_damaged_file_of_states_is_forgotten(workspace, text):
     runs.close()
 
 
+@pytest.mark.usefixtures("quick")
+def test_a_file_of_others_with_the_name_of_the_states_stays(workspace):
+    workspace.out.mkdir()
+    (workspace.out / RUNS_FILE).write_text("12 km on Monday")
+    runs = Runs(workspace, 1)
+    runs.start("P1")
+    wait_for(runs, "P1", FINISHED)
+    runs.close()
+    assert (workspace.out / RUNS_FILE).read_text() == "12 km on Monday"
+
+
 def test_the_remaining_time_follows_from_what_is_done():
     state = RunState(RUNNING, "trials", done=2, total=6, seconds=12.0, scaled_s=2.0)
     assert state.remaining_s == pytest.approx(20.0)

@@ -206,6 +206,7 @@ EARLIER = {
     "strides.csv": b"foot,stride,start_s,end_s,length_m\n",
     "report.html": b"<!DOCTYPE html>\n<html><title>walk</title><body>\n<nav><b>mbkf</b></nav>",
     "live.json": b"{}\n" + b" " * 1000,
+    "runs.json": b'{\n "P1": {\n  "state": "running",\n  "trials": {}}}',
     "empty": b"",
 }
 
