@@ -19,13 +19,14 @@ from benchmarks.checks import Check, Context, information
 from benchmarks.misuse.calls import USER_ERROR, Call, Commands, Ending, commands
 from benchmarks.misuse.cases import CASES, Case
 from benchmarks.misuse.failing_writes import FailingWrites, NotHere, failing_writes, small_disk
-from benchmarks.misuse.leftovers import leftovers
+from benchmarks.misuse.leftovers import NAMED, leftovers
 from benchmarks.misuse.whole import torn_files
 from benchmarks.misuse.world import changed, digests, made_world
 
 MOST_WRITES, QUICK_WRITES = 24, 2
 SIZES_KB, QUICK_SIZES_KB = (4, 16, 64, 256, 640), (16,)
-SHOWN = 25
+SHOWN = 3
+"""So many faults of each case are shown."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,12 @@ def fault_rows(kind: str, found: Sequence[Fault]) -> list[Check]:
     return [
         Check(f"{kind}: {len(found)} runs, half results, lost ones or no sentence", len(bad), 0, "<="),
         information(f"{kind}: refused in a sentence", sum(one.refused for one in found)),
-        *(information(f"{one.case.name}, {one.when}: {one.wrong}", 1.0) for one in bad[:SHOWN]),
+        *(
+            information(f"{case.name}, {one.when}: {one.wrong}", len(own))
+            for case in CASES
+            for own in [[one for one in bad if one.case == case]]
+            for one in own[:SHOWN]
+        ),
     ]
 
 
@@ -163,6 +169,8 @@ def wrong_end(end: Ending, old: Path, now: Path) -> str:
     left, half = list(leftovers(now)), torn_files(now)
     if end.unclean and not (end.code == 1 and "Traceback" not in end.err and _partial(end)):
         return end.unclean
+    if end.refused and (str(now.parent) not in end.last_line or NAMED.search(end.last_line)):
+        return f"a sentence without the file: {end.last_line}"
     if left:
         return f"left {left[0]}"
     if half:

@@ -13,6 +13,7 @@ import h5py
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from benchmarks.misuse.leftovers import leftovers
 from mbkf.errors import MbkfError
 from mbkf.io.capture import read_capture
 from mbkf.io.storage import read_storage
@@ -23,8 +24,10 @@ SIGNATURES = {".png": b"\x89PNG", ".gif": b"GIF8", ".mp4": b"\x00\x00\x00"}
 
 
 def torn_files(folder: Path) -> list[str]:
-    """Files below a folder that are not whole, each with the reason."""
+    """Files below a folder that are not whole, each with the reason; those under names of unfinished ones left out."""
+    unfinished = {folder / name for name in leftovers(folder)}
     found = [folder] if folder.is_file() else [path for path in folder.rglob("*") if path.is_file()]
+    found = [path for path in found if unfinished.isdisjoint((path, *path.parents))]
     return [f"{path.name}: {reason}" for path in sorted(found) if (reason := torn(path))]
 
 

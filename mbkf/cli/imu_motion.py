@@ -40,6 +40,9 @@ PRINTED = tuple(
 )
 """Angles whose ranges are printed."""
 
+MOUNTS_FILE = "mounts.toml"
+"""File of the sensors on the body that were found."""
+
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
@@ -55,13 +58,14 @@ def run(args: argparse.Namespace) -> int:
     """Finds the motion, writes the folder and prints the ranges of motion."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic_folder import replacing_folder
     from mbkf.io.imu.mount import write_mounts
-    from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
+    from mbkf.io.results_folder import RESULT_FILES, SUMMARY_FILE, write_result_files
     from mbkf.model.human import HumanModel
     from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
     from mbkf.trial.results.summary import summarise
 
-    folder, person = check_folder(args.out, RESULT_FILES), person_of(args)
+    folder, person = check_folder(args.out, (*RESULT_FILES, MOUNTS_FILE)), person_of(args)
     sensors = chosen(read_session(args.files, args), args.sensor)
     posture = posture_of(args, HumanModel.of(person))
     with stages() as report:
@@ -74,8 +78,9 @@ def run(args: argparse.Namespace) -> int:
             settings=InertialMotionSettings(smooth=not args.causal),
             progress=report,
         )
-    write_reconstruction(found.result, summarise(found.result), folder)
-    write_mounts(found.mounts, Path(folder) / "mounts.toml")
+    with replacing_folder(folder, last=SUMMARY_FILE) as partial:
+        write_result_files(found.result, summarise(found.result), partial)
+        write_mounts(found.mounts, partial / MOUNTS_FILE)
     _print(found.result)
     print(folder)
     return 0

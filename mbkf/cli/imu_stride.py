@@ -67,31 +67,39 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Measures the strides, writes the folder and prints a table."""
     from mbkf.cli.progress import stages
-    from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic import check_folder, remove_file
+    from mbkf.io.atomic_folder import replacing_folder
     from mbkf.trial.inertial.stride import measure_strides
-    from mbkf.trial.inertial.stride_folder import STRIDES_FILE, SUMMARY_FILE, TRAJECTORY_FILE, write_strides
+    from mbkf.trial.inertial.stride_folder import (
+        STRIDES_FILE,
+        SUMMARY_FILE,
+        TRAJECTORY_FILE,
+        write_stride_files,
+    )
 
-    check_folder(args.out, (STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE, PICTURE_FILE))
+    folder = check_folder(args.out, (STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE, PICTURE_FILE))
     settings, readings = _settings(args), _feet(args)
     with stages() as report:
         measured = measure_strides(readings, settings, progress=report)
-    folder = write_strides(measured, args.out)
-    _draw(measured, folder / PICTURE_FILE)
+    with replacing_folder(folder, last=SUMMARY_FILE) as partial:
+        write_stride_files(measured, partial)
+        drawn = _draw(measured, partial / PICTURE_FILE)
+    if not drawn:
+        remove_file(folder / PICTURE_FILE)  # an earlier run's picture shows other strides
     _print(measured, str(args.out))
     return 0
 
 
-def _draw(measured: StrideMeasurement, path: Path) -> None:
+def _draw(measured: StrideMeasurement, path: Path) -> bool:
     from mbkf.errors import MissingDependency
-    from mbkf.io.atomic import remove_file
 
     try:
         from mbkf.viz.imu.foot_path import write_foot_path
     except MissingDependency as missing:
-        remove_file(path)  # an earlier run's picture shows other strides
         print(f"note: {path.name} was not drawn. {missing}", file=sys.stderr)
-    else:
-        write_foot_path(measured, path)
+        return False
+    write_foot_path(measured, path)
+    return True
 
 
 def _settings(args: argparse.Namespace) -> StrideSettings:

@@ -64,6 +64,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.placement import EIGHT
     from mbkf.imu.virtual import ImuErrors
     from mbkf.io.atomic import check_file
+    from mbkf.io.atomic_folder import replacing_beside
     from mbkf.io.imu.mount import read_mounts, write_mounts
     from mbkf.io.imu.write import write_imu_csv
     from mbkf.trial.inertial.synth import read_motion, synthesise_imus
@@ -86,8 +87,9 @@ def run(args: argparse.Namespace) -> int:
         seed=args.seed,
         careless=not args.neat,
     )
-    write_imu_csv(readings, out)
-    write_mounts(mounts, out.with_suffix(".toml"))
+    with replacing_beside(out) as partial:
+        write_imu_csv(readings, partial / out.name)
+        write_mounts(mounts, partial / out.with_suffix(".toml").name)
     names = ", ".join(one.name for one in readings)
     print(f"{out}: {readings[0].samples} samples at {readings[0].rate_hz:g} Hz of {names}")
     print(out.with_suffix(".toml"))

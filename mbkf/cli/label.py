@@ -65,6 +65,7 @@ def run(args: argparse.Namespace) -> int:
     """Labels the capture, writes it with its summary and prints the numbers."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_file
+    from mbkf.io.atomic_folder import replacing_beside
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
     from mbkf.trial.axes.captures import turned_like_subject
@@ -81,9 +82,11 @@ def run(args: argparse.Namespace) -> int:
         found, subject, raw = _label(args, raw, report)
     truth = None if truth is None else turned_like_subject(truth, subject)
     compared = None if truth is None else score(found.markers, truth.markers, subject)
-    if args.subject is None:
-        write_subject(subject, out.with_suffix(".toml"))
-    print_labels(write_labels(raw, found, out, compared), out)
+    with replacing_beside(out) as partial:
+        summary = write_labels(raw, found, partial / out.name, compared)
+        if args.subject is None:
+            write_subject(subject, partial / out.with_suffix(".toml").name)
+    print_labels(summary, out)
     for warning in () if found.doubts is None else found.doubts.warnings():
         print(f"warning: {warning}", file=sys.stderr)
     if args.subject is None:

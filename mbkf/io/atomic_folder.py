@@ -1,4 +1,4 @@
-"""Replacing a folder as one, so that a reader sees the old files or the new ones and never some of each.
+"""Replacing a folder, or files beside each other, as one: a reader sees the old files or the new, and not some of each.
 
 The new folder is made beside the old one, gets the files that only the old one has, and the two exchange their names
 in one step of the system. Where that cannot be done (the folder is a mounted disk or the current one, or the system
@@ -12,8 +12,9 @@ import ctypes
 import os
 import shutil
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from functools import partial as partial_of
 from pathlib import Path
 
 from mbkf.io.atomic import check_folder, flush
@@ -47,16 +48,74 @@ def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Pa
         yield partial
         files = [path.name for path in partial.iterdir() if path.is_file()]
         check_folder(target, files)
-        for name in files:
-            check_replaceable(target / name, form=form_of(partial / name))
-            flush(partial / name)
+        _finish(partial, target, files)
         if not target.exists():
             partial.rename(target)
         elif not as_one or not _exchanged(target, partial):
-            for name in sorted(files, key=lambda name: name == last):
-                (partial / name).replace(target / name)
+            _take_places(partial, target, sorted(files, key=lambda name: name == last))
         for name in files:
             files_read().wrote(target / name)
+
+
+@contextmanager
+def replacing_beside(path: str | Path) -> Iterator[Path]:
+    """A new, empty folder whose files take the places of those beside ``path`` when the block ends without an error.
+
+    For files that belong together: all of them take their places, or all earlier ones stay. It holds files and no
+    folders.
+
+    Args:
+        path: The first of the files; the folder for all of them is made where missing.
+
+    Raises:
+        FileFormatError: A file stands where a folder is needed, or a folder where a file is.
+        ProtectedFile: A file that would be replaced was read, or mbkf did not write it.
+        OSError: The folder cannot be made or written to.
+    """
+    first = Path(path)
+    place = check_folder(first.parent)
+    place.mkdir(parents=True, exist_ok=True)
+    with unfinished(place / first.stem, folder=True, shown=place) as partial:
+        yield partial
+        files = sorted(path.name for path in partial.iterdir() if path.is_file())
+        check_folder(place, files)
+        _finish(partial, place, files)
+        _take_places(partial, place, files)
+        for name in files:
+            files_read().wrote(place / name)
+
+
+def _finish(partial: Path, target: Path, files: Sequence[str]) -> None:
+    """Makes sure that files may take their places, and that they are on the disk."""
+    for name in files:
+        check_replaceable(target / name, form=form_of(partial / name))
+        flush(partial / name)
+
+
+def _take_places(partial: Path, target: Path, files: Sequence[str]) -> None:
+    """Moves files into a folder one by one; if one cannot be moved, those before it are moved back."""
+    with ExitStack() as back:
+        for name in files:
+            back.callback(_take_place(partial / name, target / name))
+        back.pop_all()
+
+
+def _take_place(new: Path, target: Path) -> Callable[[], object]:
+    """Moves a file to its place, and returns the way back; where the system cannot exchange names, there is none."""
+    there = os.path.lexists(target)
+    if not there:
+        with suppress(OSError):
+            os.link(new, target)  # in contrast to a renaming, it replaces nothing
+            return target.unlink
+    check_replaceable(target, form=form_of(new))
+    if _exchange(new, target):
+        return partial_of(_exchange, new, target)
+    new.replace(target)
+    return _stays if there else target.unlink
+
+
+def _stays() -> None:
+    """The earlier file is lost, and the new one stays."""
 
 
 def _can_be_renamed(target: Path) -> bool:

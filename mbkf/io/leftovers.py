@@ -6,6 +6,7 @@ which the system releases when the process ends, however it ends.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shutil
@@ -18,6 +19,9 @@ from pathlib import Path
 OLDEST_S = 86_400.0
 """Age at which an unfinished file is swept on systems without such locks."""
 
+OF_A_WRITE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS}
+"""Errors of writing: no space, no more of it for this user, too large a file, a broken disk, a read-only one."""
+
 UNFINISHED = re.compile(r"\..*-[0-9a-f]{32}(\..*)?")
 """Names of unfinished files and folders."""
 
@@ -26,7 +30,9 @@ _held: set[Path] = set()
 
 
 @contextmanager
-def unfinished(target: Path, within: Path | None = None, *, folder: bool = False) -> Iterator[Path]:
+def unfinished(
+    target: Path, within: Path | None = None, *, folder: bool = False, shown: Path | None = None
+) -> Iterator[Path]:
     """An empty file or folder that is to take the target's place; it is removed at the end unless it was moved.
 
     It keeps the target's suffix, since some writers insist on theirs. Unfinished files of the same target that killed
@@ -36,6 +42,7 @@ def unfinished(target: Path, within: Path | None = None, *, folder: bool = False
         target: The file or folder to write.
         within: Folder of the unfinished one; the target's by default.
         folder: Make a folder.
+        shown: The place that errors name instead of the unfinished one; the target by default.
 
     Raises:
         OSError: It cannot be made.
@@ -59,10 +66,23 @@ def unfinished(target: Path, within: Path | None = None, *, folder: bool = False
                 continue  # swept before the lock was ours
             try:
                 yield path
+            except OSError as error:
+                _name_target(error, path, target if shown is None else shown)
+                raise
             finally:
                 _remove(path)
                 _held.discard(path)
             return
+
+
+def _name_target(error: OSError, path: Path, target: Path) -> None:
+    """Lets an error name the file that was to be written: readers know no unfinished one, and a write names no file."""
+    if error.filename is None and error.errno in OF_A_WRITE:
+        error.filename = str(target)
+    elif isinstance(error.filename, str | bytes):
+        name = Path(os.fsdecode(error.filename))
+        if name.is_relative_to(path):
+            error.filename, error.filename2 = str(target / name.relative_to(path)), None
 
 
 def remove_held() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import InvalidInput
-from mbkf.io.atomic import write_text
+from mbkf.io.atomic import remove_file, write_text
 from mbkf.io.files_read import read_state
 from mbkf.model.protocol import Protocol, ProtocolMarker
 
@@ -61,13 +61,19 @@ def write_protocol(protocol: Protocol, path: str | Path, *, edits: bool = False)
     target = checked_name(path)
     text = protocol.body.text
     beside = target.with_name(f"{target.stem}_body.toml")
-    if text and not (beside.is_file() and read_state(beside) == text):
+    there = beside.is_file() and read_state(beside) == text
+    if text and not there:
         if beside.exists():
             raise InvalidInput(
                 f"{beside} exists and holds another body; remove it, or choose another name for the marker set"
             )
         write_text(beside, text)
-    write_text(target, protocol_text(protocol, beside.name if text else ""), edits=edits)
+    try:
+        write_text(target, protocol_text(protocol, beside.name if text else ""), edits=edits)
+    except BaseException:
+        if text and not there:
+            remove_file(beside)  # a body without its marker set
+        raise
 
 
 def checked_name(path: str | Path) -> Path:

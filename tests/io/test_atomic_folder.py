@@ -1,5 +1,6 @@
 """A folder is replaced as one: every state that another process can see is the old one or the new one."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -7,10 +8,10 @@ import threading
 
 import pytest
 
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, ProtectedFile
 from mbkf.io import atomic_folder
-from mbkf.io.atomic_folder import replacing_folder
-from mbkf.io.written import overwriting
+from mbkf.io.atomic_folder import replacing_beside, replacing_folder
+from mbkf.io.written import OVERWRITE_VARIABLE, overwriting
 
 NAMES = ("a.txt", "b.txt", "last.txt")
 
@@ -165,3 +166,64 @@ def test_a_folder_that_is_a_link_to_itself_is_an_error_of_the_disk(tmp_path):
     with pytest.raises(OSError, match="loop"), replacing_folder(loop) as partial:
         (partial / "a.txt").write_text("new")
     assert [path.name for path in tmp_path.iterdir()] == ["loop"]
+
+
+PAIR = ("walk.c3d", "walk.json")
+
+
+def write_pair(folder, text):
+    with replacing_beside(folder / PAIR[0]) as partial:
+        for name in PAIR:
+            (partial / name).write_text(text)
+
+
+def pair(folder):
+    return [(folder / name).read_text() if (folder / name).exists() else None for name in PAIR]
+
+
+def test_files_beside_each_other_take_their_places_together(tmp_path):
+    (tmp_path / "other.c3d").write_text("raw")
+    for text in ("first", "second"):
+        write_pair(tmp_path, text)
+        assert pair(tmp_path) == [text, text]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["other.c3d", *PAIR]
+
+
+@pytest.mark.parametrize("exchange", [True, False])
+@pytest.mark.parametrize("there", [[], ["walk.c3d"], ["walk.json"], ["walk.c3d", "walk.json"]])
+def test_if_one_cannot_take_its_place_the_others_are_moved_back(there, exchange, tmp_path, monkeypatch):
+    for name in there:
+        (tmp_path / name).write_text("old")
+    before = pair(tmp_path)
+    true = atomic_folder._take_place
+
+    def fails(new, target):
+        if target.name == PAIR[1]:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return true(new, target)
+
+    monkeypatch.setattr(atomic_folder, "_take_place", fails)
+    if not exchange:
+        monkeypatch.setattr(atomic_folder, "_exchange", lambda *_: False)
+    with pytest.raises(OSError, match="space"):
+        write_pair(tmp_path, "new")
+    if exchange or PAIR[0] not in there:
+        assert pair(tmp_path) == before
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_an_error_while_they_are_written_leaves_the_old_ones_and_names_the_file(tmp_path):
+    write_pair(tmp_path, "old")
+    with pytest.raises(OSError, match="full") as raised, replacing_beside(tmp_path / PAIR[0]) as partial:
+        (partial / PAIR[0]).write_text("new")
+        raise OSError(errno.ENOSPC, "full", str(partial / PAIR[0]))
+    assert raised.value.filename == str(tmp_path / PAIR[0])
+    assert pair(tmp_path) == ["old", "old"] and len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_file_of_others_beside_stays_and_so_do_the_rest(tmp_path):
+    (tmp_path / PAIR[1]).write_text("a photo")
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(ProtectedFile, match=PAIR[1]):
+        patch.delenv(OVERWRITE_VARIABLE, raising=False)
+        write_pair(tmp_path, "new")
+    assert pair(tmp_path) == [None, "a photo"]

@@ -1,5 +1,6 @@
 """What a killed process left unfinished is swept by the next; what a living one writes is not."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -29,6 +30,35 @@ def test_it_is_there_while_it_is_written_and_gone_afterwards(tmp_path, folder):
         assert path.is_dir() == folder and path.parent == tmp_path
         assert path.name.startswith(".walk-") and path.suffix == ".c3d"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "named"),
+    [
+        (lambda path: OSError(errno.ENOSPC, "full"), "walk"),
+        (lambda path: OSError(errno.ENOSPC, "full", str(path)), "walk"),
+        (lambda path: OSError(errno.ENOSPC, "full", os.fsencode(path / "a.c3d")), "walk/a.c3d"),
+        (lambda path: OSError(errno.EACCES, "refused", str(path / "a"), None, "b"), "walk/a"),
+        (lambda path: OSError(errno.ENOSPC, "full", str(path.with_name("other"))), "other"),
+        (lambda path: OSError(errno.ENOENT, "missing"), None),
+    ],
+)
+def test_errors_name_the_target(error, named, tmp_path):
+    with pytest.raises(OSError) as raised, unfinished(tmp_path / "walk", folder=True) as path:
+        raise error(path)
+    assert raised.value.filename == (None if named is None else str(tmp_path / named))
+    if named in {"walk", "walk/a"}:
+        assert raised.value.filename2 is None
+
+
+def test_an_error_names_the_place_that_is_to_be_shown(tmp_path):
+    with (
+        pytest.raises(OSError, match="full") as raised,
+        unfinished(tmp_path / "walk", folder=True, shown=tmp_path) as path,
+        unfinished(path / "walk.c3d"),
+    ):
+        raise OSError(errno.ENOSPC, "full")
+    assert raised.value.filename == str(tmp_path / "walk.c3d")
 
 
 def test_what_took_its_place_stays(tmp_path):

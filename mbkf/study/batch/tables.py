@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic_folder import replacing_beside
 from mbkf.io.files_read import read_state
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results_folder import RUN_ID, SUMMARY_FILE
@@ -170,7 +170,8 @@ def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table | list[Row]])
         rows.write_table(table.cast(plain))
 
     with ExitStack() as files:
-        partials = [files.enter_context(replacing(path.with_suffix(end))) for end in (".parquet", ".csv")]
+        made = files.enter_context(replacing_beside(path))
+        partials = [made / path.with_suffix(end).name for end in (".parquet", ".csv")]
         parquet, text = (files.enter_context(partial.open("wb")) for partial in partials)
         columns = files.enter_context(pq.ParquetWriter(parquet, schema, compression="zstd"))
         rows = files.enter_context(pa_csv.CSVWriter(text, plain))

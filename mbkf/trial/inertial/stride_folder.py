@@ -38,11 +38,20 @@ def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
         OSError: The folder cannot be written to.
     """
     with replacing_folder(folder, last=SUMMARY_FILE) as partial:
-        _write(partial / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
-        _write(partial / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
-        text = json.dumps(stride_summary(measured), indent=2, allow_nan=False, ensure_ascii=False)
-        write_text(partial / SUMMARY_FILE, text + "\n")
+        write_stride_files(measured, partial)
     return Path(folder).absolute()
+
+
+def write_stride_files(measured: StrideMeasurement, folder: Path) -> None:
+    """Writes the tables into a folder that is not in use yet.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
+    _write(folder / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
+    _write(folder / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
+    text = json.dumps(stride_summary(measured), indent=2, allow_nan=False, ensure_ascii=False)
+    write_text(folder / SUMMARY_FILE, text + "\n")
 
 
 def _stride_rows(measured: StrideMeasurement) -> Iterable[list[str]]:

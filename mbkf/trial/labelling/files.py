@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from mbkf.io.atomic import check_file, remove_file, write_text
+from mbkf.io.atomic import write_text
+from mbkf.io.atomic_folder import replacing_beside
 from mbkf.io.capture import write_capture
 from mbkf.io.records import Capture
 from mbkf.trial.labelling.result import Labelling, LabelSummary, label_summary, labelled_capture
@@ -17,6 +18,8 @@ def write_labels(
 ) -> LabelSummary:
     """Writes the labelled capture in the format of its suffix, and its summary as FILE.json; returns the summary.
 
+    Both take their places together, or earlier ones stay.
+
     Args:
         raw: The capture as recorded.
         found: Its labels.
@@ -27,10 +30,8 @@ def write_labels(
         FileFormatError: The file cannot be written.
     """
     path = Path(path)
-    beside = path.with_suffix(".json")
     labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
-    check_file(path)
-    remove_file(beside)  # a summary must not stay beside another capture
-    write_capture(labelled, path)
-    write_text(beside, json.dumps(summary, indent=2) + "\n")
+    with replacing_beside(path) as partial:
+        write_capture(labelled, partial / path.name)
+        write_text(partial / path.with_suffix(".json").name, json.dumps(summary, indent=2) + "\n")
     return summary

@@ -42,8 +42,10 @@ def test_files_of_a_result_are_whole_until_they_are_cut(tmp_path):
 @pytest.mark.parametrize(
     ("code", "err", "now", "right"),
     [
-        (2, "mbkf: error: No space left on device", "old = 1\n", True),
-        (2, "mbkf: error: No space left on device", "new = 1\n", False),
+        (2, "mbkf: error: {now}/a.toml: No space left on device", "old = 1\n", True),
+        (2, "mbkf: error: No space left on device", "old = 1\n", False),
+        (2, "mbkf: error: {now}/.a-0123456789abcdef0123456789abcdef.toml: No space left", "old = 1\n", False),
+        (2, "mbkf: error: {now}/a.toml: No space left on device", "new = 1\n", False),
         (2, "", "old = 1\n", False),
         (0, "", "new = 1\n", True),
         (0, "", "new = ", False),
@@ -54,5 +56,15 @@ def test_a_full_disk_leaves_the_old_whole_and_is_told(tmp_path, code, err, now, 
     for place, text in (("old", "old = 1\n"), ("now", now)):
         (tmp_path / place).mkdir()
         (tmp_path / place / "a.toml").write_text(text)
-    end = Ending(code, "", err, 1.0, 0.0)
+    end = Ending(code, "", err.format(now=tmp_path / "now"), 1.0, 0.0)
     assert (wrong_end(end, tmp_path / "old", tmp_path / "now") == "") is right
+
+
+def test_a_file_that_a_killed_command_left_unfinished_is_not_torn(tmp_path):
+    hexadecimal = "0f" * 16
+    (tmp_path / f".summary-{hexadecimal}.parquet").write_bytes(b"")
+    (tmp_path / f".result-{hexadecimal}").mkdir()
+    (tmp_path / f".result-{hexadecimal}" / "motion.h5").write_bytes(b"")
+    assert torn_files(tmp_path) == []
+    (tmp_path / "motion.h5").write_bytes(b"")
+    assert [line.partition(":")[0] for line in torn_files(tmp_path)] == ["motion.h5"]
