@@ -13,7 +13,7 @@ import shutil
 import time
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 OLDEST_S = 86_400.0
@@ -60,7 +60,9 @@ def unfinished(
         except OSError:
             _held.discard(path)
             raise
-        with suppress(FileNotFoundError), locked(path, wait=True):
+        with ExitStack() as lock:
+            with suppress(FileNotFoundError):
+                lock.enter_context(locked(path, wait=True))
             if not path.exists():
                 _held.discard(path)
                 continue  # swept before the lock was ours
