@@ -13,6 +13,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import flush, replacing
+from mbkf.io.edited_toml import edited_toml
 from mbkf.io.files_read import read_state_bytes
 from mbkf.io.leftovers import locked
 from mbkf.io.merging import Difference, merged
@@ -77,9 +78,15 @@ def change_session(path: Path, before: SessionNotes, after: SessionNotes) -> Cha
             now = current_session(path)
             found = merged(plain_session(before), plain_session(after), plain_session(now))
             notes = session_of(found.table, path)
-            if notes == now or _written(path, session_text(notes), seen):
+            if notes == now or _written(path, _text(notes, seen), seen):
                 return ChangedSession(notes, found.differences)
     raise FileFormatError(path, "another program writes this file again and again; close it and save again")
+
+
+def _text(notes: SessionNotes, seen: bytes | None) -> str:
+    """The file's text with other notes; comments of people stay."""
+    text = session_text(notes)
+    return text if seen is None else edited_toml(seen.decode("utf-8-sig", "replace"), text)
 
 
 def _written(path: Path, text: str, seen: bytes | None) -> bool:

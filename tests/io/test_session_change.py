@@ -97,3 +97,11 @@ def test_processes_write_one_after_the_other(file):
         worker.join()
     assert len(read_session(file).trials) == 15
     assert replace(read_session(file), trials={}) == EMPTY
+
+
+def test_comments_of_people_outlive_a_change(file):
+    file.write_text('# after the operation\nname = "Anna"  # as in the record\nmass_kg = 70.0\n', "utf-8")
+    change_session(file, current_session(file), SessionNotes(name="Anna", mass_kg=71.0))
+    assert file.read_text("utf-8") == (
+        '# after the operation\nname = "Anna"  # as in the record\nmass_kg = 71.0\n'
+    )

@@ -1,11 +1,14 @@
 """The reference body as data: what it states."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from mbkf.errors import UnknownName
+from mbkf.errors import InvalidInput, UnknownName
 from mbkf.model.body_file import load_body
 from mbkf.model.description import JOINT_DOF
+from mbkf.model.human import HumanModel
 from mbkf.model.sides import mirrored
 
 BODY = load_body()
@@ -35,6 +38,17 @@ def test_segments_come_depth_first_from_one_root():
         assert (segment.parent == "world") == (not open_chain)
         open_chain.append(segment.name)
     assert [segment.parent for segment in BODY.segments].count("world") == 1
+
+
+def test_a_body_out_of_depth_first_order_is_refused():
+    """Left and right leg listed turn by turn, which Pinocchio's subtrees do not allow."""
+    body = BODY
+    legs = [s for s in body.segments if s.name.split("_")[-1] in ("thigh", "shank", "foot", "toes")]
+    turns = sorted(legs, key=lambda s: [leg.name for leg in legs].index(s.name) % (len(legs) // 2))
+    others = [s for s in body.segments if s not in legs]
+    mixed = replace(body, segments=(others[0], *turns, *others[1:]))
+    with pytest.raises(InvalidInput, match="depth-first"):
+        HumanModel(mixed, np.ones(len(body.scale_factors)), 70.0)
 
 
 def test_each_segment_has_values_for_each_dof_of_its_joint():

@@ -1,7 +1,6 @@
 """The body: Table 4.2 and its scaling laws, mirror symmetry, and the mechanics against first principles."""
 
 import tomllib
-from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -12,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, data_folder
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
-from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
 from mbkf.model.sides import mirrored
 from tests.motions import (
@@ -67,17 +65,6 @@ def test_18_segments_52_dof():
     assert model.nv == 6 + 3 + 2 + 3 + 6 * 3 + 6 * 3 + 2 == 52
     assert model.nq == 52 + 1 + sum(joint.kind == "spherical" for joint in model.joints.values())
     assert model.pin_model.check(pin.Data(model.pin_model))
-
-
-def test_a_body_out_of_depth_first_order_is_refused():
-    """Left and right leg listed turn by turn, which Pinocchio's subtrees do not allow."""
-    body = load_body("human18")
-    legs = [s for s in body.segments if s.name.split("_")[-1] in ("thigh", "shank", "foot", "toes")]
-    turns = sorted(legs, key=lambda s: [leg.name for leg in legs].index(s.name) % (len(legs) // 2))
-    others = [s for s in body.segments if s not in legs]
-    mixed = replace(body, segments=(others[0], *turns, *others[1:]))
-    with pytest.raises(InvalidInput, match="depth-first"):
-        HumanModel(mixed, np.ones(len(body.scale_factors)), 70.0)
 
 
 def test_joints_tile_configuration_and_tangent_space():
