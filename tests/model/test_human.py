@@ -381,18 +381,3 @@ def test_frames_are_the_placements():
     np.testing.assert_array_equal(jacobian, model.placements_and_jacobian(q)[2])
     for joint in range(len(R)):
         assert_near(np.r_[place, 1.0] @ frames[4 * joint : 4 * joint + 4], R[joint] @ place + p[joint], 1e-14)
-
-
-def test_derivatives_of_integration_and_difference():
-    model, rng = reference_model(), np.random.default_rng(13)
-    q, dv = moderate_pose(model, rng), 0.3 * rng.normal(size=model.nv)
-    end = model.integrate(q, dv)
-    by_q, by_dv = model.integration_derivatives(q, dv)
-    h = 1e-6
-    for k, e in enumerate(np.eye(model.nv)):
-        moved = [model.difference(end, model.integrate(model.integrate(q, s * h * e), dv)) for s in (-1, 1)]
-        assert_near((moved[1] - moved[0]) / (2 * h), by_q[:, k], 1e-8)
-        moved = [model.difference(end, model.integrate(q, dv + s * h * e)) for s in (-1, 1)]
-        assert_near((moved[1] - moved[0]) / (2 * h), by_dv[:, k], 1e-8)
-    numeric = central_difference(model, lambda at: model.difference(q, at), end)
-    assert_near(model.difference_derivative(q, end), numeric, 1e-8)
