@@ -1,10 +1,10 @@
 """The shape of the source tree: who may import whom, how long things get, what is documented and tested."""
 
 import ast
+import gc
 import importlib
 import re
 from collections import Counter
-from functools import cache
 from itertools import chain
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from benchmarks.house.circles import circle_in, circles, imported_modules, impor
 from benchmarks.house.documentation import classes_of, documentation, faults
 from benchmarks.house.folders import MOST_FILES, largest_folder
 from benchmarks.house.prose import MOST_HARD, hard_to_read, is_hard, texts_of
+from benchmarks.house.sources import parsed, statements, tree_of
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "mbkf"
@@ -61,9 +62,13 @@ def relative(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
-@cache
-def tree_of(path: Path) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"), str(path))
+@pytest.fixture(scope="module", autouse=True)
+def parsed_once():
+    """Trees of two thousand files hold no circles, and do not stay when these tests are over."""
+    gc.disable()
+    yield
+    parsed.cache_clear()
+    gc.enable()
 
 
 def room_of(path: Path) -> str:
@@ -146,7 +151,7 @@ def test_functions_stay_short():
     lines = {
         f"{relative(path)}:{node.name}": node.end_lineno - node.lineno + 1
         for path in LINTED
-        for node in ast.walk(tree_of(path))
+        for node in statements(tree_of(path))
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
     }
     assert {
@@ -279,7 +284,7 @@ OPENING = {
 def opened_directly(source: str) -> list[str]:
     """Calls that open or remove a file and pass neither door; a temporary file, which the door gave, may be opened."""
     found = []
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(parsed(source)):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in OPENING:
             of = ast.unparse(node.func.value)
             if NO_FILE.match(of) is None:
@@ -339,9 +344,14 @@ def test_every_test_is_run():
     """A test without its prefix never runs: functions with assertions are tests or are called by one."""
     for path in sorted(TESTS.rglob("test_*.py")):
         tree = tree_of(path)
-        names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-        names += [node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
-        for node in tree.body:
-            if isinstance(node, ast.FunctionDef) and not node.name.startswith("test_"):
-                used = node.name in names or node.decorator_list
-                assert used, f"{relative(path)}: {node.name} is neither a test nor used"
+        unproven = {
+            node.name
+            for node in tree.body
+            if isinstance(node, ast.FunctionDef)
+            and not (node.name.startswith("test_") or node.decorator_list)
+        }
+        if unproven:
+            nodes = list(ast.walk(tree))
+            unproven -= {node.id for node in nodes if isinstance(node, ast.Name)}
+            unproven -= {node.attr for node in nodes if isinstance(node, ast.Attribute)}
+        assert not unproven, f"{relative(path)}: neither tests nor used"

@@ -6,6 +6,8 @@ import ast
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from benchmarks.house.sources import statements, tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("mbkf", "benchmarks")
 
@@ -35,7 +37,7 @@ def imported_modules(tree: ast.AST, package: str) -> set[str]:
     resolved against ``package``.
     """
     found = set()
-    for node in ast.walk(tree):
+    for node in statements(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -51,7 +53,7 @@ def imports_of(path: Path, root: Path = ROOT) -> set[str]:
     """Dotted names that a file of the tree imports."""
     name = module_name(path, root)
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    return imported_modules(ast.parse(path.read_text(encoding="utf-8"), str(path)), package)
+    return imported_modules(tree_of(path), package)
 
 
 def imported_files(path: Path, root: Path, modules: Mapping[str, Path]) -> set[Path]:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from benchmarks.house.sources import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 MANY_ARGUMENTS = 3
 
@@ -54,7 +56,7 @@ class Documentation:
 def documentation(root: Path = ROOT, folders: Iterable[str] = ("mbkf", "benchmarks")) -> Documentation:
     """Counts what the folders of a source tree leave undocumented."""
     paths = [path for folder in folders for path in sorted((root / folder).rglob("*.py"))]
-    trees = {path: ast.parse(path.read_text(encoding="utf-8"), str(path)) for path in paths}
+    trees = {path: tree_of(path) for path in paths}
     classes = classes_of(trees.values())
     found = [
         (f"{path.relative_to(root).as_posix()}: {fault}", fault.docstring)

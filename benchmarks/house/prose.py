@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from benchmarks.house.sources import tree_of
+
 HARD = re.compile(r"^(?:What|Whether|How|They|None)\b|\btold of\b|\bis no\b")
 MOST_HARD = 0.01
 """Largest share of hard texts in the package."""
@@ -35,11 +37,7 @@ def is_hard(text: str) -> bool:
 
 def texts_of(paths: Iterable[Path]) -> list[Text]:
     """All docstrings and messages of source files."""
-    return [
-        Text(path, " ".join(text.split()))
-        for path in paths
-        for text in _texts(ast.parse(path.read_text(encoding="utf-8"), str(path)))
-    ]
+    return [Text(path, " ".join(text.split())) for path in paths for text in _texts(tree_of(path))]
 
 
 def _texts(tree: ast.Module) -> Iterator[str]:

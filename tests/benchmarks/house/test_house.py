@@ -8,7 +8,8 @@ import pytest
 from benchmarks import __main__ as runner
 from benchmarks import house
 from benchmarks.house import examples, step_files, step_time
-from benchmarks.house.circles import circles
+from benchmarks.house.circles import circles, imported_modules
+from benchmarks.house.sources import parsed
 from mbkf.errors import InvalidInput
 
 PAGE = """# Page
@@ -92,6 +93,23 @@ def test_circles_are_found_in_a_tree_of_files(tmp_path):
     assert circles(tmp_path, ["mbkf"]) == ["mbkf/a.py", "mbkf/b.py", "mbkf/a.py"]
     (tmp_path / "mbkf" / "b.py").write_text("", encoding="utf-8")
     assert circles(tmp_path, ["mbkf"]) == []
+
+
+def test_imports_are_found_however_deep_they_stand():
+    source = """
+class A:
+    def f(self):
+        try:
+            import a
+        except E:
+            import b
+        else:
+            match x:
+                case 1:
+                    from c import d
+"""
+    assert imported_modules(parsed(source), "mbkf") == {"a", "b", "c.d"}
+    assert parsed(source) is parsed(source)
 
 
 def test_trees_are_timed_in_turn_after_a_block_that_does_not_count():
