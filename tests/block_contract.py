@@ -5,6 +5,7 @@ It is made and shown frames by :mod:`tests.block_scenes`, so that a new one need
 wants what no other wants.
 """
 
+import copy
 import importlib
 import inspect
 import pkgutil
@@ -18,6 +19,7 @@ import tests.blocks
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, OperatingPoint, Rows
 from tests.block_scenes import Situation, scene
+from tests.derivatives import directions
 
 HOMES = ("mbkf.", "tests.blocks.")
 
@@ -77,11 +79,9 @@ class Shown:
         return self.plant.retract(state, step, state.P)
 
 
-def shown(kind, name, seed=None, off=3):
-    """A block of a kind after a situation.
-
-    ``seed`` shuffles the instruments, ``off`` chooses how wrong the state is at which the block is linearised.
-    """
+@lru_cache(None)
+def lived(kind, name, seed):
+    """A block of a kind after all frames of a situation but the last, with its plant and what it then remembers."""
     here = scene(seed)
     happened, block = here.situation(name), here.made(kind)
     plant, memory = here.plant(block), block.begin()
@@ -90,6 +90,18 @@ def shown(kind, name, seed=None, off=3):
         state = here.state(true, plant, P)
         at = OperatingPoint(state, block.prepare(state, memory))
         memory = block.remember(state, at, block.decide(at, frame, memory, happened.noted(t)), memory)
+    return block, plant, memory
+
+
+def shown(kind, name, seed=None, off=3):
+    """A block of a kind after a situation.
+
+    ``seed`` shuffles the instruments, ``off`` chooses how wrong the state is at which the block is linearised.
+    """
+    block, plant, memory = lived(kind, name, seed)
+    memory = copy.deepcopy(memory)
+    here = scene(seed)
+    happened = here.situation(name)
     state, frame = here.near(happened.motion[-1], plant, off), happened.frames[-1]
     at = OperatingPoint(state, block.prepare(state, memory))
     decision = block.decide(at, frame, memory, happened.noted())
@@ -131,8 +143,10 @@ def whole(said, size):
     return rows.T @ rows, innovation @ rows
 
 
-def derivative(found):
-    """What a statement says of its own slope, and what finite differences say, along the whole tangent space.
+def derivative(found, rng, left_out=False):
+    """What a statement says of its own slope, and what finite differences say, along random tangent vectors.
+
+    ``left_out``: they stay within the components that its rows hold.
 
     Rows fall by their Jacobian. The vector Hᵀ R⁻¹ y of information falls by its matrix where y vanishes, so the
     state is first moved to where little of it is left.
@@ -157,9 +171,12 @@ def derivative(found):
         def value(x):
             return stacked(found.says(found.moved(x, state)), size)[1]
 
-    steps = np.where(np.arange(size) < found.plant.layout.v.stop, h, 1e3 * h)
-    columns = [(value(e) - value(-e)) / (2.0 * step) for e, step in zip(np.diag(steps), steps, strict=True)]
-    return stated, -np.stack(columns, axis=-1)
+    steps = np.where(np.arange(size) < found.plant.layout.v.stop, 1.0, 1e3)
+    if left_out:
+        steps *= stated.any(axis=0)
+    ways = steps[:, None] * directions(size, rng)
+    columns = [(value(h * way) - value(-h * way)) / (2.0 * h) for way in ways.T]
+    return stated @ ways, -np.stack(columns, axis=-1)
 
 
 def noises(kind, here):

@@ -18,6 +18,9 @@ class Case:
     compare: Callable
 
 
+DIRECTIONS = 20
+"""Along so many a derivative by states of 150 components and more is compared."""
+
 CASES: list[Case] = []
 """Filled by the modules derivatives_of_*."""
 
@@ -39,6 +42,11 @@ def slope(function, x, step=1e-6):
     """Derivative of function(x) by a plain vector, appended as the last axis."""
     ends = [(np.asarray(function(x + step * e)), function(x - step * e)) for e in np.eye(len(x))]
     return np.stack([(a - b) / (2 * step) for a, b in ends], axis=-1)
+
+
+def directions(size, rng):
+    """(size, DIRECTIONS) orthogonal random directions: a wrong entry of a large matrix shows along any of them."""
+    return np.linalg.qr(rng.normal(size=(size, DIRECTIONS)))[0] * np.sqrt(size / DIRECTIONS)
 
 
 def along(model, function, q, step=1e-6):

@@ -26,9 +26,7 @@ def add_case(kind):
         for situation in situations_of(kind.__name__):
             found = shown(kind, situation, off=int(rng.integers(1000)))
             if speaks(found.says()):
-                stated, numeric = derivative(found)
-                if kind.__name__ in LEFT_OUT:
-                    numeric = numeric * stated.any(axis=0)
+                stated, numeric = derivative(found, rng, kind.__name__ in LEFT_OUT)
                 scale = np.abs(numeric).max()
                 pairs.append((stated / scale, numeric / scale))
         stated, numeric = zip(*pairs, strict=True)

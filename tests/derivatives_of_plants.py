@@ -11,7 +11,7 @@ def address(kind):
 
 def add_case(kind):
     def compare(rng):
-        return {address(kind): transition(*made(kind, rng))}
+        return {address(kind): transition(*made(kind, rng), rng)}
 
     compare.__name__ = kind.__name__
     checks(address(kind), tolerance=tolerance(kind))(compare)

@@ -18,7 +18,7 @@ from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.plant import Plant
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.model.layout import ExtraState, Layout
-from tests.derivatives import slope
+from tests.derivatives import DIRECTIONS, directions, slope
 from tests.derivatives_of_bodies import forced_body
 from tests.dynamics import random_state
 from tests.motions import random_model
@@ -91,13 +91,13 @@ def tolerance(kind):
     return 1e-4 if kind is TorquePlant else 1e-6
 
 
-def transition(plant, state):
-    """Φ as the plant states it, and by finite differences along the manifold."""
+def transition(plant, state, rng):
+    """Φ as the plant states it, and by finite differences along the manifold, in some random directions."""
     size = np.ones(plant.layout.size)
     size[plant.layout.v.stop :] = 10.0
-    end = plant.move(state)
+    ways, end = directions(len(size), rng), plant.move(state)
     numeric = slope(
-        lambda x: plant.difference(end, plant.move(plant.retract(state, size * x, state.P))),
-        np.zeros(len(size)),
+        lambda x: plant.difference(end, plant.move(plant.retract(state, size * (ways @ x), state.P))),
+        np.zeros(DIRECTIONS),
     )
-    return plant.transition(state), numeric / size
+    return plant.transition(state) @ (size[:, None] * ways), numeric
