@@ -10,7 +10,18 @@ from mbkf.numerics.later_frames import LinearStep
 from mbkf.trial.preparation.filters import FILTERS
 from tests.dynamics import DT
 from tests.filters.test_fixed_lag import Told
-from tests.followed import FRAMES, SETTLED, WHOLE, errors, estimates, made_filter, recording, tracked, without
+from tests.followed import (
+    FRAMES,
+    SETTLED,
+    WHOLE,
+    errors,
+    estimates,
+    made_filter,
+    recording,
+    replayed,
+    tracked,
+    without,
+)
 from tests.motions import angle_errors, reference_model
 
 LAG_S = 0.06
@@ -75,7 +86,7 @@ def test_a_lag_holds_the_frames_within_it(lag_s, dt_s, frames):
 @every_filter
 def test_no_lag_is_the_filter(name):
     plain = tracked(name)
-    found = track(made_filter(name), recording(), lag_s=0.0, keep_covariance=True)
+    found = track(replayed(name), recording(), lag_s=0.0, keep_covariance=True)
     for one in ("q", "v", "a", "wrench", "sd_q", "torque_sd", "covariance"):
         np.testing.assert_array_equal(getattr(found, one), getattr(plain, one))
 
@@ -108,7 +119,7 @@ def test_a_lag_of_the_whole_run_is_nearly_a_round_of_the_dynamic_smoother():
 @every_filter
 def test_errors_shrink_with_the_lag_towards_the_smoothers(name):
     plain, smoothed = errors(tracked(name)), errors(tracked(name, WHOLE))
-    short, long = (errors(track(made_filter(name), recording(), lag_s=s)) for s in (0.02, LAG_S))
+    short, long = (errors(track(replayed(name), recording(), lag_s=s)) for s in (0.02, LAG_S))
     known = slice(
         2 if name == "kinematic" else 3
     )  # differences of neighbours' velocities, each with its own lag
@@ -118,8 +129,8 @@ def test_errors_shrink_with_the_lag_towards_the_smoothers(name):
 
 @pytest.mark.parametrize("name", ["kinematic", "dynamic"])
 def test_stated_spreads_shrink_with_the_lag_and_never_below_the_smoothers(name):
-    plain, whole = tracked(name), track(made_filter(name), recording(), lag_s=1.0)
-    some = track(made_filter(name), recording(), lag_s=LAG_S)
+    plain, whole = tracked(name), track(replayed(name), recording(), lag_s=1.0)
+    some = track(replayed(name), recording(), lag_s=LAG_S)
     inside = slice(5, -10)
     for spread in ("sd_q", "sd_v"):
         causal, mine, all_ = (getattr(one, spread)[inside] for one in (plain, some, whole))

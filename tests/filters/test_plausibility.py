@@ -11,7 +11,7 @@ from mbkf.filters.plausibility import DOUBT, MOST_RAD_S, moved_away, plausible, 
 from mbkf.filters.tracking import track
 from mbkf.sensors.contact.possible import MOST_WEIGHTS
 from mbkf.trial.preparation.filters import FILTERS
-from tests.followed import estimates, made_filter, recording
+from tests.followed import estimates, made_filter, recording, replayed
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
 WINDOWS = SmoothingSettings(window_s=0.2, ahead_s=0.1)
@@ -86,9 +86,9 @@ def test_a_failed_smoother_leaves_the_filtered_estimate():
 @pytest.mark.parametrize("lag_s", [0.0, 0.05])
 def test_implausible_smoothing_leaves_the_filtered_estimates_and_is_marked(name, lag_s, monkeypatch):
     """The smoother overflows in the frames from 0.2 s on; those before are smoothed as they were."""
-    filter, plain = made_filter(name), track(made_filter(name), recording())
+    filter, plain = replayed(name), track(replayed(name), recording())
     asked = {"lag_s": lag_s} if lag_s else {"smoothing": WINDOWS}
-    right = track(made_filter(name), recording(), **asked)
+    right = track(replayed(name), recording(), **asked)
     smooth, corrected, count = filter.smooth, filter.corrected, iter(range(1000))
 
     def wrong(estimate):
@@ -116,7 +116,7 @@ def test_implausible_smoothing_leaves_the_filtered_estimates_and_is_marked(name,
 
 
 def test_a_trial_without_a_plausible_window_is_not_smoothed(monkeypatch):
-    filter = made_filter("kinematic")
+    filter = replayed("kinematic")
     monkeypatch.setattr(filter, "smooth", lambda run, *_: [e._replace(v=e.v + 1e9) for e in run])
     found = track(filter, recording(), smoothing=replace(WINDOWS, window_s=10.0))
     assert found.uncorrected.all() and not found.smoothed

@@ -63,7 +63,7 @@ def test_noise_is_the_integral(decay_s):
 
 
 @given(st.floats(0.01, 1.0), st.floats(1e-3, 0.1))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_two_half_steps_are_one(decay_s, dt_s):
     whole, half = plant_of(decay_s, dt_s), plant_of(decay_s, 0.5 * dt_s)
     phi = straight(half)

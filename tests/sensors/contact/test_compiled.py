@@ -67,7 +67,7 @@ def frames_of(made, loads):
     return zip(made.motion.q, made.motion.v, made.motion.a, loads, [False] * len(loads), strict=True)
 
 
-@pytest.mark.parametrize("name", ["walk", "squat", "jump"])
+@pytest.mark.parametrize("name", ["walk", "jump"])
 @pytest.mark.parametrize("readings", ["both", "one", "silent", "shared", "none"])
 def test_movements_are_decided_as_in_python(name, readings):
     made = trial(name)
@@ -128,7 +128,7 @@ def falling_body(share):
 
 
 @given(st.integers(0, 10**6))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_any_situations_are_decided_as_in_python(seed):
     """Bodies, plates with and without outlines under and beside them, readings and motions of every size."""
     rng = np.random.default_rng(seed)
@@ -203,14 +203,21 @@ def scenes():
     return found + [(model, (), tuple(falling_body(share))) for share in (0.3, 0.38, 0.5)]
 
 
+@lru_cache(None)
+def decided_with_all_limits():
+    """Decisions in every scene, limits as they are."""
+    return [decided(*scene) for scene in scenes()]
+
+
 @pytest.mark.parametrize("limit", ContactLimits._fields)
 def test_each_limit_matters_under_its_own_name(limit):
     """A kernel with half or twice the limit decides otherwise somewhere."""
-    true = [decided(*scene) for scene in scenes()]
+    true = decided_with_all_limits()
     for factor in (0.5, 2.0):
         other = rules.LIMITS._replace(**{limit: factor * getattr(rules.LIMITS, limit)})
         with patch.object(compiled, "LIMITS", other):
-            assert [decided(*scene) for scene in scenes()] != true, f"{factor} {limit}"
+            found = zip(scenes(), true, strict=True)
+            assert any(decided(*scene) != before for scene, before in found), f"{factor} {limit}"
 
 
 def test_a_memory_that_is_longer_than_its_window_is_refused():

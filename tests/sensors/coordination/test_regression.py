@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.sensors.coordination.regression import learn
@@ -27,6 +27,7 @@ def fitted(features, targets, n, ridge=RIDGE):
 
 
 @given(st.integers(0, 1000))
+@settings(max_examples=25, deadline=None)
 def test_what_is_linear_is_foretold_exactly(seed):
     features, targets, blocks = shown(seed, noise=0.0)
     found = learn(features, targets, blocks, 1e-6)
@@ -68,6 +69,7 @@ def test_what_does_not_follow_keeps_its_mean():
 
 
 @given(st.integers(0, 1000), st.floats(1.0, 10.0))
+@settings(max_examples=25, deadline=None)
 def test_the_further_from_what_was_shown_the_less_is_known(seed, further):
     features, targets, blocks = shown(seed % 10)
     way = np.random.default_rng(seed).normal(size=features.shape[1])
