@@ -34,6 +34,7 @@ def test_readings_become_a_result(files, tmp_path, capsys):
     assert main([*command, "--subject", str(files / "subject.toml"), "--causal", "--out", str(out)]) == 0
     said = capsys.readouterr().out
     assert "knee_angle_r" in said and "path of the pelvis" in said
+    assert "exchanged" not in said and "the other way round" not in said
     found, summary = read_reconstruction(out), read_summary(out)
     assert summary["protocol"] == "inertial sensors" and found.frames == len(worn("squat", 2.0).motion.q)
     assert next(mount.name for mount in read_mounts(out / "mounts.toml")) == "pelvis"

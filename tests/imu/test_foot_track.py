@@ -77,7 +77,7 @@ def test_nothing_is_known_before_the_first_rest():
 
 def test_certainty_of_the_ways_is_that_of_the_joint_gaussian():
     """All states of a short run at once, conditioned on its readings by dense algebra."""
-    walk = foot_walk((1.2, 1.1), rate_hz=25.0)
+    walk = foot_walk((1.2, 1.1), rate_hz=16.0)
     run = run_of(walk)
     steps, dt = run.steps, 1.0 / walk.readings.rate_hz
     densities = _plant_noises(walk.readings.specific_force_mps2, SETTINGS, dt)

@@ -14,12 +14,19 @@ BIAS = np.array([0.02, -0.01, 0.015])
 
 
 def course(gyro, force, field, settings=None):
-    kalman = OrientationFilter(DT, settings)
-    first = kalman.begin(force[:1], None if field is None else field[:1])
-    mag = None if field is None else field[:, None]
-    passages = list(kalman.run(gyro[:, None], force[:, None], mag, first))
-    states = [first, *(p.state for p in passages)]
+    """Quaternions of one sensor, its last state and all."""
+    states = courses([(gyro, force, field)], settings)
     return np.array([s.quaternion[0] for s in states]), states[-1], states
+
+
+def courses(readings, settings=None):
+    """States of several sensors side by side."""
+    kalman = OrientationFilter(DT, settings)
+    gyro, force, field = (
+        None if parts[0] is None else np.stack(parts, axis=1) for parts in zip(*readings, strict=True)
+    )
+    first = kalman.begin(force[0], None if field is None else field[0])
+    return [first, *(p.state for p in kalman.run(gyro, force, field, first))]
 
 
 def noisy(made, seed=0):
@@ -62,11 +69,12 @@ def test_covariances_stay_symmetric_and_positive():
 def test_its_statement_of_error_is_honest_without_shaking():
     """Squared errors over stated variances: near 1 on the cautious side, for noise as the settings have it."""
     ratios = []
-    for seed in range(4):
-        made = turning(10.0, seed, shake_mps2=0.5)
-        found, _, states = course(*noisy(made, seed))
+    every = [turning(10.0, seed, shake_mps2=0.5) for seed in range(4)]
+    states = courses([noisy(made, seed) for seed, made in enumerate(every)])
+    for n, made in enumerate(every):
+        found = np.array([s.quaternion[n] for s in states])
         error = (Rotation.from_quat(made.truth) * Rotation.from_quat(found).inv()).as_rotvec()[500:]
-        P = np.array([s.P[0, :2, :2] for s in states])[500:]
+        P = np.array([s.P[n, :2, :2] for s in states])[500:]
         ratios.append(
             np.einsum("ti,ti->t", error[:, :2], np.linalg.solve(P, error[:, :2, None])[..., 0]).mean() / 2
         )
@@ -78,12 +86,12 @@ def test_a_magnet_passing_by_does_not_turn_the_heading():
     gyro, force, field = noisy(made)
     disturbed = field.copy()
     disturbed[1500:1800] += [30.0, 25.0, 0.0]
-    clean, _, _ = course(gyro, force, field)
-    found, _, _ = course(gyro, force, disturbed)
+    states = courses([(gyro, force, field), (gyro, force, disturbed)])
+    clean, found = (np.array([s.quaternion[n] for s in states]) for n in range(2))
     assert apart_deg(found, clean)[1500:].max() < 3.0
     blind = OrientationSettings(field_tolerance=1e6, dip_tolerance_rad=1e6)
-    led, _, _ = course(gyro, force, disturbed, blind)
-    assert apart_deg(led, clean)[1500:1800].max() > 3 * apart_deg(found, clean)[1500:1800].max()
+    led, _, _ = course(*(part[:1800] for part in (gyro, force, disturbed)), blind)
+    assert apart_deg(led, clean[:1800])[1500:].max() > 3 * apart_deg(found, clean)[1500:1800].max()
 
 
 def test_strong_shaking_does_not_tilt_it():
@@ -112,14 +120,15 @@ def test_a_sensor_at_rest_reads_its_bias():
     assert np.abs(plain.gyro_bias[0] - BIAS).max() > 0.003  # the turn about the vertical goes unseen
 
 
-@pytest.mark.parametrize("what", [0, 1, 2])
-def test_missing_samples_widen_the_error_and_are_bridged(what):
-    made = turning(10.0)
-    parts = list(noisy(made))
-    parts[what] = parts[what].copy()
-    parts[what][600:640] = np.nan
-    found, last, states = course(*parts)
-    assert np.isfinite(found).all()
-    assert np.isfinite(last.P).all()
-    if what == 0:
-        assert states[639].P[0, 0, 0] > 10 * states[599].P[0, 0, 0]
+def test_missing_samples_widen_the_error_and_are_bridged():
+    """Of the gyroscope, the accelerometer, the magnetometer."""
+    made, readings = turning(10.0), []
+    for instrument in range(3):
+        parts = [part.copy() for part in noisy(made)]
+        parts[instrument][600:640] = np.nan
+        readings.append(parts)
+    states = courses(readings)
+    for state in states:
+        assert np.isfinite(state.quaternion).all()
+    assert np.isfinite(states[-1].P).all()
+    assert states[639].P[0, 0, 0] > 10 * states[599].P[0, 0, 0]

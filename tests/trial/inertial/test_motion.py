@@ -6,20 +6,21 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
+from mbkf.io.imu.readings import between
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.trial.inertial import misfit
+from mbkf.trial.inertial import misfit, motion
 from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
-from mbkf.trial.inertial.mounted_reversed import SensorPlacement
+from mbkf.trial.inertial.mounted_reversed import SensorPlacement, mounted_reversed
 from tests.worn import exchanged, worn
 
 FLEXION = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def look_briefly():
-    """Less than a second of each way of wearing the sensors tells them apart here."""
+def worn_as_named():
+    """Other ways of wearing the sensors are looked at by one test only."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(misfit, "LOOKED_AT_S", 0.8)
+        patch.setattr(motion, "mounted_reversed", lambda *_: SensorPlacement())
         yield
 
 
@@ -64,7 +65,7 @@ def test_the_ground_bears_the_body(walk, found):
 
 
 def test_magnetometers_change_nothing_and_a_bad_one_is_named(walk, found):
-    assert found.disturbed_fields == () and found.worn == SensorPlacement()
+    assert found.disturbed_fields == ()
     bad = list(walk.moving)
     bad[3] = replace(bad[3], magnetic_field=0.3 * bad[3].magnetic_field)
     settings = InertialMotionSettings(smooth=False)
@@ -76,12 +77,17 @@ def test_magnetometers_change_nothing_and_a_bad_one_is_named(walk, found):
     assert any(bad[3].name in text for text in other.result.warnings)
 
 
-def test_exchanged_sides_are_told(walk):
+def test_exchanged_sides_are_told(walk, monkeypatch):
+    """Less than a second of each way of wearing the sensors tells them apart here."""
+    monkeypatch.setattr(motion, "mounted_reversed", mounted_reversed)
+    monkeypatch.setattr(misfit, "LOOKED_AT_S", 0.8)
     pair = ("right_shank", "left_shank")
     moving, standing = (exchanged(one, *pair) for one in (walk.moving, walk.standing))
+    moving = [between(one, 0.0, 1.5) for one in moving]
     settings = InertialMotionSettings(smooth=False)
     found = inertial_motion(moving, walk.subject, standing=standing, posture=walk.posture, settings=settings)
     assert found.worn.exchange is not None and set(found.worn.exchange.segments) == set(pair)
+    assert not found.worn.turned
     assert any("exchanged" in text for text in found.result.warnings)
 
 
@@ -106,8 +112,8 @@ def test_standing_in_the_recording_is_where_the_motion_begins():
     )
 
 
-def test_three_sensors_on_a_leg_tell_knee_and_ankle_and_claim_nothing_else():
-    one, leg = worn(), ("right_thigh", "right_shank", "right_foot")
+def test_three_sensors_on_a_leg_tell_knee_and_ankle_and_claim_nothing_else(walk):
+    one, leg = walk, ("right_thigh", "right_shank", "right_foot")
     standing, moving = ([r for r in readings if r.name in leg] for readings in (one.standing, one.moving))
     settings = InertialMotionSettings(smooth=False)
     result = inertial_motion(
