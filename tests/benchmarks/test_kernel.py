@@ -10,6 +10,7 @@ from benchmarks import kernel
 from benchmarks.equality.compare import BOUND
 from benchmarks.kernel import differences, moved, using
 from mbkf.kernel.loading import REFERENCE, SWITCH, library
+from mbkf.trial.synth import synthesise
 from tests.recordings import walk
 
 
@@ -42,11 +43,19 @@ def test_the_environment_is_left_as_it_was(monkeypatch, before):
     assert os.environ.get(SWITCH) == before
 
 
+def half_a_second(motion, seconds, seed):
+    """The beginning of a synthetic trial."""
+    subject, made = synthesise(motion, seconds=1.0, seed=seed)
+    markers = made.trial.markers
+    short = replace(markers, positions_m=markers.positions_m[:50])
+    return subject, replace(made, trial=replace(made.trial, markers=short))
+
+
 def test_every_motion_is_followed_causally_and_smoothed(monkeypatch, tmp_path):
     if library() is None:
         pytest.skip("the kernel is not compiled here")
     monkeypatch.setattr(kernel, "QUICK_MOTIONS", ("squat",))
-    monkeypatch.setattr(kernel, "SECONDS", 1.0)
+    monkeypatch.setattr(kernel, "synthesise", half_a_second)
     rows = kernel.run(kernel.Context(None, tmp_path, quick=True))
     names = [row.name.partition(": ") for row in rows]
     assert [name for name, _, what in names if "last digit" in what] == ["squat, causal", "squat, smoothed"]

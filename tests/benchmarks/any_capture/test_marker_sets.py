@@ -1,11 +1,20 @@
 """The rows of inferred marker sets: what counts as right and as told, what is withheld, which commands are typed."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from benchmarks.any_capture import marker_sets, out_of_box
-from benchmarks.any_capture.marked import CAPTURES, Known, beside, hidden_names, leaking, renamed
+from benchmarks.any_capture.marked import (
+    CAPTURES,
+    Known,
+    beside,
+    hidden_names,
+    known,
+    leaking,
+    renamed,
+)
 from benchmarks.any_capture.marker_sets import Judged, Score, found_segments, rows_of
 from benchmarks.any_capture.out_of_box import STRANGERS, steps
 from benchmarks.any_capture.set_angles import FAILED, Compared
@@ -79,10 +88,27 @@ def test_steps_that_fail_fail_their_rows(tmp_path):
     assert not any(row.passed for row in rows)
 
 
-def test_a_capture_is_judged(real_data, monkeypatch):
+def test_a_capture_is_judged_by_hidden_and_by_own_names(real_data, monkeypatch):
+    """By an inference that knows the hidden names; of the own ones it finds one only."""
     chosen = tuple(replace(one, walks=False) for one in CAPTURES if one.name == "bmc lower walk")
     monkeypatch.setattr(marker_sets, "CAPTURES", chosen)
+    one = known(chosen[0], real_data)
+    truth = {name: one.segments[own] for own, name in hidden_names(one).items()}
+    truth |= dict([next(iter(one.segments.items()))])
+    asked = []
+
+    def infer(static, trials, leave_out):
+        asked.append((static, len(trials), leave_out))
+        markers = [
+            SimpleNamespace(name=name, segment=truth.get(name, ""), probability=1.0)
+            for name in trials[0].markers.names
+        ]
+        return SimpleNamespace(protocol=SimpleNamespace(markers=markers))
+
+    monkeypatch.setattr(marker_sets, "infer_marker_set", infer)
     lines = []
     found = marker_sets.judged(real_data, told=lines.append)
+    assert asked == [(None, 1, one.withheld)] * 2
     assert found.moving["bmc lower walk"].share == 1.0
+    assert found.named["bmc lower walk"].right == 1
     assert len(lines) == 2

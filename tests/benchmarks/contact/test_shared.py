@@ -61,5 +61,8 @@ def test_standing_fails_by_force_and_by_spread(monkeypatch, tmp_path, percent, o
 @pytest.mark.slow
 def test_a_real_walk_over_one_plate_keeps_its_bounds(monkeypatch, real_data):
     monkeypatch.setattr(shared, "REAL_WALKS", {"HC044A": shared.REAL_WALKS["HC044A"]})
-    rows = list(shared._real_rows(real_data, {"causal": [], "smoothed": []}))
+    monkeypatch.setattr(shared, "PASSES", {"causal": False})
+    spreads = {"causal": []}
+    rows = list(shared._real_rows(real_data, spreads))
+    assert len(rows) == 5 and len(spreads["causal"]) == 1
     assert [row.name for row in rows if not row.passed] == []

@@ -29,6 +29,11 @@ def squat():
     return make_case(("squat", 0), MATCHED, correct=False)
 
 
+@pytest.fixture(scope="module")
+def found(squat):
+    return KINEMATIC.run(squat.capture, squat.subject)
+
+
 def test_a_withheld_force_is_compared_in_the_judged_frames():
     measured = np.r_[np.nan, np.zeros(20), 500.0 + 100.0 * np.sin(np.arange(40) / 5.0), np.zeros(20)]
     judged = np.ones(81, dtype=bool)
@@ -50,15 +55,13 @@ def test_no_estimate_at_all_counts_as_no_force():
     assert found.flagged == 0.0
 
 
-def test_moments_are_named_as_opensim_names_them(squat):
-    found = KINEMATIC.run(squat.capture, squat.subject)
+def test_moments_are_named_as_opensim_names_them(found):
     table = moment_table(found)
     np.testing.assert_array_equal(table.column("knee_angle_r_moment"), found.moment("knee_angle_r"))
 
 
-def test_the_plate_under_a_foot_is_found_by_its_load(squat):
+def test_the_plate_under_a_foot_is_found_by_its_load(squat, found):
     person = Person("squat", squat.capture, squat.subject)
-    found = KINEMATIC.run(squat.capture, squat.subject)
     name = plate_under(person, LEFT)
     withheld = KINEMATIC.run(squat.capture, squat.subject, without_plates=(name,))
     assert np.abs(withheld.foot_wrench[:, LEFT]).max() == 0.0

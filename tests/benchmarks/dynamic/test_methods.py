@@ -79,14 +79,11 @@ def test_pooling_gives_every_trial_the_same_weight():
     assert np.isnan(pooled([1.0, float("nan")]))
 
 
-def test_workers_return_what_one_process_does_in_the_same_order():
+def test_workers_return_what_one_process_does_in_the_same_order_and_errors_whatever_they_carry():
     with in_parallel(2) as mapper:
         assert mapper(abs, [-3, 2, -1]) == in_turn(abs, [-3, 2, -1]) == [3, 2, 1]
-
-
-def test_an_error_of_a_worker_arrives_whatever_it_carries():
-    with in_parallel(1) as mapper, pytest.raises(MbkfError, match="unknown protocol 'nonsense'"):
-        mapper(load_protocol, ["nonsense"])
+        with pytest.raises(MbkfError, match="unknown protocol 'nonsense'"):
+            mapper(load_protocol, ["nonsense"])
 
 
 def test_a_method_that_does_not_run_is_one_failed_row():

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchmarks.quality import faults
 from benchmarks.quality.faults import amplified, better, fault_rows, is_judged, number, outside
 from benchmarks.quality.spoilt import KNOWN, SHOWN, Followed
 from mbkf.io.findings import Finding, not_judged
@@ -35,13 +36,19 @@ def test_a_gain_multiplies_the_whole_wrench():
     np.testing.assert_allclose(other.moment_nm, 1.1 * one.moment_nm)
 
 
-def test_a_true_squat_keeps_every_bound():
+def test_a_true_squat_keeps_every_bound(monkeypatch):
+    """With the fault of each kind that is the hardest to see."""
+    monkeypatch.setattr(faults, "MASSES", (0.9, 1.1))
+    monkeypatch.setattr(faults, "DELAYS_MS", (10.0,))
+    monkeypatch.setattr(faults, "GAINS", (0.9,))
     subject = trial("squat").subject
     markers = recorded("squat").markers.select(tuple(m.name for m in subject.markers))
     one = Followed("squat", markers, subject, plates("squat"), motion("squat"))
     rows = list(fault_rows(one, bounded=True))
     assert [row.name for row in rows if not row.passed] == []
     assert sum(row.bounded for row in rows) >= 8
+    found = one.judged()
+    monkeypatch.setattr(Followed, "judged", lambda *_, **__: found)
     assert not any(row.bounded for row in fault_rows(one, bounded=False))
 
 
