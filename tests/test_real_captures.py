@@ -1,5 +1,6 @@
 """Public captures through scaling and reconstruction with default settings, against what others found."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -14,15 +15,27 @@ from benchmarks.references import (
     worst_side,
 )
 from mbkf.io.capture import read_capture
+from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_opensim import opensim_table
 from mbkf.io.storage import read_storage
+from mbkf.io.subject import Subject
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.scale import scale
 
 pytestmark = pytest.mark.slow
+
+
+@cache
+def scaled(trial: Path, mass_kg: float, static: Path | None, forces: Path | None) -> tuple[Capture, Subject]:
+    """A trial and its person, scaled from the static, or from the trial itself where there is none."""
+    capture = read_capture(trial, forces=forces)
+    subject = scale(
+        None if static is None else read_capture(static), [] if static else [capture], mass_kg=mass_kg
+    )
+    return capture, subject
 
 
 def followed(
@@ -32,11 +45,8 @@ def followed(
     forces: Path | None = None,
     **settings,
 ) -> Reconstruction:
-    """The trial of a person scaled from the static, or from the trial itself where there is none; causally followed."""
-    capture = read_capture(trial, forces=forces)
-    subject = scale(
-        None if static is None else read_capture(static), [] if static else [capture], mass_kg=mass_kg
-    )
+    """The trial of a person, causally followed."""
+    capture, subject = scaled(trial, mass_kg, static, forces)
     chosen = ReconstructSettings(**{"smooth": False, **settings})
     return reconstruct(capture, subject, settings=chosen)
 

@@ -40,6 +40,9 @@ KEYS = {
 }  # fmt: skip
 """Keys of summary.json, as the contract of the command line names them."""
 
+KINEMATIC = ("--filter", "kinematic")
+"""For what no filter touches: the quickest."""
+
 
 @pytest.fixture
 def reconstruct(person, tmp_path):
@@ -193,7 +196,9 @@ def test_a_second_run_replaces_the_first_and_keeps_other_files(person, causal):
 
 
 def test_hidden_markers_are_predicted(person, causal):
-    summary = read_summary(causal(person.trial, "--hide", "RASI,RELB@0.2:0.4", "--hide", "C7@0:0.1"))
+    summary = read_summary(
+        causal(person.trial, *KINEMATIC, "--hide", "RASI,RELB@0.2:0.4", "--hide", "C7@0:0.1")
+    )
     assert summary["missing_fraction"] == pytest.approx((2 * 21 + 11) / (60 * 36))
     assert 0.0 < summary["hidden_marker_rms_mm"] <= summary["hidden_marker_max_mm"] < 20.0
 
@@ -222,8 +227,8 @@ def test_what_a_withheld_plate_read_is_estimated(person, causal, plain):
 
 
 def test_forces_of_another_file(person, causal, plain):
-    plates = read_reconstruction(plain())
-    out = causal(person.trial_trc, "--forces", person.forces)
+    plates = read_reconstruction(plain("kinematic"))
+    out = causal(person.trial_trc, *KINEMATIC, "--forces", person.forces)
     np.testing.assert_allclose(read_reconstruction(out).foot_wrench, plates.foot_wrench, atol=0.05)
     assert read_summary(out)["valid_frames"] == 60
 
@@ -253,7 +258,7 @@ def test_without_forces_torques_are_estimated_with_larger_spreads(person, causal
 
 
 def test_kept_markers_are_those_of_the_subject(person, causal):
-    summary = read_summary(causal(person.trial, "--keep-markers"))
+    summary = read_summary(causal(person.trial, *KINEMATIC, "--keep-markers"))
     assert summary["settings"]["correct_markers"] is False
     assert summary["marker_rms_mm"] < 2.0
 
@@ -274,7 +279,7 @@ def test_ignored_markers_stand_in_summary_and_table(causal, tmp_path, capsys):
     made = made_capture(20)
     names = tuple(n if i < 30 else f"X{i}" for i, n in enumerate(made.markers.names))
     write_c3d(replace(made, markers=replace(made.markers, names=names)), tmp_path / "mixed.c3d")
-    summary = json.loads((causal(tmp_path / "mixed.c3d") / "summary.json").read_text())
+    summary = json.loads((causal(tmp_path / "mixed.c3d", *KINEMATIC) / "summary.json").read_text())
     assert list(summary["markers_ignored"]) == [f"X{i}" for i in range(30, 36)]
     assert (summary["markers_used"], summary["markers_explained"]) == (30, pytest.approx(30 / 36))
     assert "X30, X31, X32, X33, X34, X35" in " ".join(capsys.readouterr().out.split())

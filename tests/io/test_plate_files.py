@@ -64,9 +64,16 @@ def plate_file(path, kind, turn=TURNS[0], processor=INTEL, whole=False, moments=
     return force, moment, pressed, loaded
 
 
-@pytest.mark.parametrize(("processor", "whole"), list(product((INTEL, DEC, MIPS), (False, True))))
-@pytest.mark.parametrize("turn", TURNS)
-@pytest.mark.parametrize("kind", sorted(CHANNELS_OF_TYPE))
+TYPES = sorted(CHANNELS_OF_TYPE)
+FORMS = [*product((INTEL, DEC, MIPS), (False, True))]
+PLATES = [
+    *((kind, turn, INTEL, False) for kind in TYPES for turn in TURNS),
+    *((kind, TURNS[2], *form) for kind in TYPES for form in FORMS[1:]),
+]
+"""Each type of plate in each direction, and in each form of numbers."""
+
+
+@pytest.mark.parametrize(("kind", "turn", "processor", "whole"), PLATES)
 def test_the_wrench_is_the_one_that_was_applied(tmp_path, kind, turn, processor, whole):
     path = tmp_path / "plate.c3d"
     force, moment, pressed, loaded = plate_file(path, kind, turn, processor, whole)

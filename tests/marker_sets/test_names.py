@@ -157,10 +157,14 @@ def test_probabilities_add_up_to_one_at_most_and_fall(name):
             assert not place.landmark or body.landmark(place.landmark).segment == place.segment
 
 
-@pytest.mark.parametrize("name", protocol_names())
-@pytest.mark.parametrize(
-    "form", ["Subject01:{}", "S07_{}", "Skeleton 1:{}", "Q_{}", "{}_study", "AB12_2024_{}"]
-)
+FORMS = ("Subject01:{}", "S07_{}", "Skeleton 1:{}", "Q_{}", "{}_study", "AB12_2024_{}")
+FORMS_OF_PROTOCOLS = [
+    (name, FORMS[(k + shift) % len(FORMS)]) for k, name in enumerate(protocol_names()) for shift in (0, 3)
+]
+"""Each protocol in two forms, each form in a third of the protocols."""
+
+
+@pytest.mark.parametrize(("name", "form"), FORMS_OF_PROTOCOLS)
 def test_what_all_names_carry_changes_nothing(name, form):
     names = [marker.name for marker in load_protocol(name).markers]
     plain, dressed = read_names(names), read_names([form.format(one) for one in names])

@@ -26,10 +26,11 @@ def test_what_a_maker_writes_is_read(tmp_path, name):
     assert difference(FORMS[name], tmp_path) <= 1.0
 
 
-@pytest.mark.parametrize("name", FORMS)
-def test_a_wrong_sign_would_be_seen(tmp_path, name):
-    from dataclasses import replace
+ONE_OF_EACH_CONTENT = {(form.without, form.tolerance): name for name, form in FORMS.items()}.values()
 
+
+@pytest.mark.parametrize("name", ONE_OF_EACH_CONTENT)
+def test_a_wrong_sign_would_be_seen(tmp_path, name):
     form = FORMS[name]
     first = replace(form.sensors[0], force=-form.sensors[0].force)
     assert difference(replace(form, sensors=(first, *form.sensors[1:])), tmp_path) > 1.0
@@ -91,8 +92,6 @@ def test_hdf5_files_of_other_programs_are_refused(tmp_path):
 
 
 def test_opals_with_one_label_stay_apart(tmp_path):
-    from dataclasses import replace
-
     same = (TWO[0], replace(TWO[1], name="left_foot"))
     assert [one.name for one in read_apdm(makers_binary.apdm(same, tmp_path))] == [
         "left_foot",
