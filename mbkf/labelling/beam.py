@@ -96,10 +96,23 @@ def extended_beam(
         for one in beam:
             parent = one.rotations[..., cluster.parent, :, :]
             origin = one.origins_m[..., cluster.parent, :] + parent @ cluster.origin_m
-            free = np.setdiff1d(np.arange(count), one.labels)
-            grown += [one.extended(cluster, way) for way in placings(cluster, origin, parent, free)]
-        beam = best_bodies(grown, LIMBS if cluster.ends else BEAM)
+            free = np.ones(count, dtype=bool)
+            free[one.labels[one.labels != HIDDEN]] = False
+            grown += [(one, way) for way in placings(cluster, origin, parent, np.flatnonzero(free))]
+        beam = _best_grown(cluster, grown, LIMBS if cluster.ends else BEAM)
     return beam
+
+
+def _best_grown(cluster: Cluster, grown: list[tuple[PartialBody, Placing]], most: int) -> list[PartialBody]:
+    """The best bodies with one more segment, each labelling once; only these are made."""
+    found: dict[tuple[bytes, bytes], PartialBody] = {}
+    for one, way in sorted(grown, key=lambda pair: -(pair[0].score + pair[1].score)):
+        labels = one.labels.tobytes(), way.labels.tobytes()
+        if labels not in found:
+            found[labels] = one.extended(cluster, way)
+            if len(found) == most:
+                break
+    return list(found.values())
 
 
 def best_bodies(bodies: list[PartialBody], most: int) -> list[PartialBody]:

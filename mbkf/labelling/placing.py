@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices
@@ -50,7 +51,7 @@ def placings(
     rotations = _rotations(cluster.local_m, arms, parent)
     if not len(rotations):
         return [nothing]
-    matched, squared = match(np.einsum("nij,kj->nki", rotations, cluster.local_m), arms)
+    matched, squared = match(cluster.local_m @ rotations.transpose(0, 2, 1), arms)
     turn = np.arccos(np.clip((np.einsum("nij,ij->n", rotations, parent) - 1.0) / 2.0, -1.0, 1.0))
     unusual = np.minimum((turn / cluster.posture_sd_rad) ** 2, MOST_POSTURE)
     score = match_log_ratios(cluster, matched, squared) - unusual
@@ -62,8 +63,8 @@ def placings(
 
 def match(placed: Array, points_m: Array) -> tuple[Indices, Array]:
     """Nearest points of placed clusters (n, k, 3), as :func:`nearest`."""
-    away = placed[:, :, None] - points_m
-    return nearest(np.einsum("nkpi,nkpi->nkp", away, away), MATCH_M)
+    squared = cdist(placed.reshape(-1, 3), points_m, "sqeuclidean")
+    return nearest(squared.reshape(*placed.shape[:2], len(points_m)), MATCH_M)
 
 
 def nearest(squared: Array, reach_m: float | Array) -> tuple[Indices, Array]:
@@ -104,13 +105,14 @@ def _rotations(local_m: Array, arms: Array, parent: Array) -> Array:
     marker, point = np.nonzero(reach)
     if not len(marker):
         return np.zeros((0, 3, 3))
-    single = arms[point][:, :, None] * local_m[marker][:, None]
-    one, two = np.triu_indices(len(marker), 1)
-    between = np.linalg.norm(local_m[marker[one]] - local_m[marker[two]], axis=1)
-    misfit = np.abs(between - np.linalg.norm(arms[point[one]] - arms[point[two]], axis=1))
-    fits = (marker[one] != marker[two]) & (point[one] != point[two]) & (misfit <= LENGTH_TOLERANCE_M)
-    pairs = np.flatnonzero(fits)
+    own, found = local_m[marker], arms[point]
+    single = found[:, :, None] * own[:, None]
+    between = cdist(own, own)
+    misfit = np.abs(between - cdist(found, found))
+    # markers come in order, so that each pair is found once
+    fits = (misfit <= LENGTH_TOLERANCE_M) & (marker[:, None] < marker) & (point[:, None] != point)
+    one, two = np.nonzero(fits)
     # Long distances determine the orientation better, and are matched less often by chance.
-    pairs = pairs[np.argsort(misfit[pairs] - 0.1 * between[pairs])[:_MOST]]
+    pairs = np.argsort(misfit[one, two] - 0.1 * between[one, two])[:_MOST]
     both = single[one[pairs]] + single[two[pairs]]
     return nearest_rotations(np.concatenate([both, single[:_MOST]]) + _POSTURE_PULL * parent)

@@ -16,14 +16,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import lapack
 
 from mbkf.conventions import Array
 from mbkf.marker_sets.places import WornPlaces
 from mbkf.model.human import HumanModel
-from mbkf.model.scale_derivatives import origin_derivatives
+from mbkf.numerics.kalman import Information
 from mbkf.scaling.problem import FACTOR_BOUNDS
-from mbkf.sensors.marker_sensor import MarkerReading, MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerInformation, MarkerReading
+from mbkf.sensors.posture import prior_information
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.scaled_markers import ScaledMarkers
 
 OFF_BODY = 0.03
 """Prior share ε of points that are not on the body."""
@@ -82,25 +85,21 @@ class CloudProblem:
     ) -> None:
         self.places, self.points_m = places, points_m
         with np.errstate(divide="ignore"):
-            self._log_weight = np.log(weight)
+            self._log_weight = np.log((1.0 - OFF_BODY) * weight)
         body = places.body
         self.model = model or HumanModel(body, np.ones(len(body.scale_factors)), body.reference_mass_kg)
-        joints = [self.model.joint(segment.name).joint_id for segment in body.segments]
-        self._moves = self.model.supports[joints].astype(float)[:, None]
-        self._carried = (np.arange(len(joints))[:, None] == places.segment_index).astype(float)
         self._posture = PostureSensor(self.model)
-        self._reference = MarkerSensor(self.model, places.segments, places.position_m)
-        self._scale = np.array([body.segment(name).scale_matrix for name in places.segments])
+        self._usual = self._posture.weights(1.0, np.zeros(self.model.nv, dtype=bool))
+        self._components = ScaledMarkers(self.model, places.segments, places.position_m)
+        self._reference = self._components.sensor
         count = len(body.scale_factors)
         covariance = PROPORTION_SD**2 * np.eye(count) + SIZE_SD**2 * np.ones((count, count))
         self._factor_information = np.linalg.inv(covariance)
 
-    def sized(self, factors: Array) -> MarkerSensor:
-        """The components on a body of these scale factors (K,)."""
-        body = self.places.body
-        model = HumanModel(body, factors, body.reference_mass_kg)
-        local = np.einsum("cak,k->ca", self._scale, factors) * self.places.position_m
-        return MarkerSensor(model, self.places.segments, local)
+    def reading(self, q: Array, factors: Array) -> tuple[MarkerReading, Array]:
+        """Components at q (nq,) on a body of scale factors (K,), and their derivatives (C, 3, K) by these."""
+        found = self._components.reading(q[None], factors)
+        return found.markers[0], found.by_factors[0]
 
     def shares(
         self, positions_m: Array, width_m: float, points_m: Array | None = None
@@ -123,10 +122,12 @@ class CloudProblem:
         by_component[4] = by_component[3] * (positions_m**2).sum(axis=1) - 1.5 * np.log(
             2.0 * np.pi * variance
         )
+        if self._log_weight.ndim == 1:
+            by_component[4] += self._log_weight
         density = by_point @ by_component
-        density += self._log_weight
+        if self._log_weight.ndim == 2:
+            density += self._log_weight
         np.exp(density, out=density)
-        density *= 1.0 - OFF_BODY
         total = density.sum(axis=1) + OFF_BODY / ROOM_M3
         density /= total[:, None]
         return density, float(np.log(total).sum())
@@ -134,7 +135,7 @@ class CloudProblem:
     def priors(self, q: Array, factors: Array) -> float:
         """Logarithm of the priors of a pose (nq,) and scale factors (K,), up to a constant."""
         turned, _ = self._posture.deviation(q)
-        deviation = turned[self._posture.dofs] / self._posture.sd
+        deviation = turned * self._usual
         excess = self._limit_excess(turned) / LIMIT_SD_RAD
         rotation = self.model.placements(q)[0][self.model.root.joint_id]
         tilt = rotation[:2, 2] / TILT_RAD
@@ -176,13 +177,12 @@ class CloudProblem:
         """
         q, factors = start.q, start.factors
         for width in widths_m:
-            sensor = self.sized(factors)
-            reading = sensor.reading(q)
+            reading, by_factors = self.reading(q, factors)
             shares, _ = self.shares(reading.positions_m, width)
-            step = self._step(reading, shares, self.points_m, width, q, (sensor, factors))
+            step = self._step(reading, shares, self.points_m, width, q, (by_factors, factors))
             q = self.model.integrate(q, step[: self.model.nv])
             factors = np.clip(factors + step[self.model.nv :], *FACTOR_BOUNDS)
-        return self._judged(q, factors, widths_m[-1], self.sized(factors).positions(q))
+        return self._judged(q, factors, widths_m[-1], self.reading(q, factors)[0].positions_m)
 
     def _judged(self, q: Array, factors: Array, width_m: float, positions_m: Array) -> PosedBody:
         shares, likelihood = self.shares(positions_m, width_m)
@@ -200,12 +200,15 @@ class CloudProblem:
         points_m: Array,
         width_m: float,
         q: Array,
-        sized: tuple[MarkerSensor, Array] | None = None,
+        sized: tuple[Array, Array] | None = None,
     ) -> Array:
         """M-step: one Gauss–Newton step of the pose (nv,), and of the scale factors behind it where they are free."""
         matrix, gradient = self.equations(reading, shares, points_m, width_m, q, sized)
         matrix[np.diag_indices(len(matrix))] += _DAMPING * np.trace(matrix) / len(matrix)
-        return np.asarray(np.linalg.solve(matrix, gradient))
+        _, step, failed = lapack.dposv(matrix, gradient)
+        if failed:
+            raise np.linalg.LinAlgError("the matrix of the step is not positive definite")
+        return np.asarray(step)
 
     def equations(
         self,
@@ -214,7 +217,7 @@ class CloudProblem:
         points_m: Array,
         width_m: float,
         q: Array,
-        sized: tuple[MarkerSensor, Array] | None = None,
+        sized: tuple[Array, Array] | None = None,
     ) -> tuple[Array, Array]:
         """Gauss–Newton matrix (n, n) of the M-step and gradient (n,) of log-likelihood and priors, uphill.
 
@@ -224,90 +227,55 @@ class CloudProblem:
             points_m: (N, 3) the points.
             width_m: The width s.
             q: (nq,) the pose.
-            sized: The components' sensor and scale factors (K,) where those are free: then n = nv + K, else nv.
+            sized: The components' derivatives (C, 3, K) by the scale factors, and these (K,), where they are free: then
+                n = nv + K, else nv.
         """
         total = shares.sum(axis=0)
         active = total > LEAST_SHARE
-        pull = total[active] / (width_m**2 + self.places.sd_m[active] ** 2)
-        target = (shares[:, active].T @ points_m) / total[active, None]
-        positions = reading.positions_m[active]
-        errors = pull[:, None] * (target - positions)
-        model = self.model if sized is None else sized[0].model
-        nv, size = self.model.nv, self.model.nv + (0 if sized is None else len(sized[1]))
-        matrix, gradient = np.zeros((size, size)), np.zeros(size)
-        moved = model.spatial_jacobian(q) * self._moves
-        carried = self._carried[:, active]
-        flat = moved.reshape(-1, nv)
-        matrix[:nv, :nv] = flat.T @ (_inertia(carried, positions, pull) @ moved).reshape(-1, nv)
-        gradient[:nv] = (carried @ _wrenches(positions, errors[:, :, None])[..., 0]).ravel() @ flat
-        if sized is not None:
-            sensor, factors = sized
-            by_factors = self._by_factors(sensor, q, active)
-            weighted = by_factors * pull[:, None, None]
-            wrenches = _wrenches(positions, weighted).reshape(len(pull), -1)
-            across = flat.T @ (carried @ wrenches).reshape(len(flat), -1)
-            matrix[:nv, nv:], matrix[nv:, :nv] = across, across.T
-            by_factors = by_factors.reshape(-1, size - nv)
-            matrix[nv:, nv:] = by_factors.T @ weighted.reshape(-1, size - nv)
-            gradient[nv:] = errors.ravel() @ by_factors
-        prior = self._posture.reading(q)
-        rows = prior.jacobian / self._posture.sd[:, None]
-        matrix[:nv, :nv] += rows.T @ rows
-        gradient[:nv] -= rows.T @ (prior.deviation / self._posture.sd)
+        total = np.where(active, total, 1.0)
+        pull = total / (width_m**2 + self.places.sd_m**2)
+        away = (shares.T @ points_m) / total[:, None] - reading.positions_m
+        known = MarkerInformation(self._reference, pull**-0.5).at(reading, away, active)
         turned, by_pose = self._posture.deviation(q)
+        known += prior_information(self._posture, turned, by_pose, self._usual)
         excess = self._limit_excess(turned)
-        passed = by_pose[excess != 0.0] / LIMIT_SD_RAD
-        matrix[:nv, :nv] += passed.T @ passed
-        gradient[:nv] -= passed.T @ (excess[excess != 0.0] / LIMIT_SD_RAD)
-        self._upright(q, matrix, gradient)
-        if sized is not None:
-            matrix[nv:, nv:] += self._factor_information
-            gradient[nv:] -= self._factor_information @ (factors - 1.0)
-        return matrix, gradient
+        if excess.any():
+            known += prior_information(self._posture, excess, by_pose, (excess != 0.0) / LIMIT_SD_RAD)
+        self._upright(reading, known)
+        if sized is None:
+            return known.matrix, known.vector
+        return self._with_factors(
+            known, reading.only(active), pull[active], away[active], (sized[0][active], sized[1])
+        )
 
-    def _upright(self, q: Array, matrix: Array, gradient: Array) -> None:
+    def _upright(self, reading: MarkerReading, known: Information) -> None:
         """Adds the prior of an upright pelvis: the horizontal part of its axis, R z."""
-        rotation = self.model.placements(q)[0][self.model.root.joint_id]
-        turns = np.arange(self.model.nv)[self.model.root.v][3:]
+        turns = slice(self.model.root.v.start + 3, self.model.root.v.stop)
+        rotation = reading.spatial[3:, turns]
         # δ(R z) = R (δθ × z), δθ × z = (δθ_y, −δθ_x, 0)
         jacobian = np.column_stack([-rotation[:2, 1], rotation[:2, 0], np.zeros(2)]) / TILT_RAD
-        matrix[np.ix_(turns, turns)] += jacobian.T @ jacobian
-        gradient[turns] -= jacobian.T @ (rotation[:2, 2] / TILT_RAD)
+        known.matrix[turns, turns] += jacobian.T @ jacobian
+        known.vector[turns] -= jacobian.T @ (rotation[:2, 2] / TILT_RAD)
 
-    def _by_factors(self, sensor: MarkerSensor, q: Array, active: Array) -> Array:
-        """(A, 3, K) derivatives of the active components by the scale factors."""
-        rotations, _ = sensor.model.placements(q)
-        joints = sensor.joint_ids[active]
-        own = self._scale[active] * self.places.position_m[active, :, None]
-        return np.asarray(origin_derivatives(sensor.model, rotations)[joints] + rotations[joints] @ own)
+    def _with_factors(
+        self, known: Information, reading: MarkerReading, pull: Array, away: Array, sized: tuple[Array, Array]
+    ) -> tuple[Array, Array]:
+        """Equations of pose and scale factors.
 
-
-def _inertia(carried: Array, positions_m: Array, masses: Array) -> Array:
-    """(S, 6, 6) Σ m XᵀX of the points on every segment, X = [1, −p×] taking its spatial velocity to a point's.
-
-    Args:
-        carried: (S, A) 1 where a segment carries a point.
-        positions_m: (A, 3) points p in the world.
-        masses: (A,) their masses m.
-    """
-    first = masses[:, None] * positions_m
-    second = first[:, :, None] * positions_m[:, None]
-    mass, first, second = carried @ masses, carried @ first, carried @ second.reshape(-1, 9)
-    second = second.reshape(-1, 3, 3)
-    matrix, one = np.zeros((len(carried), 6, 6)), np.eye(3)
-    matrix[:, :3, :3] = mass[:, None, None] * one
-    matrix[:, 3:, :3] = _wrenches(first, np.broadcast_to(one, (len(carried), 3, 3)))[:, 3:]
-    matrix[:, :3, 3:] = np.swapaxes(matrix[:, 3:, :3], 1, 2)
-    matrix[:, 3:, 3:] = np.trace(second, axis1=1, axis2=2)[:, None, None] * one - second
-    return matrix
-
-
-def _wrenches(positions_m: Array, forces: Array) -> Array:
-    """(A, 6, n) XᵀF = [F, p × F] of forces F (A, 3, n) at points p (A, 3), about the world's origin."""
-    found = np.empty((len(forces), 6, forces.shape[2]))
-    found[:, :3] = forces
-    p = positions_m[:, :, None]
-    for k in range(3):
-        after, last = (k + 1) % 3, (k + 2) % 3
-        found[:, 3 + k] = p[:, after] * forces[:, last] - p[:, last] * forces[:, after]
-    return found
+        Args:
+            known: Those of the pose alone.
+            reading: The A components that count.
+            pull: (A,) their weights.
+            away: (A, 3) their distances from their points.
+            sized: Their derivatives (A, 3, K) by the scale factors, and these (K,).
+        """
+        nv, size = len(known.vector), len(known.vector) + len(sized[1])
+        by_factors = sized[0].reshape(-1, size - nv)
+        weighted = by_factors * np.repeat(pull, 3)[:, None]
+        matrix, gradient = np.empty((size, size)), np.empty(size)
+        matrix[:nv, :nv], gradient[:nv] = known.matrix, known.vector
+        across = reading.jacobian.reshape(-1, nv).T @ weighted
+        matrix[:nv, nv:], matrix[nv:, :nv] = across, across.T
+        matrix[nv:, nv:] = by_factors.T @ weighted + self._factor_information
+        gradient[nv:] = away.ravel() @ weighted - self._factor_information @ (sized[1] - 1.0)
+        return matrix, gradient

@@ -144,7 +144,7 @@ def _all_shares(places: WornPlaces, found: _Candidate) -> Array:
 
 def _log_ratio_per_point(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
     problem = CloudProblem(places, points_m, equipped_weight(places, equipment))
-    _, likelihood = problem.shares(problem.sized(body.factors).positions(body.q), FINE_M[-1])
+    _, likelihood = problem.shares(problem.reading(body.q, body.factors)[0].positions_m, FINE_M[-1])
     box = float(np.prod(np.maximum(np.ptp(points_m, axis=0), THINNEST_M)))
     return likelihood / len(points_m) + math.log(box)
 

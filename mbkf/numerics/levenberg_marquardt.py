@@ -7,11 +7,14 @@ the cost grows linearly with the number of frames.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
+import scipy.linalg
+from scipy.linalg import blas
 
 from mbkf.conventions import Array
 
@@ -44,19 +47,38 @@ class ArrowEquations:
         return self.corner - np.einsum("tni,tnj->ij", self.border, eliminated, optimize=True)
 
     def step(self, damping: float) -> tuple[Array, Array]:
-        """Damped step: (N, n) of the frames and (s,) of the shared unknowns (Marquardt's diagonal scaling)."""
-        frames, corner = self.frames.copy(), self.corner.copy()
-        diagonal = np.arange(frames.shape[1])
-        frames[:, diagonal, diagonal] *= 1.0 + damping
-        corner[np.diag_indices_from(corner)] *= 1.0 + damping
-        count = self.border.shape[2]
-        right = np.concatenate([self.border, self.frame_gradient[:, :, None]], axis=2)
-        eliminated: Array = np.linalg.solve(frames, right)
-        flat = self.border.reshape(frames.shape[0] * frames.shape[1], count)
-        reduced = corner - flat.T @ eliminated[:, :, :-1].reshape(flat.shape)
-        gradient = self.corner_gradient - flat.T @ eliminated[:, :, -1].reshape(-1)
-        shared = np.asarray(np.linalg.solve(reduced, -gradient), dtype=np.float64) if count else np.zeros(0)
-        return -eliminated[:, :, -1] - eliminated[:, :, :-1] @ shared, shared
+        """Damped step: (N, n) of the frames and (s,) of the shared unknowns (Marquardt's diagonal scaling).
+
+        Raises:
+            numpy.linalg.LinAlgError: The damped matrix is not positive definite, or not finite.
+        """
+        count = len(self.corner)
+        roots = np.linalg.cholesky(_damped(self.frames, damping))
+        # of each frame L Lᵀ: (L⁻¹ [border, gradient])ᵀ, whose products are those of the Schur complement
+        half = np.empty((len(roots), count + 1, roots.shape[1]))
+        half[:, :count], half[:, count] = self.border.transpose(0, 2, 1), self.frame_gradient
+        for root, right in zip(roots, half, strict=True):
+            right[:] = blas.dtrsm(1.0, root.T, right.T, trans_a=1).T
+        shared = np.zeros(count)
+        if count:
+            flat = half.transpose(1, 0, 2).reshape(count + 1, -1)
+            product = flat @ flat.T
+            reduced = _damped(self.corner, damping) - product[:count, :count]
+            factor = scipy.linalg.cho_factor(reduced, lower=True, overwrite_a=True, check_finite=False)
+            gradient = self.corner_gradient - product[:count, count]
+            shared = -scipy.linalg.cho_solve(factor, gradient, check_finite=False)
+        own = half[:, count] + shared @ half[:, :count]
+        for root, right in zip(roots, own, strict=True):
+            right[:] = blas.dtrsv(root.T, right)
+        return -own, shared
+
+
+def _damped(matrices: Array, damping: float) -> Array:
+    """Matrices (…, n, n) with their diagonals enlarged by a share."""
+    damped = matrices.copy()
+    diagonal = np.arange(matrices.shape[-1])
+    damped[..., diagonal, diagonal] *= 1.0 + damping
+    return damped
 
 
 @dataclass(frozen=True)
@@ -81,6 +103,9 @@ def minimise(
 ) -> Solution[State]:
     """Minimises a sum of squares over frames and shared unknowns (Marquardt 1963, with Nielsen's damping rule).
 
+    A step to a cost that is not finite is rejected. A search that starts at one, or whose shortest step ends at one,
+    has not converged.
+
     Args:
         start: First state.
         linearise: Gauss–Newton equations at a state.
@@ -92,16 +117,17 @@ def minimise(
     """
     state, damping, growth = start, 1e-4, 2.0
     equations = linearise(state)
+    if not math.isfinite(equations.cost):
+        return Solution(state, equations, 0, False)
     for iteration in range(1, max_iterations + 1):
         while True:
-            own, shared = equations.step(damping)
-            candidate = move(state, own, shared)
-            gain = equations.cost - cost(candidate)
+            candidate, found = _moved(state, equations, damping, cost, move)
+            gain = equations.cost - found
             if gain > 0:
                 break
             damping, growth = damping * growth, growth * 2.0
             if damping > 1e10:
-                return Solution(state, equations, iteration, True)
+                return Solution(state, equations, iteration, math.isfinite(found))
         before = equations.cost
         state, damping, growth = candidate, max(damping / 3.0, 1e-10), 2.0
         equations = linearise(state)
@@ -110,3 +136,18 @@ def minimise(
         if gain <= tolerance * before:
             return Solution(state, equations, iteration, True)
     return Solution(state, equations, max_iterations, False)
+
+
+def _moved(
+    state: State,
+    equations: ArrowEquations,
+    damping: float,
+    cost: Callable[[State], float],
+    move: Callable[[State, Array, Array], State],
+) -> tuple[State, float]:
+    """The state after a damped step and its cost, NaN where the equations have no solution."""
+    try:
+        candidate = move(state, *equations.step(damping))
+    except np.linalg.LinAlgError:
+        return state, math.nan
+    return candidate, cost(candidate)

@@ -92,13 +92,18 @@ class MarkerSensor:
         self.local_m = read_only(local_m)
         if self.local_m.shape != (len(self.segments), 3):
             raise ShapeError("local_m", f"({len(self.segments)}, 3)", self.local_m.shape)
-        self.joint_ids = np.array([model.joint(name).joint_id for name in self.segments], dtype=int)
+        of_segment = {name: model.joint(name).joint_id for name in dict.fromkeys(self.segments)}
+        self.joint_ids = np.array([of_segment[name] for name in self.segments], dtype=int)
         self._moves = model.supports[self.joint_ids].astype(float)
-        places = np.zeros((len(self.segments), len(model.supports), 4))
-        places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
-        self._places = places.reshape(len(self.segments), 4 * len(model.supports))
         tree = model.tree
         self.compiled = None if tree is None else CompiledMarkers(tree, self.joint_ids, self.local_m)
+
+    @cached_property
+    def _places(self) -> Array:
+        """(M, 4 J) weights of the joints' axes and origins in each marker's position."""
+        places = np.zeros((len(self.segments), len(self.model.supports), 4))
+        places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
+        return places.reshape(len(self.segments), -1)
 
     def positions(self, q: Array) -> Array:
         """(M, 3) world positions at the configuration q (nq,)."""
@@ -109,10 +114,13 @@ class MarkerSensor:
     def reading(self, q: Array) -> MarkerReading:
         """Positions and their Jacobian at q (nq,)."""
         if self.compiled is not None:
-            positions, jacobian = self.compiled.places(q)
-            return MarkerReading(positions, jacobian, self._moves)
+            return self.reading_of(*self.compiled.places(q))
         frames, jacobian = self.model.frames_and_jacobian(q)
-        return MarkerReading(self._places @ frames, jacobian, self._moves)
+        return self.reading_of(self._places @ frames, jacobian)
+
+    def reading_of(self, positions_m: Array, spatial: Array) -> MarkerReading:
+        """A reading of known positions (M, 3) and spatial Jacobian (6, nv) of the body."""
+        return MarkerReading(positions_m, spatial, self._moves)
 
 
 class JacobianInformation:

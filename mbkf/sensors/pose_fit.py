@@ -9,7 +9,8 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
 from mbkf.numerics.rotations import nearest_rotations, quaternion_of
-from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerInformation, MarkerSensor
+from mbkf.sensors.posture import prior_information
 from mbkf.sensors.posture_sensor import PostureSensor
 
 _TRUNK_WEIGHT = 0.05
@@ -126,27 +127,21 @@ def fit_pose(
         max_iterations: Largest number of iterations.
     """
     seen = np.asarray(~np.isnan(measured_m).any(axis=1))
-    weights = 1.0 / noise_m[seen]
-    target = measured_m[seen]
+    target, noise = measured_m[seen], noise_m[seen, None]
     nv = sensor.model.nv
+    markers, weights = MarkerInformation(sensor, noise_m), posture.weights(1.0, np.zeros(nv, dtype=bool))
 
     def cost(q: Array) -> float:
-        errors = (sensor.positions(q)[seen] - target) * weights[:, None]
-        deviation = posture.reading(q).deviation / posture.sd
-        return float((errors**2).sum() + (deviation**2).sum())
+        errors = (sensor.positions(q)[seen] - target) / noise
+        deviation = posture.deviation(q)[0] * weights
+        return float((errors**2).sum() + deviation @ deviation)
 
     def linearise(q: Array) -> ArrowEquations:
-        reading, prior = sensor.reading(q), posture.reading(q)
-        errors = ((reading.positions_m[seen] - target) * weights[:, None]).ravel()
-        jacobian = (reading.jacobian[seen] * weights[:, None, None]).reshape(len(errors), nv)
-        deviation = prior.deviation / posture.sd
-        pull = prior.jacobian / posture.sd[:, None]
-        hessian = jacobian.T @ jacobian + pull.T @ pull + 1e-9 * np.eye(nv)
-        gradient = jacobian.T @ errors + pull.T @ deviation
-        total = float((errors**2).sum() + (deviation**2).sum())
-        return ArrowEquations(
-            hessian[None], np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient[None], np.zeros(0), total
-        )
+        reading = sensor.reading(q)
+        known = markers.at(reading, measured_m - reading.positions_m, seen)
+        known += prior_information(posture, *posture.deviation(q), weights)
+        hessian, gradient = known.matrix[None] + 1e-9 * np.eye(nv), -known.vector[None]
+        return ArrowEquations(hessian, np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient, np.zeros(0), cost(q))
 
     solution = minimise(
         start,

@@ -27,6 +27,22 @@ def posture_information(deviation: Array, jacobian: Array, weights: Array) -> In
     return Information(scaled.T @ scaled, -(deviation * weights) @ scaled, 0.0, 0)
 
 
+def prior_information(
+    sensor: PostureSensor, deviation: Array, jacobian: Array, weights: Array
+) -> Information:
+    """:func:`posture_information` by compiled code, where the sensor's body has some; equal up to rounding.
+
+    Args:
+        sensor: Deviation of every joint from neutral.
+        deviation: (nv,) its deviation, rad.
+        jacobian: (nv, nv) its derivative.
+        weights: (nv,) 1/sd of each dof's reading.
+    """
+    if sensor.tree is None:
+        return posture_information(deviation, jacobian, weights)
+    return Information(*sensor.tree.posture_information(deviation, jacobian, weights), 0.0, 0)
+
+
 @dataclass(frozen=True)
 class PostureSettings:
     """Weight of the posture prior.
@@ -75,7 +91,9 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
     def prepare(self, state: State, memory: None) -> PreparedPosture:
         """The prior's information while every segment is observed."""
         deviation, jacobian = self.sensor.deviation(state.q)
-        return PreparedPosture(deviation, jacobian, self._information(deviation, jacobian, self._weights))
+        return PreparedPosture(
+            deviation, jacobian, prior_information(self.sensor, deviation, jacobian, self._weights)
+        )
 
     def linearise(self, at: OperatingPoint[State, PreparedPosture], decision: Notes) -> Information:
         """Information on the configuration, of less weight for unobserved joints."""
@@ -84,9 +102,4 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
             return prepared.information
         weights = self._weights.copy()
         weights[unobserved] *= self.settings.unseen_posture
-        return self._information(prepared.deviation, prepared.jacobian, weights)
-
-    def _information(self, deviation: Array, jacobian: Array, weights: Array) -> Information:
-        if (tree := self.sensor.tree) is None:
-            return posture_information(deviation, jacobian, weights)
-        return Information(*tree.posture_information(deviation, jacobian, weights), 0.0, 0)
+        return prior_information(self.sensor, prepared.deviation, prepared.jacobian, weights)

@@ -8,6 +8,7 @@ from mbkf.marker_sets.equipment import EQUIPMENTS, equipped_weight
 from mbkf.marker_sets.places import worn_places
 from mbkf.marker_sets.posed_cloud import OFF_BODY, ROOM_M3, CloudProblem
 from mbkf.model.body_file import load_body
+from mbkf.model.human import HumanModel
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.marker_sets.worn import standing
 
@@ -27,6 +28,14 @@ def factors_of(rng):
     return 0.95 + rng.uniform(-0.05, 0.05, len(PLACES.body.scale_factors))
 
 
+def sized(factors):
+    """The components on a body of these scale factors."""
+    body = PLACES.body
+    scale = np.array([body.segment(name).scale_matrix for name in PLACES.segments])
+    model = HumanModel(body, factors, body.reference_mass_kg)
+    return MarkerSensor(model, PLACES.segments, (scale @ factors) * PLACES.position_m)
+
+
 @pytest.fixture(scope="module")
 def scene():
     """A problem with points around a body of known pose and factors."""
@@ -34,18 +43,18 @@ def scene():
     blank = CloudProblem(PLACES, np.zeros((1, 3)), WEIGHT)
     q, factors = upright(blank, rng), factors_of(rng)
     chosen = rng.choice(len(WEIGHT), 40, replace=False, p=WEIGHT)
-    points = blank.sized(factors).positions(q)[chosen] + rng.normal(0.0, 0.01, (40, 3))
+    points = sized(factors).positions(q)[chosen] + rng.normal(0.0, 0.01, (40, 3))
     return CloudProblem(PLACES, points, WEIGHT), q, factors
 
 
 def objective(problem, q, factors, width_m=WIDTH_M):
-    _, likelihood = problem.shares(problem.sized(factors).positions(q), width_m)
+    _, likelihood = problem.shares(sized(factors).positions(q), width_m)
     return likelihood + problem.priors(q, factors)
 
 
 def test_shares_are_probabilities(scene):
     problem, q, factors = scene
-    positions = problem.sized(factors).positions(q)
+    positions = sized(factors).positions(q)
     for width in (0.2, 0.05, 0.01):
         shares, _ = problem.shares(positions, width)
         assert (shares >= 0.0).all()
@@ -56,7 +65,7 @@ def test_shares_are_probabilities(scene):
 
 def test_the_likelihood_is_that_of_the_mixture(scene):
     problem, q, factors = scene
-    positions = problem.sized(factors).positions(q)
+    positions = sized(factors).positions(q)
     shares, found = problem.shares(positions, WIDTH_M)
     sd = np.sqrt(WIDTH_M**2 + PLACES.sd_m**2)
     density = np.array(
@@ -77,10 +86,9 @@ def test_the_gradient_is_that_of_the_objective_by_pose_and_factors(scene, seed):
     rng = np.random.default_rng(seed)
     q = problem.model.integrate(true, rng.normal(0.0, 0.03, problem.model.nv))
     factors = factors_of(rng)
-    sensor = problem.sized(factors)
-    reading = sensor.reading(q)
+    reading, by_factors = problem.reading(q, factors)
     shares, _ = problem.shares(reading.positions_m, WIDTH_M)
-    matrix, gradient = problem.equations(reading, shares, problem.points_m, WIDTH_M, q, (sensor, factors))
+    matrix, gradient = problem.equations(reading, shares, problem.points_m, WIDTH_M, q, (by_factors, factors))
     step, nv = 1e-5, problem.model.nv
 
     def at(d):
@@ -163,5 +171,5 @@ def test_a_body_is_found_where_its_own_markers_are():
     names = [segment.name for segment in PLACES.body.segments]
     right = [names[s] == worn.segments[n] for s, n in zip(index, worn.markers.names, strict=True)]
     assert np.mean(right) >= 0.9
-    nearest = MarkerSensor(problem.sized(body.factors).model, ["pelvis"], np.zeros((1, 3))).positions(body.q)
+    nearest = MarkerSensor(sized(body.factors).model, ["pelvis"], np.zeros((1, 3))).positions(body.q)
     assert np.linalg.norm(nearest[0, :2] - np.median(worn.points_m[:, :2], axis=0)) < 0.2

@@ -191,3 +191,30 @@ def test_the_schur_complement_gives_the_spread_of_the_shared_parameters():
         normal.append((solution.state[1] - shared) / sd)
     variance = (np.array(normal) ** 2).mean()  # 120 degrees of freedom: 1 ± 0.13
     assert 0.65 < variance < 1.4
+
+
+@pytest.mark.parametrize("beyond", [np.nan, np.inf])
+def test_a_step_to_a_cost_that_is_not_finite_is_rejected(beyond):
+    """The first steps of √x − 2 from 40 end at x < 0, where the root is not a number."""
+
+    def residuals(x):
+        return np.where(x < 0.0, beyond, np.sqrt(np.maximum(x, 0.0)) - 2.0)
+
+    solution = solve(residuals, lambda x: np.diag(0.5 / np.sqrt(x)), (40.0,), tolerance=1e-12)
+    assert solution.converged
+    np.testing.assert_allclose(solution.state, [4.0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("cost", [np.nan, np.inf])
+def test_a_start_of_a_cost_that_is_not_finite_has_not_converged(cost):
+    solution = solve(lambda x: x + cost, lambda x: np.eye(1), (1.0,))
+    assert not solution.converged
+    np.testing.assert_array_equal(solution.state, [1.0])
+
+
+@pytest.mark.parametrize("slope", [1.0, np.nan, 0.0])
+def test_a_search_without_a_finite_step_has_not_converged(slope):
+    """Everywhere but at the start the cost is not a number, or no step follows from the derivatives."""
+    solution = solve(lambda x: np.where(x == 3.0, 1.0, np.nan), lambda x: np.full((1, 1), slope), (3.0,))
+    assert not solution.converged
+    np.testing.assert_array_equal(solution.state, [3.0])
