@@ -76,6 +76,10 @@ ELSEWHERE = {
     "scaling.standing.UprightPosture.linearised": "scaling/test_standing.py",
     "sensors.block.Rows.jacobian": "block_contract.py jacobian",
     "sensors.pose_fit.segment_by_segment": "sensors/test_pose_fit.py",
+    "sensors.posture.prior_information": "sensors/test_posture.py posture_information",
+    "sensors.marker_sensor.MarkerSensor.reading_of": "sensors/test_scaled_markers.py reading",
+    "sensors.scaled_markers.ScaledMarkers.reading": "sensors/test_scaled_markers.py",
+    "sensors.scaled_markers.ScaledReading.by_factors": "sensors/test_scaled_markers.py",
 }
 """What holds no derivative of its own or is algebra: the test file that checks each, and the name it has
 there where that is another."""

@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 import scipy.linalg
-from scipy.linalg import blas
+from scipy.linalg import lapack
 
 from mbkf.conventions import Array
 
@@ -52,25 +52,21 @@ class ArrowEquations:
         Raises:
             numpy.linalg.LinAlgError: The damped matrix is not positive definite, or not finite.
         """
-        count = len(self.corner)
+        count, (frames, own, _) = len(self.corner), self.frames.shape
         roots = np.linalg.cholesky(_damped(self.frames, damping))
-        # of each frame L Lᵀ: (L⁻¹ [border, gradient])ᵀ, whose products are those of the Schur complement
-        half = np.empty((len(roots), count + 1, roots.shape[1]))
-        half[:, :count], half[:, count] = self.border.transpose(0, 2, 1), self.frame_gradient
-        for root, right in zip(roots, half, strict=True):
-            right[:] = blas.dtrsm(1.0, root.T, right.T, trans_a=1).T
+        inverses = np.array([lapack.dtrtri(root.T)[0].T for root in roots])
+        # L⁻¹ [border, gradient] of each frame L Lᵀ, whose products are those of the Schur complement
+        half = inverses @ np.concatenate([self.border, self.frame_gradient[:, :, None]], axis=2)
         shared = np.zeros(count)
         if count:
-            flat = half.transpose(1, 0, 2).reshape(count + 1, -1)
-            product = flat @ flat.T
+            flat = half.reshape(frames * own, count + 1)
+            product = flat.T @ flat
             reduced = _damped(self.corner, damping) - product[:count, :count]
             factor = scipy.linalg.cho_factor(reduced, lower=True, overwrite_a=True, check_finite=False)
             gradient = self.corner_gradient - product[:count, count]
             shared = -scipy.linalg.cho_solve(factor, gradient, check_finite=False)
-        own = half[:, count] + shared @ half[:, :count]
-        for root, right in zip(roots, own, strict=True):
-            right[:] = blas.dtrsv(root.T, right)
-        return -own, shared
+        step = inverses.swapaxes(1, 2) @ (half @ np.append(shared, 1.0))[:, :, None]
+        return -step[:, :, 0], shared
 
 
 def _damped(matrices: Array, damping: float) -> Array:

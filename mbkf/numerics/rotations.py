@@ -24,13 +24,13 @@ def skew(vectors: Array) -> Array:
     return matrices
 
 
-def quaternion_of(rotation: Array) -> Array:
-    """(4,) unit quaternion (x, y, z, w) of a rotation matrix (3, 3), its largest component positive.
+def quaternion_of(rotations: Array) -> Array:
+    """(…, 4) unit quaternions (x, y, z, w) of rotation matrices (…, 3, 3), their largest components positive.
 
     All products q_i q_j of its components are sums of the matrix's elements; the row of the largest q_i is that of most
     digits (S. W. Shepperd, J. Guidance and Control 1, 1978, 223-224).
     """
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.moveaxis(rotations, (-2, -1), (0, 1))
     trace = xx + yy + zz
     products = (  # 4 q_i q_j
         (1.0 - trace + 2.0 * xx, xy + yx, xz + zx, zy - yz),
@@ -38,9 +38,9 @@ def quaternion_of(rotation: Array) -> Array:
         (xz + zx, yz + zy, 1.0 - trace + 2.0 * zz, yx - xy),
         (zy - yz, xz - zx, yx - xy, 1.0 + trace),
     )
-    largest = int(np.argmax((xx, yy, zz, trace)))
-    row = np.array(products[largest])
-    return np.asarray(row / np.sqrt(sum(row**2)))
+    largest = np.argmax((xx, yy, zz, trace), axis=0)
+    rows = np.moveaxis(np.choose(largest, np.array(products)), 0, -1)
+    return np.asarray(rows / np.linalg.norm(rows, axis=-1, keepdims=True))
 
 
 def nearest_rotations(matrices: Array) -> Array:

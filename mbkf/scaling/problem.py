@@ -21,12 +21,12 @@ from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
-from mbkf.model.scale_derivatives import origin_derivatives
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
 from mbkf.scaling.standing import UprightPosture
 from mbkf.scaling.usual_posture import UsualPosture
-from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerInformation, MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.scaled_markers import ScaledMarkers, ScaledReading
 
 FACTOR_BOUNDS = (0.5, 1.6)
 """Range of a scale factor; one that ends here is reported as an active bound."""
@@ -173,10 +173,12 @@ class ScalingProblem:
         self.segments = tuple(m.segment for m in markers)
         self.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
-        self.posture = PostureSensor(HumanModel.scaled(body=body))
+        model = HumanModel.scaled(body=body)
+        self.posture = PostureSensor(model)
         self._usual = UsualPosture(self.posture, standing_sd_rad)
-        self._upright = UprightPosture(self.posture.model)
-        self._built: tuple[ScalingState, MarkerSensor] | None = None
+        self._upright = UprightPosture(model)
+        self._worn = ScaledMarkers(model, self.segments, self.reference_m)
+        self._information = MarkerInformation(self._worn.sensor, self.noise_m)
 
     def start(self, poses: Array) -> ScalingState:
         """State with the prior's factors and offsets."""
@@ -198,20 +200,13 @@ class ScalingProblem:
         return np.asarray(self.reference_m[:, :, None] * self._segment_scale)
 
     def sensor(self, state: ScalingState) -> MarkerSensor:
-        """The markers on the body of a state.
-
-        The last one is cached: a state of accepted cost is linearised next, and building a body takes milliseconds.
-        """
-        if self._built is None or self._built[0] is not state:
-            model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
-            local_m = self.local_m(state.factors, state.offsets_m)
-            self._built = state, MarkerSensor(model, self.segments, local_m)
-        return self._built[1]
+        """The markers on the body of a state."""
+        model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
+        return MarkerSensor(model, self.segments, self.local_m(state.factors, state.offsets_m))
 
     def errors_m(self, state: ScalingState) -> Array:
         """(N, M, 3) modelled minus measured, NaN where a marker is missing."""
-        sensor = self.sensor(state)
-        return np.array([sensor.positions(q) for q in state.poses]) - self.measured_m
+        return self._worn.places(state.poses, state.factors, state.offsets_m) - self.measured_m
 
     def outliers(self, state: ScalingState, limit_m: float) -> BoolArray:
         """(N, M) samples further than a limit from the fitted body, and further than their noise explains."""
@@ -274,32 +269,35 @@ class ScalingProblem:
 
     def linearise(self, state: ScalingState) -> ArrowEquations:
         """Gauss–Newton equations; frames border only factors and offsets."""
-        shown = self._shown(state)
-        count, markers = len(self.body.scale_factors), len(self.markers)
-        by_pose = shown.by_pose.reshape(len(state.poses), 3 * markers, -1)
-        by_factors = shown.by_factors.reshape(len(state.poses), 3 * markers, count)
-        errors = shown.errors.reshape(len(state.poses), 3 * markers, 1)
-        across = np.swapaxes(by_pose, 1, 2)
-        nv = by_pose.shape[2]
-        frames, frame_gradient = across @ by_pose + 1e-9 * np.eye(nv), (across @ errors)[:, :, 0]
+        reading = self._worn.reading(state.poses, state.factors, state.offsets_m)
+        shown = self._shown(reading)
+        frames, frame_gradient = self._frame_equations(state, reading)
+        count, (poses, markers, _, nv) = len(self.body.scale_factors), shown.by_pose.shape
+        across = shown.by_pose.reshape(poses, -1, nv).swapaxes(1, 2)
+        border = np.empty((poses, nv, count + 3 * markers))
+        border[:, :, :count] = across @ shown.by_factors.reshape(poses, -1, count)
         # a marker's offset moves that marker only: (nv, 3) (3, 3) for each, not (nv, 3 M) (3 M, 3 M)
-        by_offset = np.swapaxes(shown.by_pose, 2, 3) @ shown.axes
-        border = np.concatenate(
-            [across @ by_factors, np.swapaxes(by_offset, 1, 2).reshape(len(state.poses), nv, -1)], axis=2
-        )
-        for t, q in enumerate(state.poses):
-            usual, pull = self._usual.equations(q, bool(self.weights.standing[t]))
-            frames[t] += self.weights.posture[t] * usual
-            frame_gradient[t] += self.weights.posture[t] * pull
-            upright = self.weights.upright[t]
-            if upright:
-                tilt, by_tilt = self._upright.linearised(self.posture.model, q)
-                frames[t] += upright * (by_tilt.T @ by_tilt)
-                frame_gradient[t] += upright * (by_tilt.T @ tilt)
+        by_offset = shown.by_pose.swapaxes(2, 3) @ shown.axes
+        border[:, :, count:].reshape(poses, nv, markers, 3)[:] = by_offset.swapaxes(1, 2)
         corner, corner_gradient = self._prior_equations(state)
         self._add_shared(shown, corner, corner_gradient)
-        cost = float((errors**2).sum()) + self._shared_cost(state) + self._posture_cost(state)
+        cost = float((shown.errors**2).sum()) + self._shared_cost(state) + self._posture_cost(state)
         return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, cost)
+
+    def _frame_equations(self, state: ScalingState, reading: ScaledReading) -> tuple[Array, Array]:
+        """(N, nv, nv) matrices and (N, nv) gradients of the poses."""
+        nv, weights = self.posture.model.nv, self.weights
+        frames, gradient = np.empty((len(state.poses), nv, nv)), np.empty((len(state.poses), nv))
+        for t, (q, seen) in enumerate(zip(state.poses, reading.markers, strict=True)):
+            known = self._information.at(seen, self.measured_m[t] - seen.positions_m, self.seen[t])
+            usual, pull = self._usual.equations(q, bool(weights.standing[t]))
+            frames[t] = weights.markers[t] * known.matrix + weights.posture[t] * usual + 1e-9 * np.eye(nv)
+            gradient[t] = weights.posture[t] * pull - weights.markers[t] * known.vector
+            if weights.upright[t]:
+                tilt, by_tilt = self._upright.linearised(self.posture.model, q)
+                frames[t] += weights.upright[t] * (by_tilt.T @ by_tilt)
+                gradient[t] += weights.upright[t] * (by_tilt.T @ tilt)
+        return frames, gradient
 
     def _add_shared(self, shown: _Shown, corner: Array, gradient: Array) -> None:
         """Adds the markers' terms of factors and offsets: the offsets of two markers have no term in common."""
@@ -326,23 +324,15 @@ class ScalingProblem:
         gradient[count:] = self.prior.offset_precision @ (state.offsets_m - self.prior.offsets_m).ravel()
         return corner, gradient
 
-    def _shown(self, state: ScalingState) -> _Shown:
+    def _shown(self, reading: ScaledReading) -> _Shown:
         """Whitened errors of all frames and their derivatives."""
-        sensor = self.sensor(state)
-        model = sensor.model
-        readings = [sensor.reading(q) for q in state.poses]
-        rotations = np.array([model.placements(q)[0] for q in state.poses])
-        axes = rotations[:, sensor.joint_ids]
-        origins = origin_derivatives(model, rotations)[:, sensor.joint_ids]
-        errors = np.array([one.positions_m for one in readings]) - self.measured_m
         whiten = np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
-        by_pose = np.array([one.jacobian for one in readings])
+        errors = np.array([one.positions_m for one in reading.markers]) - self.measured_m
+        by_pose = np.array([one.jacobian for one in reading.markers])
         by_pose *= whiten[..., None]
-        by_factors = origins + axes @ self.places_by_factors()
-        by_factors *= whiten[..., None]
         return _Shown(
             np.where(self.seen[..., None], errors, 0.0) * whiten,
             by_pose,
-            by_factors,
-            axes * whiten[..., None],
+            reading.by_factors * whiten[..., None],
+            reading.axes * whiten[..., None],
         )

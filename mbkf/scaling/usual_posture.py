@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.sensors.posture_sensor import PostureReading, PostureSensor
+from mbkf.sensors.posture import prior_information
+from mbkf.sensors.posture_sensor import PostureSensor
 
 ON_PURPOSE = 2.0
 """Standard deviations of straight standing beyond which a joint is held elsewhere on purpose (c)."""
@@ -34,23 +35,25 @@ class UsualPosture:
 
     def cost(self, q: Array, standing: bool) -> float:
         """The term at q (nq,)."""
-        deviation = self.sensor.reading(q).deviation
+        deviation = self.sensor.deviation(q)[0][self.sensor.dofs]
         if not standing:
             return float(((deviation / self.sensor.sd) ** 2).sum())
         return float(ON_PURPOSE**2 * np.log1p(self._squared(deviation) / ON_PURPOSE**2).sum())
 
     def equations(self, q: Array, standing: bool) -> tuple[Array, Array]:
         """Gauss–Newton matrix (nv, nv) and half the gradient (nv,) of the cost at q (nq,)."""
-        reading = self.sensor.reading(q)
-        pull = reading.jacobian.T * self._precision(reading, standing)
-        return pull @ reading.jacobian, pull @ reading.deviation
+        deviation, jacobian = self.sensor.deviation(q)
+        weights = np.zeros(len(deviation))
+        weights[self.sensor.dofs] = 1.0 / self._sd(deviation[self.sensor.dofs], standing)
+        known = prior_information(self.sensor, deviation, jacobian, weights)
+        return known.matrix, -known.vector
 
-    def _precision(self, reading: PostureReading, standing: bool) -> Array:
-        """(n,) weight of each dof's squared rotation."""
+    def _sd(self, deviation: Array, standing: bool) -> Array:
+        """(n,) spread of each dof's rotation, in standing the greater the further the joint is from neutral."""
         if not standing:
-            return np.asarray(self.sensor.sd**-2.0)
-        held = 1.0 / (1.0 + self._squared(reading.deviation) / ON_PURPOSE**2)
-        return np.asarray((held @ self._joints) / self.standing_sd**2)
+            return self.sensor.sd
+        held = np.sqrt(1.0 + self._squared(deviation) / ON_PURPOSE**2)
+        return np.asarray((held @ self._joints) * self.standing_sd)
 
     def _squared(self, deviation: Array) -> Array:
         """(joints,) s of each joint."""

@@ -75,12 +75,10 @@ def _with_root(sensor: MarkerSensor, target_m: Array, weight: Array) -> Array:
     centre_from, centre_to = (counted * placed).sum(axis=1) / whole, (counted * target_m).sum(axis=1) / whole
     away = counted * (target_m - centre_to[:, None])
     attitude = np.swapaxes(away, 1, 2) @ (placed - centre_from[:, None])
-    poses, root = np.tile(neutral, (len(target_m), 1)), sensor.model.root.q
-    for q, turn, start, end in zip(
-        poses, nearest_rotations(attitude + 1e-9 * np.eye(3)), centre_from, centre_to, strict=True
-    ):
-        q[root][:3] = end - turn @ start
-        q[root][3:] = quaternion_of(turn)
+    poses, root = np.tile(neutral, (len(target_m), 1)), sensor.model.root.q.start
+    turns = nearest_rotations(attitude + 1e-9 * np.eye(3))
+    poses[:, root : root + 3] = centre_to - (turns @ centre_from[:, :, None])[..., 0]
+    poses[:, root + 3 : root + 7] = quaternion_of(turns)
     return poses
 
 
@@ -93,18 +91,28 @@ def _with_limbs(sensor: MarkerSensor, target_m: Array, seen: BoolArray, poses: A
         seen: (N, M) measured markers.
         poses: (N, nq) poses whose joints are neutral.
     """
-    names = np.array(sensor.segments)
-    for joint in sensor.model.joints.values():
-        if joint.kind != "spherical":
-            continue
-        own = np.flatnonzero(names == joint.segment)
-        placed = [sensor.model.placements(q) for q in poses]
-        parents = np.array([rotations[joint.joint_id] for rotations, _ in placed])
-        origins = np.array([places[joint.joint_id] for _, places in placed])
-        arms = np.where(seen[:, own, None], target_m[:, own] - origins[:, None], 0.0)
+    model, names = sensor.model, np.array(sensor.segments)
+    joints = [joint for joint in model.joints.values() if joint.kind == "spherical"]
+    placed = [model.placements(q) for q in poses]
+    axes, origins = np.array([one for one, _ in placed]), np.array([one for _, one in placed])
+    turns = []
+    for joint in joints:
+        own, parents, origin = (
+            np.flatnonzero(names == joint.segment),
+            axes[:, joint.joint_id],
+            origins[:, joint.joint_id],
+        )
+        arms = np.where(seen[:, own, None], target_m[:, own] - origin[:, None], 0.0)
         attitude = np.swapaxes(arms, 1, 2) @ sensor.local_m[own] + _NEUTRAL_PULL * parents
-        turns = np.swapaxes(parents, 1, 2) @ nearest_rotations(attitude)
-        poses[:, joint.q] = [quaternion_of(turn) for turn in turns]
+        turned = nearest_rotations(attitude)
+        turns.append(np.swapaxes(parents, 1, 2) @ turned)
+        beyond = model.supports[:, joint.v.start]
+        turn = (turned @ np.swapaxes(parents, 1, 2))[:, None]
+        axes[:, beyond] = turn @ axes[:, beyond]
+        away = origins[:, beyond] - origin[:, None]
+        origins[:, beyond] = origin[:, None] + (turn @ away[..., None])[..., 0]
+    for joint, found in zip(joints, quaternion_of(np.reshape(turns, (-1, len(poses), 3, 3))), strict=True):
+        poses[:, joint.q] = found
     return poses
 
 

@@ -90,4 +90,4 @@ class ScaledMarkers:
     ) -> Array:
         local = self._by_scale @ factors + offsets_m
         origins = frames[:, :, 3] + moved
-        return np.asarray(origins[:, self._joints] + (axes @ local[:, :, None])[..., 0])
+        return np.ascontiguousarray(origins[:, self._joints] + (axes @ local[:, :, None])[..., 0])

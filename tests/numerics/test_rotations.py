@@ -65,6 +65,13 @@ def test_the_quaternion_of_a_matrix_turns_as_the_matrix_does(direction, angle):
     assert quaternion[np.abs(quaternion).argmax()] > 0.0
 
 
+def test_many_matrices_have_the_quaternions_of_each():
+    matrices = Rotation.random(24, rng=np.random.default_rng(1)).as_matrix().reshape(6, 4, 3, 3)
+    each = [[quaternion_of(one) for one in row] for row in matrices]
+    np.testing.assert_allclose(quaternion_of(matrices), each, rtol=0, atol=1e-15)
+    assert quaternion_of(matrices[:0]).shape == (0, 4, 4)
+
+
 @pytest.mark.parametrize("axis", range(3))
 def test_half_a_turn_about_an_axis_has_no_scalar_part(axis):
     matrix = 2.0 * np.diag(np.eye(3)[axis]) - np.eye(3)
