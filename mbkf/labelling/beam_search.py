@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.beam import PartialBody, Placing, distinct_rows, extended_beam
-from mbkf.labelling.placing import match, match_log_ratios, placings
+from mbkf.labelling.placing import FramePlacings, match, match_log_ratios
 from mbkf.labelling.seeds import Seeds
 from mbkf.labelling.skeleton import Cluster
 from mbkf.numerics.rotations import nearest_rotations
@@ -30,7 +29,7 @@ def search_bodies(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds, most
         most: Greatest number of bodies.
     """
     roots = _roots(body, points_m, seeds)
-    return extended_beam(roots, body[1:], len(points_m), partial(placings, points_m))[:most]
+    return extended_beam(roots, body[1:], len(points_m), FramePlacings(points_m))[:most]
 
 
 def search_limb(points_m: Array, whole: PartialBody, limb: Sequence[Cluster], most: int) -> list[PartialBody]:
@@ -45,7 +44,7 @@ def search_limb(points_m: Array, whole: PartialBody, limb: Sequence[Cluster], mo
     labels = whole.labels.copy()
     labels[np.concatenate([cluster.markers for cluster in limb])] = HIDDEN
     beam = [replace(whole, labels=labels, score=0.0)]
-    return extended_beam(beam, limb, len(points_m), partial(placings, points_m))[:most]
+    return extended_beam(beam, limb, len(points_m), FramePlacings(points_m))[:most]
 
 
 def _roots(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds) -> list[PartialBody]:

@@ -32,6 +32,30 @@ _POSTURE_PULL = 2e-3
 _MOST = 80
 
 
+class FramePlacings:
+    """:func:`placings` among the points of one frame, each found once: the bodies of a beam share most of them."""
+
+    def __init__(self, points_m: Array) -> None:
+        """Args: points_m: (N, 3) all points."""
+        self._points_m = points_m
+        self._found: dict[tuple[int, bytes, bytes, bytes], list[Placing]] = {}
+
+    def __call__(self, cluster: Cluster, origin_m: Array, parent: Array, free: Indices) -> list[Placing]:
+        """Args: as :func:`placings`."""
+        near = _within_reach(self._points_m, cluster, origin_m, free)
+        key = cluster.number, origin_m.tobytes(), parent.tobytes(), near.tobytes()
+        if key not in self._found:
+            self._found[key] = placings(self._points_m, cluster, origin_m, parent, near)
+        return self._found[key]
+
+
+def _within_reach(points_m: Array, cluster: Cluster, origin_m: Array, free: Indices) -> Indices:
+    """The free points that a marker of a segment may be, however the segment is turned about its joint."""
+    reach = np.linalg.norm(cluster.local_m, axis=1).max(initial=0.0) + max(MATCH_M, JOINT_TOLERANCE_M)
+    away = points_m[free] - origin_m
+    return np.asarray(free[np.einsum("ni,ni->n", away, away) <= (reach + 1e-9) ** 2])
+
+
 def placings(
     points_m: Array, cluster: Cluster, origin_m: Array, parent: Array, free: Indices
 ) -> list[Placing]:

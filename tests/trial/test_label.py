@@ -22,9 +22,14 @@ def walk():
     return made.trial, made.raw, made.subject
 
 
-def test_shuffled_points_with_ghosts(walk):
-    trial, raw, subject = walk
-    found = label(raw, subject)
+@pytest.fixture(scope="module")
+def labelled(walk):
+    _, raw, subject = walk
+    return label(raw, subject)
+
+
+def test_shuffled_points_with_ghosts(walk, labelled):
+    (trial, raw, subject), found = walk, labelled
     result = score(found.markers, trial.markers, subject)
     assert result.correct_fraction >= 0.998
     assert result.wrong_fraction <= 0.001
@@ -39,9 +44,9 @@ def test_shuffled_points_with_ghosts(walk):
     assert numbers["first_labelled_frame"] == 0
 
 
-def test_labelled_capture_can_be_reconstructed(walk):
+def test_labelled_capture_can_be_reconstructed(walk, labelled):
     _, raw, subject = walk
-    named = labelled_capture(raw, label(raw, subject))
+    named = labelled_capture(raw, labelled)
     assert named.plates == raw.plates
     result = reconstruct(named, subject, settings=ReconstructSettings(filter="kinematic", smooth=False))
     distance = np.linalg.norm(result.predicted_m - result.measured_m, axis=2)
