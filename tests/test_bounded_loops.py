@@ -17,6 +17,7 @@ BOUNDS = {
     "sensors/observability.py observability_matrix": "n blocks",
     "sensors/supports/sharing.py shares": "each round leaves out one of the parts",
     "labelling/keyframes.py _differing": "count frames",
+    "imu/checks.py _mean_force": "each round doubles the reach",
     "imu/segment_course.py configurations": "goes up a tree, which check_body has checked",
     "synthesis/cameras.py ghosts": "the time grows by two frames or more",
     "model/body_checks.py _tree": "each round shortens the chain",
