@@ -41,6 +41,7 @@ class Case:
         writes: Files that it would write into a folder, where it does not run.
         edits: Inputs that it may replace, since it is there to change them.
         serves: Whether it serves the laboratory's page until it is stopped.
+        running: Files in the folder that tell of a run from its start on, so that they are of it also where it fails.
         rewrites: Files of an input folder that are its own output, which it wrote there without ``--out``.
     """
 
@@ -54,6 +55,7 @@ class Case:
     writes: tuple[str, ...] = ()
     edits: tuple[str, ...] = ()
     serves: bool = False
+    running: tuple[str, ...] = ()
     rewrites: tuple[str, ...] = ()
 
     @cached_property
@@ -110,7 +112,7 @@ CASES = (
     Case("batch", "{listed} --workers 1 --out {OUT}", "new"),
     Case("replay", "{trc} --forces {forces} --to natnet --port 0 --wait 0.1 --speed 100", runs=False),
     Case("live", "--from file:{trc} --subject {subject} --forces {forces} --preset {preset} --speed 0 --out {OUT}",
-         "new"),
+         "new", running=("live.json",)),
     Case("live", "--from file:{trial} --mass 70 --protocol {protocol} --speed 0 --out {OUT}", "new", runs=False,
          writes=LIVE),
     Case("live", "--recover {result}", runs=False),

@@ -133,7 +133,7 @@ def failed(
             shutil.copytree(old, out)
             end = run.run(Call(words, world, fault=made.fault(place, int(at), lasting)))
             when = f"write {at} of {counted.writes} {'and all later ones' if lasting else 'alone'}"
-            yield Fault(case, when, wrong_end(end, old, out), end.refused)
+            yield Fault(case, when, wrong_end(end, old, out, case.running), end.refused)
     shutil.rmtree(place)
 
 
@@ -156,7 +156,7 @@ def filled(run: Commands, case: Case, world: Path, place: Path, kilobytes: int) 
         return Fault(case, f"{kilobytes} KB", wrong_end(end, empty, out), end.refused)
 
 
-def wrong_end(end: Ending, old: Path, now: Path) -> str:
+def wrong_end(end: Ending, old: Path, now: Path, running: Sequence[str] = ()) -> str:
     """The reason why a command on a full disk did not end as it must; "" where it did.
 
     A run that ends well has written whole files. One that fails says so in a sentence, and all is as it was.
@@ -165,6 +165,7 @@ def wrong_end(end: Ending, old: Path, now: Path) -> str:
         end: Its end.
         old: A copy of what was there before.
         now: What is there.
+        running: Names of files that tell of the newest run, also where it fails.
     """
     left, half = list(leftovers(now)), torn_files(now)
     if end.unclean and not (end.code == 1 and "Traceback" not in end.err and _partial(end)):
@@ -176,7 +177,8 @@ def wrong_end(end: Ending, old: Path, now: Path) -> str:
     if half:
         return f"half: {half[0]}"
     if end.code == USER_ERROR:
-        lost = changed(digests(old), now)
+        kept = {name: was for name, was in digests(old).items() if Path(name).name not in running}
+        lost = changed(kept, now)
         return f"refused, but {lost[0]} is another" if lost else ""
     return ""
 

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import new_file
 from mbkf.io.files_read import opened
+from mbkf.io.leftovers import errors_name
 from mbkf.io.plain_data import parse_json
 
 FORMAT = "mbkf frame log"
@@ -68,11 +69,16 @@ class FrameLogWriter:
         self.dtype = dtype
         self._size = dtype.itemsize + _CHECKSUM.itemsize
         first = {"format": FORMAT, "format_version": FORMAT_VERSION, "dtype": _plain(dtype), "header": header}
-        self._file = new_file(self.path)
         line = (json.dumps(first) + "\n").encode()
         line += _line_checksum(line)
         self._start = len(line)
-        self._write(line)
+        self._file = new_file(self.path)
+        try:
+            with errors_name(self.path):
+                self._write(line)
+        except BaseException:
+            self._file.close()
+            raise
 
     def append(self, rows: NDArray) -> None:
         """Writes rows; they are with the operating system when this returns.

@@ -57,8 +57,9 @@ def unfinished(
                 path.mkdir()
             else:
                 path.touch(exist_ok=False)
-        except OSError:
+        except OSError as error:
             _held.discard(path)
+            _name_target(error, path, target if shown is None else shown)
             raise
         with ExitStack() as lock:
             with suppress(FileNotFoundError):
@@ -75,6 +76,16 @@ def unfinished(
                 _remove(path)
                 _held.discard(path)
             return
+
+
+@contextmanager
+def errors_name(target: Path) -> Iterator[None]:
+    """Lets errors of writing in the block name the file that is written, where the system names none."""
+    try:
+        yield
+    except OSError as error:
+        _name_target(error, target, target)
+        raise
 
 
 def _name_target(error: OSError, path: Path, target: Path) -> None:

@@ -51,6 +51,16 @@ def test_errors_name_the_target(error, named, tmp_path):
         assert raised.value.filename2 is None
 
 
+def test_an_unfinished_file_that_cannot_be_made_is_an_error_of_the_target(tmp_path):
+    for folder in (False, True):
+        with (
+            pytest.raises(FileNotFoundError) as raised,
+            unfinished(tmp_path / "none" / "a.c3d", folder=folder),
+        ):
+            pass
+        assert raised.value.filename == str(tmp_path / "none" / "a.c3d")
+
+
 def test_an_error_names_the_place_that_is_to_be_shown(tmp_path):
     with (
         pytest.raises(OSError, match="full") as raised,

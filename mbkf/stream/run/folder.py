@@ -47,9 +47,12 @@ def open_log(
         earlier = (folder / f"{LOG_FOLDER}-{k}" for k in range(1, 1_000_000))
         place.rename(next(path for path in earlier if not path.exists()))
     kept = LiveStream(stream.trial, stream.rate_hz, stream.start_time_s, stream.plates, stream.sensors)
-    log = LiveLog(place, kept, rows, dict(settings), list(names))
-    write_subject(subject, place / SUBJECT_FILE)
-    return log
+    try:
+        write_subject(subject, place / SUBJECT_FILE)
+        return LiveLog(place, kept, rows, dict(settings), list(names))
+    except BaseException:
+        drop_log(folder)  # a log without a run
+        raise
 
 
 class WrittenResults(NamedTuple):

@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from mbkf.io.atomic import new_file
+from mbkf.io.atomic import replacing
+from mbkf.io.leftovers import errors_name
 from mbkf.io.utf8 import encoded
 from mbkf.stream.receiving.receiver import FrameCounts
 
@@ -34,8 +35,8 @@ class ReportFile:
             OSError: It cannot be written.
         """
         self._path, self._lock = path, threading.Lock()
-        with new_file(path) as file:
-            file.write(b"{}\n".ljust(ROOM_BYTES))
+        with replacing(path) as partial:
+            partial.write_bytes(b"{}\n".ljust(ROOM_BYTES))
 
     def write(self, report: Mapping[str, object], last: bool = False) -> None:
         """Writes the report over the one before; the last one gives the rest of the room back.
@@ -45,7 +46,7 @@ class ReportFile:
         """
         text = json.dumps(_finite(report), indent=2, allow_nan=False, ensure_ascii=False)
         content = encoded(text + "\n")
-        with self._lock, self._path.open("r+b") as file:
+        with self._lock, errors_name(self._path), self._path.open("r+b") as file:
             file.write(content if last else content.ljust(ROOM_BYTES))
             if last:
                 file.truncate()

@@ -129,7 +129,7 @@ class LiveSession:
             OSError: Nothing can be written to the folder.
         """
         setup, note, statistics = self.setup, self._events.note, RunStatistics()
-        report, failure = ReportFile(self._folder / LIVE_FILE), Failure()
+        failure = Failure()
         log = open_log(
             self._folder,
             setup.stream,
@@ -138,6 +138,12 @@ class LiveSession:
             setup.names,
             self._subject,
         )
+        try:
+            report = ReportFile(self._folder / LIVE_FILE)
+        except BaseException:
+            log.close()
+            drop_log(self._folder)
+            raise
 
         def report_running() -> None:
             with suppress(OSError):  # the disk is full; the next one may have room
@@ -184,7 +190,11 @@ class LiveSession:
             frames_not_written=unlogged,
             log=str(kept) if kept.is_dir() else None,
         )
-        report.write(plain, last=True)
+        try:
+            report.write(plain, last=True)
+        except OSError:
+            if problem is None:  # else the disk is the problem, of which the command speaks
+                raise
         return LiveOutcome(plain, written.summary, problem, failure.cause)
 
     def _close_source(self) -> None:

@@ -94,7 +94,11 @@ class LiveLog:
             "sensors": list(stream.sensors),
         }
         self.frames = FrameLogWriter(folder / FRAMES_FILE, frames, header)
-        self.plates = FrameLogWriter(folder / PLATES_FILE, plates_dtype(len(stream.plates)), {})
+        try:
+            self.plates = FrameLogWriter(folder / PLATES_FILE, plates_dtype(len(stream.plates)), {})
+        except BaseException:
+            self.frames.close()
+            raise
 
     def close(self) -> None:
         """No more rows."""

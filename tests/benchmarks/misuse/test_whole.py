@@ -1,5 +1,7 @@
 """Torn files of each format are told from whole ones."""
 
+import json
+
 import pytest
 
 from benchmarks.misuse.calls import Ending
@@ -58,6 +60,15 @@ def test_a_full_disk_leaves_the_old_whole_and_is_told(tmp_path, code, err, now, 
         (tmp_path / place / "a.toml").write_text(text)
     end = Ending(code, "", err.format(now=tmp_path / "now"), 1.0, 0.0)
     assert (wrong_end(end, tmp_path / "old", tmp_path / "now") == "") is right
+
+
+def test_a_file_that_tells_of_the_newest_run_may_be_another(tmp_path):
+    for place in ("old", "now"):
+        (tmp_path / place / "new").mkdir(parents=True)
+        (tmp_path / place / "new" / "live.json").write_text(json.dumps(place))
+    end = Ending(2, "", f"mbkf: error: {tmp_path / 'now'}: No space left on device", 1.0, 0.0)
+    assert wrong_end(end, tmp_path / "old", tmp_path / "now") == "refused, but new/live.json is another"
+    assert wrong_end(end, tmp_path / "old", tmp_path / "now", ("live.json",)) == ""
 
 
 def test_a_file_that_a_killed_command_left_unfinished_is_not_torn(tmp_path):

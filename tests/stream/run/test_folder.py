@@ -1,11 +1,16 @@
 """The folder of a run keeps every log until its results are written."""
 
+import errno
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from mbkf.io.frame_log import read_frame_log
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.stream.run.folder import LOG_FOLDER, drop_log, write_results
+from mbkf.stream.run.report import ReportFile
 from mbkf.trial.live.log import FRAMES_FILE, PLATES_FILE
 from tests.stream.scripted import follow, frames_of
 
@@ -26,6 +31,47 @@ def test_a_log_that_was_left_behind_is_set_aside(tmp_path, capture, subject):
     written = write_results(tmp_path, ("recovered",))
     assert (written.summary["frames"], written.problem, written.left_out) == (40, None, ())
     assert read_reconstruction(tmp_path).frames == 40
+
+
+@pytest.mark.parametrize(
+    "place", ["mbkf.stream.run.report.replacing", "mbkf.stream.run.folder.write_subject"]
+)
+def test_a_run_that_cannot_begin_leaves_the_earlier_report_and_no_log(
+    place, tmp_path, capture, subject, monkeypatch
+):
+    stream, frames = frames_of(capture)
+    follow(tmp_path, stream, frames[:40], subject)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(place, full)
+    with pytest.raises(OSError, match="space"):
+        follow(tmp_path, stream, frames[:40], subject)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no device that is full")
+@pytest.mark.parametrize("results", [True, False])
+def test_a_last_report_that_cannot_be_written_is_named_where_nothing_worse_happened(
+    results, tmp_path, capture, subject, monkeypatch
+):
+    stream, frames = frames_of(capture)
+    true = ReportFile.write
+
+    def on_a_full_disk(report, content, last=False):
+        if last:
+            report._path = Path("/dev/full")
+        true(report, content, last)
+
+    monkeypatch.setattr(ReportFile, "write", on_a_full_disk)
+    if results:
+        with pytest.raises(OSError, match="/dev/full"):
+            follow(tmp_path, stream, frames[:40], subject)
+        return
+    monkeypatch.setattr("mbkf.stream.run.folder.summarise", None)
+    assert "TypeError" in follow(tmp_path, stream, frames[:40], subject).problem
 
 
 def test_without_a_log_it_says_why_there_are_no_results(tmp_path):
