@@ -182,6 +182,8 @@ def report_outcome(outcome: LiveOutcome, folder: Path) -> int:
     logged, unlogged = report["frames_written"], report["frames_not_written"]
     if unlogged:
         failed.append(f"{unlogged} frames were never logged and cannot be recovered")
+    if outcome.unreported is not None:
+        failed.append(outcome.unreported)
     if outcome.problem is not None:
         failed.insert(0, f"the results could not be written: {outcome.problem}")
         if report["log"] and logged:

@@ -20,3 +20,8 @@ def test_a_failed_run_exits_with_1_and_says_why(tmp_path, capsys):
     lacking = report | {"frames_written": 4, "frames_not_written": 5}
     assert report_outcome(LiveOutcome(lacking, None, None), tmp_path) == 1
     assert "5 frames were never logged and cannot be recovered" in capsys.readouterr().err
+    assert (
+        report_outcome(LiveOutcome(report, None, None, None, "writing the report failed: full"), tmp_path)
+        == 1
+    )
+    assert "writing the report failed: full" in capsys.readouterr().err

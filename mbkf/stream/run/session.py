@@ -27,6 +27,7 @@ from mbkf.stream.run.setup import LiveSetup, prepare, prepare_sensors
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.source import FrameSource
 from mbkf.trial.live.filter import live_settings
+from mbkf.trial.live.log import LiveLog
 from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
 
@@ -43,12 +44,14 @@ class LiveOutcome:
         summary: The contents of summary.json; None where no results could be made.
         problem: The reason.
         failure: Failure that ended the run early, in words; None without one.
+        unreported: The reason why live.json does not tell of the run's end; None where it does.
     """
 
     report: dict[str, object]
     summary: Summary | None
     problem: str | None
     failure: str | None = None
+    unreported: str | None = None
 
 
 class LiveSession:
@@ -130,20 +133,7 @@ class LiveSession:
         """
         setup, note, statistics = self.setup, self._events.note, RunStatistics()
         failure = Failure()
-        log = open_log(
-            self._folder,
-            setup.stream,
-            setup.rows.dtype,
-            {**recorded(self._settings), **setup.extra_settings},
-            setup.names,
-            self._subject,
-        )
-        try:
-            report = ReportFile(self._folder / LIVE_FILE)
-        except BaseException:
-            log.close()
-            drop_log(self._folder)
-            raise
+        log, report = self._begun(setup)
 
         def report_running() -> None:
             with suppress(OSError):  # the disk is full; the next one may have room
@@ -190,12 +180,18 @@ class LiveSession:
             frames_not_written=unlogged,
             log=str(kept) if kept.is_dir() else None,
         )
+        return LiveOutcome(plain, written.summary, problem, failure.cause, _last_report(report, plain))
+
+    def _begun(self, setup: LiveSetup) -> tuple[LiveLog, ReportFile]:
+        """The log and live.json of a run that begins; where one of them cannot be made, what was there stays."""
+        settings = {**recorded(self._settings), **setup.extra_settings}
+        log = open_log(self._folder, setup.stream, setup.rows.dtype, settings, setup.names, self._subject)
         try:
-            report.write(plain, last=True)
-        except OSError:
-            if problem is None:  # else the disk is the problem, of which the command speaks
-                raise
-        return LiveOutcome(plain, written.summary, problem, failure.cause)
+            return log, ReportFile(self._folder / LIVE_FILE)
+        except BaseException:
+            log.close()
+            drop_log(self._folder)
+            raise
 
     def _close_source(self) -> None:
         try:
@@ -237,3 +233,12 @@ class LiveSession:
             **more,
             "events": self._events.plain(),
         }
+
+
+def _last_report(report: ReportFile, plain: Mapping[str, object]) -> str | None:
+    """Writes live.json for the last time; the reason, where that fails."""
+    try:
+        report.write(plain, last=True)
+    except OSError as error:
+        return f"writing the report failed: {error}"
+    return None

@@ -49,7 +49,7 @@ Row = dict[str, object]
 
 
 def write_tables(plan: Plan, outcomes: Sequence[Outcome], out: Path, suffix: str = "") -> Path:
-    """Writes ``summary`` and ``curves``, each as CSV and Parquet; returns the summary as Parquet.
+    """Writes ``summary`` and ``curves``, each as CSV and Parquet, all as one; returns the summary as Parquet.
 
     Args:
         plan: The trials.
@@ -62,11 +62,14 @@ def write_tables(plan: Plan, outcomes: Sequence[Outcome], out: Path, suffix: str
     """
     pairs = list(zip(plan.trials, outcomes, strict=True))
     summary = out / f"summary{suffix}.parquet"
-    _write(summary, summary_schema(pairs, out), (_rows(part, out) for part in _batched(pairs)))
     curves = pa.schema([*OWN][:3]).with_metadata(None)
     for field in SCHEMA:
         curves = curves.append(field)
-    _write(out / f"curves{suffix}.parquet", curves, _curves(pairs, out))
+    with replacing_beside(summary) as made:
+        _write(
+            made / summary.name, summary_schema(pairs, out), (_rows(part, out) for part in _batched(pairs))
+        )
+        _write(made / f"curves{suffix}.parquet", curves, _curves(pairs, out))
     return summary
 
 
@@ -163,15 +166,14 @@ def _curves(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> Iterator[pa.Ta
 
 
 def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table | list[Row]]) -> None:
-    """Writes a table piece by piece, as Parquet and at the same time as CSV beside it."""
+    """Writes a table piece by piece, as Parquet and at the same time as CSV beside it, into an unfinished folder."""
     plain = _plain(schema)
 
     def write_text(table: pa.Table) -> None:
         rows.write_table(table.cast(plain))
 
     with ExitStack() as files:
-        made = files.enter_context(replacing_beside(path))
-        partials = [made / path.with_suffix(end).name for end in (".parquet", ".csv")]
+        partials = [path.with_suffix(end) for end in (".parquet", ".csv")]
         parquet, text = (files.enter_context(partial.open("wb")) for partial in partials)
         columns = files.enter_context(pq.ParquetWriter(parquet, schema, compression="zstd"))
         rows = files.enter_context(pa_csv.CSVWriter(text, plain))

@@ -81,3 +81,14 @@ def test_a_summary_that_cannot_be_read_leaves_its_row(made):
     (made[2] / "P1" / "walk1" / "summary.json").write_text("{", encoding="utf-8")
     found = pq.read_table(write_tables(*made)).to_pylist()
     assert (found[1]["status"], found[1]["mass_kg"]) == ("done", None)
+
+
+def test_where_the_curves_cannot_be_written_the_earlier_summary_stays(made, monkeypatch):
+    write_tables(*made)
+    before = {name: (made[2] / name).read_bytes() for name in tables.TABLES}
+    plan, _, out = made
+    monkeypatch.setattr(tables, "_curves", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        write_tables(plan, [Outcome(Status.FAILED, "another")] * 4, out)
+    assert {name: (out / name).read_bytes() for name in tables.TABLES} == before
+    assert not list(out.glob(".*"))
