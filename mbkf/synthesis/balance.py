@@ -39,6 +39,7 @@ class HorizontalPath:
         self.sizes = [len(knots) - DEGREE - 1 for knots in self.knots]
         self.first = np.cumsum([0, *self.sizes])
         self.coefficients = np.zeros((self.first[-1], 2))
+        self._equations: _Equations | None = None
 
     def rows(self, spell: int, times: Array, order: int) -> sparse.csr_array:
         """(T, K) sparse rows that give a derivative of the curve from its K coefficients.
@@ -85,7 +86,7 @@ class HorizontalPath:
             ]
         return sparse.vstack(ties).toarray()
 
-    def _free(self) -> sparse.csr_array:
+    def free(self) -> sparse.csr_array:
         """(K, J) orthonormal basis of the coefficients that keep the ties, which touch the ends of spells only."""
         every = sparse.eye_array(self.first[-1], format="csc")
         if len(self.spells) == 1:
@@ -105,22 +106,41 @@ class HorizontalPath:
             height: (T,) height of the centre of mass over the surface, m; its second derivative is over the floor.
             turning: (T, 2) L̇_y / m and −L̇_x / m, m²/s².
         """
+        if self._equations is None or self._equations.times is not times:
+            self._equations = _Equations(self, times)
         rows, wanted = [], []
-        for k, (start, end) in enumerate(self.spells):
-            use = (times >= start) & (times <= end)
+        for use, place, acceleration in self._equations.spells:
             lift = GRAVITY_M_S2 + height.second[use]
             weight = np.clip(lift, 0.0, None) / (np.clip(lift, 0.0, None) + 0.03 * GRAVITY_M_S2)
             safe = np.maximum(lift, 1e-3)
-            ratio = sparse.diags_array(height.value[use] / safe)
-            pressed = self.rows(k, times[use], 0) - ratio @ self.rows(k, times[use], 2)
+            pressed = place - sparse.diags_array(height.value[use] / safe) @ acceleration
             rows.append(sparse.diags_array(weight) @ pressed)
             wanted.append((target[use] + turning[use] / safe[:, None]) * weight[:, None])
-        for k, at in ((0, 0), (len(self.spells) - 1, -1)):
-            rows.append(3.0 * self.rows(k, np.array([self.spells[k][at]]), 0))
-            wanted.append(3.0 * target[[at]])
-        free = self._free()
+        rows.append(3.0 * self._equations.ends)
+        wanted.append(3.0 * target[[0, -1]])
+        free = self._equations.free
         design = sparse.vstack(rows) @ free
         normal = design.T @ design
         small = 1e-12 * normal.diagonal().mean()
         fit = BandedCholesky(normal + small * sparse.eye_array(normal.shape[0]))
         self.coefficients = free @ fit.solve(design.T @ np.vstack(wanted))
+
+
+class _Equations:
+    """The part of a path's equations that depends on the times alone.
+
+    Attributes:
+        times: (T,) s.
+        spells: Per spell (T,) which times belong to it, and sparse rows of the curve there and of its acceleration.
+        ends: (2, K) rows of the curve at its first and last time.
+        free: Basis of the coefficients that keep the ties.
+    """
+
+    def __init__(self, path: HorizontalPath, times: Array) -> None:
+        self.times, self.free = times, path.free()
+        self.spells = []
+        for k, (start, end) in enumerate(path.spells):
+            use = (times >= start) & (times <= end)
+            self.spells.append((use, path.rows(k, times[use], 0), path.rows(k, times[use], 2)))
+        ends = ((0, path.spells[0][0]), (len(path.spells) - 1, path.spells[-1][1]))
+        self.ends = sparse.vstack([path.rows(k, np.array([at]), 0) for k, at in ends])

@@ -133,6 +133,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
         result.correction = Correction(plan.hold, times)
     given, still = result.given(times), result.correction is None and tumbling is None
     posture = result.posture(given)
+    airborne = given if tumbling is None else result.given(tumbling.times)
     turning = np.zeros((len(times), 2))
     start: Dual | None = None
     missed_m = 0.0
@@ -143,7 +144,8 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
         over = Dual(height.value - level, height.first, height.second)
         result.horizontal.solve(times, target, over, turning)
         posture = posture if still else result.posture(given)
-        pose = result.kinematics.pose(result.com(times), posture, start)
+        com = result.com(times)
+        pose = result.kinematics.pose(com if k >= LIFTS else com.upto(0), posture, start)
         start = pose.origins["pelvis"]
         result.lift_m += _lift(result, pose, times)
         if k < LIFTS:
@@ -153,28 +155,24 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
             if missed_m < NEAR_M and k > ROUNDS:
                 break
         if tumbling is not None:
-            _fly(result, tumbling, 3)
+            _fly(result, tumbling, airborne, 3)
             pose = result.kinematics.pose(result.com(times), result.posture(given), start)
-        _, _, change = result.kinematics.momentum(pose)
+        _, (_, change) = result.kinematics.momentum(pose)
         turning = np.column_stack([change[:, 1], -change[:, 0]]) / result.kinematics.total_mass
     if missed_m > FAR_M:
         raise NotConverged("a supported part of the body does not stay in its place; try another seed")
-    if tumbling is not None and _fly(result, tumbling, FLIGHT_ROUNDS) > 1e3 * SMALL:
+    if tumbling is not None and _fly(result, tumbling, airborne, FLIGHT_ROUNDS) > 1e3 * SMALL:
         raise NotConverged("the flight was not found; try another seed")
     return result
 
 
-def _fly(composition: Composition, tumbling: Tumbling, rounds: int) -> float:
+def _fly(composition: Composition, tumbling: Tumbling, given: Given, rounds: int) -> float:
     """Turns the pelvis in the air; returns the last change of its rates in rad/s."""
-    kinematics, given, com = (
-        composition.kinematics,
-        composition.given(tumbling.times),
-        composition.com(tumbling.times),
-    )
-    start = kinematics.pose(com, composition.posture(given)).origins["pelvis"]
+    kinematics, com = composition.kinematics, composition.com(tumbling.times).upto(1)
+    start = kinematics.pose(com.upto(0), composition.posture(given)).origins["pelvis"]
 
     def momentum(angles: tuple[Dual, Dual, Dual]) -> Array:
-        return kinematics.momentum(kinematics.pose(com, composition.posture(given, angles), start))[1]
+        return kinematics.momentum(kinematics.pose(com, composition.posture(given, angles), start))[1][0]
 
     change = tumbling.refine(momentum, rounds)
     composition.pelvis = tumbling.curves()

@@ -74,12 +74,11 @@ def sinusoid(amplitude: float, frequency_hz: float, phase: float, offset: float 
     w = 2 * np.pi * frequency_hz
 
     def curve(at: Array) -> Dual:
+        if amplitude == 0.0:
+            return Dual.constant(np.full(at.shape, offset))
         angle = w * at + phase
-        return Dual(
-            offset + amplitude * np.sin(angle),
-            amplitude * w * np.cos(angle),
-            -amplitude * w**2 * np.sin(angle),
-        )
+        sine = amplitude * np.sin(angle)
+        return Dual(offset + sine, amplitude * w * np.cos(angle), -(w**2) * sine)
 
     return curve
 

@@ -1,12 +1,12 @@
-"""Functions of time carried with their exact first and second derivatives (second-order dual_numbers).
+"""Functions of time carried with their exact first and second derivatives (second-order dual numbers).
 
-Small vectors and matrices over many frames have shape (T, ...) but lie in memory with T last, where this module makes
-them: numpy's loops then run along the frames, several times as fast as along rows of three.
+Value and derivatives are one array, so that one operation of numpy works on all of them. It has the shape (n, T, ...),
+but lies in memory with T last: numpy's loops then run along the frames, several times as fast as along rows of three.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from types import EllipsisType
 from typing import TypeAlias
 
@@ -21,43 +21,72 @@ Index: TypeAlias = int | slice | EllipsisType | tuple[int | slice | EllipsisType
 class Dual:
     """An array quantity x(t) sampled at T times, with ẋ and ẍ; arithmetic follows the chain rule exactly.
 
+    A dual number may lack ẍ, or ẋ as well; then it costs less, and results of it lack the same.
+
     Attributes:
-        value: (T, ...) x.
-        first: (T, ...) ẋ, per second.
-        second: (T, ...) ẍ, per second squared.
+        orders: (n, T, ...) x, ẋ per second, ẍ per second squared; n is 3, or less where derivatives are lacking.
     """
 
     __array_ufunc__ = None  # an array on the left leaves the arithmetic to the dual number
-    __slots__ = ("first", "second", "value")
+    __slots__ = ("orders",)
 
-    def __init__(self, value: Array, first: Array, second: Array) -> None:
-        self.value, self.first, self.second = value, first, second
+    def __init__(self, *orders: Array) -> None:
+        """A quantity from its value and its derivatives, (T, ...) each."""
+        self.orders = _reversed(np.array([order.T for order in orders]))
+
+    @classmethod
+    def of(cls, orders: Array) -> Dual:
+        """The dual number that has this array; it is not copied."""
+        made = cls.__new__(cls)
+        made.orders = orders
+        return made
 
     @classmethod
     def constant(cls, value: Array) -> Dual:
         """A dual number that does not change."""
         array = np.asarray(value, dtype=float)
-        return cls(array, np.zeros_like(array), np.zeros_like(array))
+        rest = np.zeros_like(array)
+        return cls(array, rest, rest)
 
     @property
-    def orders(self) -> tuple[Array, Array, Array]:
-        """x, ẋ, ẍ."""
-        return self.value, self.first, self.second
+    def value(self) -> Array:
+        """(T, ...) x."""
+        return self.orders[0]
+
+    @property
+    def first(self) -> Array:
+        """(T, ...) ẋ, per second."""
+        return self.orders[1]
+
+    @property
+    def second(self) -> Array:
+        """(T, ...) ẍ, per second squared."""
+        return self.orders[2]
+
+    def upto(self, order: int) -> Dual:
+        """The same without the derivatives beyond an order; 0 leaves the value alone."""
+        return Dual.of(self.orders[: order + 1])
 
     def __getitem__(self, index: Index) -> Dual:
-        return Dual(*(x[index] for x in self.orders))
+        return Dual.of(self.orders[(slice(None), *(index if isinstance(index, tuple) else (index,)))])
 
     def __neg__(self) -> Dual:
-        return Dual(*(-x for x in self.orders))
+        return Dual.of(-self.orders)
 
     def __add__(self, other: Dual | Array | float) -> Dual:
         if isinstance(other, Dual):
-            return Dual(*(x + y for x, y in zip(self.orders, other.orders, strict=True)))
-        return Dual(self.value + other, self.first + 0.0 * other, self.second + 0.0 * other)
+            n = min(len(self.orders), len(other.orders))
+            return Dual.of(self.orders[:n] + other.orders[:n])
+        moved = self.orders + np.zeros_like(other)
+        moved[0] += other
+        return Dual.of(moved)
 
     __radd__ = __add__
 
     def __sub__(self, other: Dual | Array | float) -> Dual:
+        if isinstance(other, Dual):
+            n = min(len(self.orders), len(other.orders))
+            return Dual.of(self.orders[:n] - other.orders[:n])
         return self + (-other)
 
     def __rsub__(self, other: Array | float) -> Dual:
@@ -65,39 +94,22 @@ class Dual:
 
     def __mul__(self, other: Dual | Array | float) -> Dual:
         if isinstance(other, Dual):
-            return Dual(
-                self.value * other.value,
-                self.first * other.value + self.value * other.first,
-                self.second * other.value + 2 * self.first * other.first + self.value * other.second,
-            )
-        return Dual(*(x * other for x in self.orders))
+            return product(np.multiply, self, other)
+        return Dual.of(self.orders * other)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Dual | Array | float) -> Dual:
-        if isinstance(other, Dual):
-            inverse = 1 / other.value
-            square = inverse * inverse
-            return self * other.chain(inverse, -square, 2 * square * inverse)
-        return Dual(*(x / other for x in self.orders))
+        return self * (1.0 / other) if isinstance(other, Dual) else Dual.of(self.orders / other)
+
+    def __rtruediv__(self, other: float) -> Dual:
+        inverse = 1.0 / self.value
+        square = inverse * inverse
+        return self.chain(inverse, -square, 2.0 * square * inverse) * other
 
     def __matmul__(self, other: Dual) -> Dual:
         """Matrix product of (T, m, n) and (T, n, p)."""
-        return self._product("tij,tjk->tik", other)
-
-    def _product(self, indices: str, other: Dual) -> Dual:
-        """The Einstein sum of two dual numbers by the product rule."""
-
-        def product(x: Array, y: Array) -> Array:
-            return np.asarray(np.einsum(indices, x, y))
-
-        return Dual(
-            product(self.value, other.value),
-            product(self.first, other.value) + product(self.value, other.first),
-            product(self.second, other.value)
-            + 2 * product(self.first, other.first)
-            + product(self.value, other.second),
-        )
+        return product(_matrix_product, self, other)
 
     def chain(self, f: Array, df: Array, ddf: Array) -> Dual:
         """The dual number f(x) by the chain rule.
@@ -107,21 +119,43 @@ class Dual:
             df: (T, ...) f′(x).
             ddf: (T, ...) f″(x).
         """
-        return Dual(f, df * self.first, ddf * self.first**2 + df * self.second)
+        made = df * self.orders
+        made[0] = f
+        if len(made) > 2:
+            made[2] += ddf * self.first**2
+        return Dual.of(made)
 
     def transposed(self) -> Dual:
         """The last two axes exchanged."""
-        return Dual(*(np.swapaxes(x, -1, -2) for x in self.orders))
+        return Dual.of(np.swapaxes(self.orders, -1, -2))
 
     def apply(self, vector: Dual | Array) -> Dual:
         """Matrix times vector: (T, 3, 3) on (T, 3), or on one constant (3,)."""
         if isinstance(vector, Dual):
-            return self._product("tij,tj->ti", vector)
-        return Dual(*(np.einsum("tij,j->ti", x, vector) for x in self.orders))
+            return product(_matrix_vector, self, vector)
+        return Dual.of(_matrix_vector(self.orders, vector))
 
     def sum(self, axis: int) -> Dual:
-        """Sum along an axis."""
-        return Dual(*(x.sum(axis=axis) for x in self.orders))
+        """Sum along an axis, counted from the last."""
+        return Dual.of(self.orders.sum(axis=axis))
+
+
+def product(bilinear: Callable[[Array, Array], Array], a: Dual, b: Dual) -> Dual:
+    """A bilinear product of two dual numbers by the product rule.
+
+    Args:
+        bilinear: Product of arrays, of each pair along their leading axes.
+        a: The left factor.
+        b: The right factor.
+    """
+    n = min(len(a.orders), len(b.orders))
+    x, y = a.orders[:n], b.orders[:n]
+    made = bilinear(x[0], y)
+    if n > 1:
+        made[1:] += bilinear(x[1:], y[0])
+    if n > 2:
+        made[2] += 2.0 * bilinear(x[1], y[1])
+    return Dual.of(made)
 
 
 def sin(x: Dual) -> Dual:
@@ -151,25 +185,27 @@ def arccos(x: Dual) -> Dual:
 
 def dot(a: Dual, b: Dual) -> Dual:
     """(T,) inner product of two (T, 3) dual numbers."""
-    return (a * b).sum(axis=-1)
+    return product(_inner, a, b)
 
 
 def cross(a: Dual, b: Dual) -> Dual:
     """(T, 3) vector product of two (T, 3) dual numbers."""
-    x, y = ([one[..., k] for k in range(3)] for one in (a, b))
-    return stack([x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]])
+    return product(_cross, a, b)
 
 
 def unit(a: Dual) -> Dual:
     """(T, 3) direction of a (T, 3) dual number."""
-    length = sqrt(dot(a, a))
-    return a / length[..., None]
+    square = dot(a, a)
+    f = 1.0 / np.sqrt(square.value)
+    df = -0.5 * f / square.value
+    return a * square.chain(f, df, -1.5 * df / square.value)[..., None]
 
 
 def stack(parts: Sequence[Dual]) -> Dual:
     """Several dual numbers of one shape (T, ...) along a new last axis."""
-    orders = zip(*(part.orders for part in parts), strict=True)
-    return Dual(*(np.stack([x.T for x in one]).T for one in orders))
+    n = min(len(part.orders) for part in parts)
+    rows = np.array([_reversed(part.orders[:n]) for part in parts])
+    return Dual.of(_reversed(np.swapaxes(rows, 0, 1)))
 
 
 def where(condition: np.ndarray, a: Dual, b: Dual) -> Dual:
@@ -181,7 +217,8 @@ def where(condition: np.ndarray, a: Dual, b: Dual) -> Dual:
         b: (T, ...) taken elsewhere.
     """
     mask = condition.reshape(condition.shape + (1,) * (a.value.ndim - 1))
-    return Dual(*(np.where(mask, x, y) for x, y in zip(a.orders, b.orders, strict=True)))
+    n = min(len(a.orders), len(b.orders))
+    return Dual.of(np.where(mask, a.orders[:n], b.orders[:n]))
 
 
 def rotation(axis: int, angle: Dual) -> Dual:
@@ -198,18 +235,12 @@ def turned(axis: int, cosine: Dual, sine: Dual) -> Dual:
         cosine: (T,) of the angle.
         sine: (T,) of the angle.
     """
-    orders = zip(cosine.orders, sine.orders, (1.0, 0.0, 0.0), strict=True)
-    return Dual(*(_about(axis, *one) for one in orders))
-
-
-def _about(axis: int, along: Array, across: Array, fixed: float) -> Array:
-    """(T, 3, 3) matrices with (T,) cosines ``along``, sines ``across`` and one fixed entry on the axis."""
     after, last = (axis + 1) % 3, (axis + 2) % 3
-    matrix = np.zeros((3, 3, len(along)))
-    matrix[axis, axis] = fixed
-    matrix[after, after], matrix[last, last] = along, along
-    matrix[last, after], matrix[after, last] = across, -across
-    return matrix.transpose(2, 0, 1)
+    matrix = np.zeros((3, 3, *cosine.orders.shape))
+    matrix[axis, axis, 0] = 1.0
+    matrix[after, after] = matrix[last, last] = cosine.orders
+    matrix[last, after], matrix[after, last] = sine.orders, -sine.orders
+    return Dual.of(matrix.transpose(2, 3, 0, 1))
 
 
 def euler(about_xyz: Iterable[Dual], order: str = "yxz") -> Dual:
@@ -223,8 +254,8 @@ def euler(about_xyz: Iterable[Dual], order: str = "yxz") -> Dual:
 
 def local_rates(rotations: Dual) -> tuple[Array, Array]:
     """(T, 3) angular velocity and its derivative in the rotating frame: ω = (Rᵀ Ṙ)ˇ, ω̇ = (Rᵀ R̈)ˇ."""
-    first, second = (np.einsum("tji,tjk->tik", rotations.value, x) for x in rotations.orders[1:])
-    return axial(first), axial(second)
+    rates = axial(_matrix_product(np.swapaxes(rotations.value, -1, -2), rotations.orders[1:]))
+    return rates[0], rates[1]
 
 
 def axial(matrix: Array) -> Array:
@@ -237,3 +268,27 @@ def axial(matrix: Array) -> Array:
         ],
         axis=-1,
     )
+
+
+def _matrix_product(x: Array, y: Array) -> Array:
+    return np.asarray(np.einsum("...ij,...jk->...ik", x, y))
+
+
+def _matrix_vector(x: Array, y: Array) -> Array:
+    return np.asarray(np.einsum("...ij,...j->...i", x, y))
+
+
+def _inner(x: Array, y: Array) -> Array:
+    return np.asarray(np.einsum("...i,...i->...", x, y))
+
+
+def _cross(x: Array, y: Array) -> Array:
+    """Vector products along the last axis; :func:`numpy.cross` is slow where frames lie last in memory."""
+    a, b, c = (x[..., k] for k in range(3))
+    d, e, f = (y[..., k] for k in range(3))
+    return np.moveaxis(np.array([b * f - c * e, c * d - a * f, a * e - b * d]), 0, -1)
+
+
+def _reversed(orders: Array) -> Array:
+    """(n, T, ...) as a view (n, ..., T), and back: all axes but the first in reversed order."""
+    return orders.transpose(0, *range(orders.ndim - 1, 0, -1))

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.chebyshev import chebval, chebvander
 
 from mbkf.conventions import Array
 from mbkf.synthesis.curves import Curve, path
@@ -40,6 +40,9 @@ class Tumbling:
             first, last = before[-1][1], after[0][1]
             self.turns.append(Chebyshev([0.5 * (first + last), 0.5 * (last - first)], domain=domain))
         self._response: Array | None = None
+        self._basis = chebvander(self._scaled(self.times), NODES - 1)
+        even = np.arange(0, NODES, 2)
+        self._share = 2 / NODES * self._basis[:, even] @ (1.0 / (1.0 - even**2) - 0.5 * (even == 0))
 
     def curves(self) -> tuple[Curve, Curve, Curve]:
         """The pelvis's angles about x, y, z over the whole motion, with continuous acceleration."""
@@ -47,23 +50,31 @@ class Tumbling:
 
     def _curve(self, axis: int) -> Curve:
         turn, plan = self.turns[axis], self.plan
-        rate, acceleration = turn.deriv(), turn.deriv(2)
-        ends = [(t, turn(t), rate(t), acceleration(t)) for t in (plan.take_off_s, plan.touch_down_s)]
+        ends = [(t, *self._orders(turn, t)) for t in (plan.take_off_s, plan.touch_down_s)]
         before = path([*plan.before[axis][:-1], ends[0]])
         after = path([ends[1], *plan.after[axis][1:]])
 
         def curve(at: Array) -> Dual:
             rising, landed = before(at), after(at)
-            inside = np.clip(at, plan.take_off_s, plan.touch_down_s)
-            flying = (turn(inside), rate(inside), acceleration(inside))
-            return Dual(
-                *(
-                    np.where(at < plan.take_off_s, b, np.where(at > plan.touch_down_s, a, f))
-                    for b, f, a in zip(rising.orders, flying, landed.orders, strict=True)
-                )
-            )
+            flying = (at >= plan.take_off_s) & (at <= plan.touch_down_s)
+            turning = np.where(at < plan.take_off_s, rising.orders, landed.orders)
+            turning[:, flying] = self._orders(turn, at[flying])
+            return Dual.of(turning)
 
         return curve
+
+    def _scaled(self, times: Array | float) -> Array:
+        """Times, in s, from −1 at take-off to 1 at touch-down."""
+        off, down = self.plan.take_off_s, self.plan.touch_down_s
+        return np.asarray(2 * (times - off) / (down - off) - 1)
+
+    def _orders(self, turn: Chebyshev, times: Array | float) -> Array:
+        """(3, ...) an angle with its rate and acceleration, at times in s."""
+        parts = [turn.coef, turn.deriv().coef, turn.deriv(2).coef]
+        table = np.zeros((len(turn.coef), 3))
+        for order, part in enumerate(parts):
+            table[: len(part), order] = part
+        return np.asarray(chebval(self._scaled(times), table))
 
     def refine(self, momentum: Callable[[tuple[Dual, Dual, Dual]], Array], rounds: int) -> float:
         """Makes the momentum more constant.
@@ -77,18 +88,15 @@ class Tumbling:
         """
         change = np.inf
         for _ in range(rounds):
-            angles = _angles(
-                Dual(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns
-            )
+            angles = _angles(Dual.of(self._orders(turn, self.times)) for turn in self.turns)
             now = momentum(angles)
             if self._response is None:
                 self._response = np.stack(
                     [momentum(_faster(angles, axis)) - now for axis in range(3)], axis=-1
                 )
             inverse: Array = np.asarray(np.linalg.inv(self._response), dtype=np.float64)
-            drift = self._mean(np.einsum("tij,tj->ti", inverse, now))
-            average: Array = self._mean(inverse.reshape(-1, 9)).reshape(3, 3)
-            constant = np.linalg.inv(average) @ drift
+            drift = self._share @ np.einsum("tij,tj->ti", inverse, now)
+            constant = np.linalg.inv(np.einsum("t,tij->ij", self._share, inverse)) @ drift
             delta = np.einsum("tij,tj->ti", inverse, constant - now)
             domain = self.turns[0].domain
             for axis in range(3):
@@ -100,16 +108,9 @@ class Tumbling:
 
     def _through(self, values: Array) -> Chebyshev:
         """The polynomial through (N,) values at the nodes; Chebyshev polynomials are orthogonal there."""
-        domain = self.turns[0].domain
-        basis = chebvander(2 * (self.times - domain[0]) / (domain[1] - domain[0]) - 1, NODES - 1)
-        coefficients = 2 / NODES * basis.T @ values
+        coefficients = 2 / NODES * self._basis.T @ values
         coefficients[0] /= 2
-        return Chebyshev(coefficients, domain=domain)
-
-    def _mean(self, values: Array) -> Array:
-        domain = self.turns[0].domain
-        fits = [self._through(column).integ(lbnd=domain[0]) for column in values.T]
-        return np.array([fit(domain[1]) for fit in fits]) / (domain[1] - domain[0])
+        return Chebyshev(coefficients, domain=self.turns[0].domain)
 
 
 def _angles(three: Iterable[Dual]) -> tuple[Dual, Dual, Dual]:

@@ -22,10 +22,13 @@ SIDE_NAMES = {"r": "right", "l": "left"}
 NEWTON, ROUNDS = 12, 60
 """Newton steps at most that find the pelvis, and iterations at most, where those fail."""
 
-CLOSE = (1e-13, 1e-11, 1e-9)
-"""Errors of the centre of mass at which they end: m, m/s, m/s²."""
+NEAR_M = 1e-8
+"""Error of the centre of mass, m, of which one step of Newton's leaves nothing."""
 
-GAIN = np.diag([1.2, 1.2, 1.1])
+CLOSE = np.array([1e-13, 1e-11, 1e-9])
+"""Errors of the centre of mass at which iterations end: m, m/s, m/s²."""
+
+GAIN = np.eye(3) * [1.2, 1.2, 1.1]
 """Step of the pelvis per error of the centre of mass where Newton's steps fail; legs follow a little."""
 
 
@@ -72,6 +75,7 @@ class Pose:
         angles: Per dof of a hinge or universal joint, by segment, the (T,) angles, rad.
         knee: (T, 2) flexion of right and left knee, rad.
         reach: (T,) largest ratio of a hip–ankle distance to the length of the leg.
+        posture: The prescribed parts.
     """
 
     rotations: dict[str, Dual]
@@ -79,6 +83,7 @@ class Pose:
     angles: dict[str, tuple[Dual, ...]]
     knee: Array
     reach: Array
+    posture: Posture
 
 
 @dataclass(frozen=True)
@@ -94,6 +99,8 @@ class Posture:
         arms: Arms whose hands' place is given.
         fixed: (T, 3) first moment of mass with the pelvis's origin in the world's, without the limbs' share, kg m.
         mass: Mass that moves with the pelvis's origin, without limbs, kg.
+        hung: Mass carried by the segments of ``above``, about the pelvis's origin.
+        placed: Mass carried by the segments of ``ends``.
     """
 
     rotations: dict[str, Dual]
@@ -104,6 +111,22 @@ class Posture:
     arms: dict[str, Limb]
     fixed: Dual
     mass: float
+    hung: Carried
+    placed: Carried
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Sums over moving segments.
+
+    Attributes:
+        moment: (T, 3) first moment of mass Σ m x about an origin, kg m.
+        second: (n - 1, T, 3, 3) rates of the second moment of mass, half of them: ∫ ẋ xᵀ dm and, where accelerations
+            are known, ∫ ẍ xᵀ dm; twice their axial vectors are the angular momentum and its derivative.
+    """
+
+    moment: Dual
+    second: Array
 
 
 class InverseKinematics:
@@ -160,16 +183,17 @@ class InverseKinematics:
         """
         held = {SIDE_NAMES[side]: hand for side, hand in (hands or {}).items()}
         rotations, origins = self._upper(angles, list(held))
-        free, ends = dict(rotations), self._feet(feet)
-        fixed = self._moment(rotations, origins) + self._moment(*ends)
+        ends = self._feet(feet)
+        hung, placed = self._carried(rotations, origins), self._carried(*ends)
+        fixed, mass = hung.moment + placed.moment, sum(self.mass[name] for name in origins)
         legs = {SIDE_NAMES[side]: self._leg(side, rotations["pelvis"], angles, feet[side]) for side in SIDES}
         arms = {name: self._arm(name, rotations, origins, angles, hand) for name, hand in held.items()}
         for name, hand in held.items():
             fixed = fixed + hand.rotation.apply(self.mass[f"{name}_hand"] * self.com[f"{name}_hand"])
             rotations[f"{name}_hand"] = hand.rotation
         hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
-        upper_mass = sum(self.mass[name] for name in free)
-        return Posture({**rotations, **ends[0]}, origins, ends[1], hinged, legs, arms, fixed, upper_mass)
+        rotations |= ends[0]
+        return Posture(rotations, origins, ends[1], hinged, legs, arms, fixed, mass, hung, placed)
 
     def pose(self, com: Dual, posture: Posture, start: Dual | None = None) -> Pose:
         """The pose with a given (T, 3) centre of mass, m.
@@ -179,7 +203,7 @@ class InverseKinematics:
             posture: Other prescribed coordinates.
             start: Pelvis position from which the iteration starts.
         """
-        pelvis = self._pelvis(com, posture, com if start is None else start)
+        pelvis = self._pelvis(com, posture, com.value if start is None else start.value)
         rotations = dict(posture.rotations)
         origins = {name: origin + pelvis for name, origin in posture.above.items()} | posture.ends
         knees, reach = [], np.zeros(len(com.value))
@@ -189,20 +213,36 @@ class InverseKinematics:
             reach = np.maximum(reach, used)
         for name, arm in posture.arms.items():
             self._place(name, ("upper_arm", "forearm", "hand"), arm, pelvis, rotations, origins)
-        return Pose(rotations, origins, posture.angles, np.stack(knees, axis=-1), reach)
+        return Pose(rotations, origins, posture.angles, np.stack(knees, axis=-1), reach, posture)
 
-    def _pelvis(self, com: Dual, posture: Posture, pelvis: Dual) -> Dual:
-        """(T, 3) pelvis position with which the centre of mass is where it should be, m."""
-        limbs = [*posture.legs.values(), *posture.arms.values()]
+    def _pelvis(self, com: Dual, posture: Posture, start: Array) -> Dual:
+        """(T, 3) pelvis position with which the centre of mass is where it should be, m.
+
+        Place, velocity and acceleration are found one after the other: each is a linear equation once those before it
+        are known.
+        """
+        pelvis = Dual(start)
+        for order in range(len(com.orders)):
+            pelvis = self._solved(com.upto(order), posture, pelvis)
+            if order + 1 < len(com.orders):
+                pelvis = Dual(*pelvis.orders, com.orders[order + 1])
+        return pelvis
+
+    def _solved(self, com: Dual, posture: Posture, pelvis: Dual) -> Dual:
+        """The pelvis position with its highest derivative, from one whose lower orders are right."""
+        known, limbs = len(com.orders) - 1, [*posture.legs.values(), *posture.arms.values()]
         for k in range(ROUNDS):
             moment, mass = posture.fixed + pelvis * posture.mass, posture.mass * np.eye(3)
             for limb in limbs:
                 own, by_pelvis = limb.moment_by_pelvis(pelvis)
                 moment, mass = moment + own, mass + by_pelvis
-            error = com - moment / self.total_mass
+            error = (com - moment / self.total_mass).orders
             gain: Array = np.asarray(self.total_mass * np.linalg.inv(mass)) if k < NEWTON else GAIN[None]
-            pelvis = pelvis + Dual(*(_apply(gain, x) for x in error.orders))
-            if all(np.abs(e).max() < close for e, close in zip(error.orders, CLOSE, strict=True)):
+            pelvis = pelvis + Dual.of(np.einsum("tij,ntj->nti", gain, error))
+            missed, close = np.abs(error).max(axis=(1, 2)), CLOSE[: known + 1].copy()
+            if k < NEWTON:
+                close[known] = np.inf if known else NEAR_M
+            if (missed < close).all():
                 break
         return pelvis
 
@@ -237,15 +277,19 @@ class InverseKinematics:
             origins[f"{name}_{end}"] = near + span
         return bend.flexion, bend.used
 
-    def _moment(self, rotations: Mapping[str, Dual], origins: Mapping[str, Dual]) -> Dual:
-        """(T, 3) first moment of mass of segments, kg m."""
-        return sum(
-            (
-                (origin + rotations[name].apply(self.com[name])) * self.mass[name]
-                for name, origin in origins.items()
-            ),
-            start=Dual.constant(np.zeros(3)),
-        )
+    def _carried(self, rotations: Mapping[str, Dual], origins: Mapping[str, Dual]) -> Carried:
+        """Mass carried by the segments that have an origin."""
+        mass = np.array([self.mass[name] for name in origins])
+        moments = np.array([self.moments[name] for name in origins])
+        turned = dual_numbers.stack([rotations[name] for name in origins]).orders
+        at = dual_numbers.stack(
+            [x + rotations[name].apply(self.com[name]) for name, x in origins.items()]
+        ).orders
+        turned = turned[: len(at)]
+        inertia = np.einsum("sij,tkjs->tiks", moments, turned[0])
+        second = np.einsum("ntijs,tjks->ntik", turned[1:], inertia)
+        second += np.einsum("ntis,tks->ntik", at[1:], mass * at[0])
+        return Carried(Dual.of(at @ mass), second)
 
     def _limb(
         self,
@@ -255,6 +299,7 @@ class InverseKinematics:
         span: Callable[[Dual], Dual],
         across: Callable[[Dual], Dual],
         hand: HandPose | None = None,
+        swing: Array | None = None,
     ) -> Limb:
         """A limb of two segments, see :class:`mbkf.synthesis.two_links.Limb` for the arguments.
 
@@ -265,6 +310,7 @@ class InverseKinematics:
             span: Way from the near to the far end.
             across: Near which the middle joint's axis lies.
             hand: The part whose mass goes with the far end; None: it has its place.
+            swing: Change of ``across`` with the near end.
         """
         upper, lower = names
         masses = self.mass[upper], self.mass[lower]
@@ -272,7 +318,7 @@ class InverseKinematics:
         last = links.small.apply(masses[1] * self.com[lower])
         held = np.ones(len(near.value)) if hand is None else hand.held.value
         beyond = 0.0 if hand is None else self.mass[upper.replace("upper_arm", "hand")]
-        return Limb(links, near, span, across, sum(masses), first, last, beyond, held)
+        return Limb(links, near, span, across, sum(masses), first, last, beyond, held, swing)
 
     def _leg(self, side: str, pelvis: Dual, angles: Mapping[str, tuple[Dual, ...]], foot: FootPose) -> Limb:
         """A leg, which hangs on the pelvis's (T, 3, 3) rotation and ends at the ankle."""
@@ -284,12 +330,14 @@ class InverseKinematics:
         def across(hip: Dual) -> Dual:
             return left if foot.knee is None else dual_numbers.cross(foot.knee - hip, foot.ankle - hip)
 
+        swing = None if foot.knee is None else foot.knee - foot.ankle.value
         return self._limb(
             (f"{name}_thigh", f"{name}_shank"),
             TwoLinks(lengths, small[0], small[2]),
             pelvis.apply(self.offset[f"{name}_thigh"]),
             lambda hip: foot.ankle - hip,
             across,
+            swing=swing,
         )
 
     def _arm(
@@ -360,24 +408,22 @@ class InverseKinematics:
             origins[f"{name}_toes"] = foot.ankle + rotation.apply(self.offset[f"{name}_toes"])
         return rotations, origins
 
-    def momentum(self, pose: Pose) -> tuple[Dual, Array, Array]:
-        """Centre of mass (T, 3), angular momentum about it (T, 3) in N m s and its derivative (T, 3) in N m."""
-        com = self._moment(pose.rotations, pose.origins) / self.total_mass
-        spin, change = np.zeros_like(com.value), np.zeros_like(com.value)
-        for name, mass in self.mass.items():
-            R = pose.rotations[name]
-            at = pose.origins[name] + R.apply(self.com[name]) - com
-            carried = _product(np.broadcast_to(self.moments[name], R.value.shape), R.transposed().value)
-            spin += 2 * dual_numbers.axial(_product(R.first, carried)) + mass * np.cross(at.value, at.first)
-            change += 2 * dual_numbers.axial(_product(R.second, carried)) + mass * np.cross(
-                at.value, at.second
-            )
-        return com, spin, change
+    def momentum(self, pose: Pose) -> tuple[Dual, Array]:
+        """Centre of mass (T, 3), and (2, T, 3) angular momentum about it, N m s, with its derivative, N m.
 
-
-def _product(one: Array, other: Array) -> Array:
-    return np.asarray(np.einsum("tij,tjk->tik", one, other))
-
-
-def _apply(matrices: Array, vectors: Array) -> Array:
-    return np.asarray(np.einsum("tij,tj->ti", matrices, vectors))
+        The derivative is lacking where accelerations of the pose are.
+        """
+        posture, pelvis = pose.posture, pose.origins["pelvis"]
+        given = {**posture.above, **posture.ends}
+        limbs = self._carried(pose.rotations, {k: x for k, x in pose.origins.items() if k not in given})
+        hung = posture.hung.moment + pelvis * posture.mass
+        moment = hung + posture.placed.moment + limbs.moment
+        com, n = moment / self.total_mass, len(moment.orders)
+        second = limbs.second + posture.placed.second[: n - 1] + posture.hung.second[: n - 1]
+        for rate, value in (
+            (hung, pelvis),
+            (pelvis, posture.hung.moment),
+            (moment, -com),
+        ):
+            second += np.einsum("nti,tk->ntik", rate.orders[1:n], value.value)
+        return com, 2.0 * dual_numbers.axial(second)

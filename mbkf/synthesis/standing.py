@@ -123,7 +123,8 @@ def posture(
             parts = [sinusoid(0.0, 1.0, 0.0, np.deg2rad(own))]
             for curve, gain in gains:
                 amount = np.deg2rad(gain.get(joint, (0.0, 0.0, 0.0))[axis]) * (1 + spread * rng.normal())
-                parts.append(scaled(amount, curve))
+                if amount:
+                    parts.append(scaled(amount, curve))
             axes.append(added(*parts))
         curves[joint] = (axes[0], axes[1], axes[2])
     return curves

@@ -40,8 +40,9 @@ class TwoLinks:
         upper, lower = self.lengths = lengths
         self.bends = bends
         self.small = dual_numbers.rotation(0, x) @ dual_numbers.rotation(2, z)
-        self._twice = dual_numbers.cos(x) * (2 * upper * lower)
+        self._by_square = 1.0 / (dual_numbers.cos(x) * (2 * upper * lower))
         self._tip = self.small.apply(np.array([0.0, 0.0, -lower]))
+        self._middle = Dual.constant(np.zeros_like(self._tip.value) + np.array([0.0, 1.0, 0.0]))
 
     def bend(self, span: Dual, across: Dual) -> Bend:
         """The limb with its ends ``span`` apart.
@@ -51,18 +52,20 @@ class TwoLinks:
             across: (T, 3) near which the axis of the middle joint lies.
         """
         upper, lower = self.lengths
+        upper, lower = self.lengths
         square = dual_numbers.dot(span, span)
-        cosine = (square - (upper**2 + lower**2)) / self._twice
+        cosine = (square - (upper**2 + lower**2)) * self._by_square
         limit = float(np.cos(STRAIGHT_RAD))
         free = np.abs(cosine.value) < limit
-        cosine = dual_numbers.where(free, cosine, Dual.constant(np.clip(cosine.value, -limit, limit)))
-        sine = dual_numbers.sqrt(1.0 - cosine * cosine) * self.bends
-        local = _about_y(cosine, sine, self._tip) + np.array([0.0, 0.0, -upper])
-        middle = Dual.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
+        if not free.all():
+            cosine = dual_numbers.where(free, cosine, Dual.constant(np.clip(cosine.value, -limit, limit)))
+        sine = self.bends * np.sqrt(1.0 - cosine.value**2)
+        turned = dual_numbers.turned(1, cosine, cosine.chain(sine, -cosine.value / sine, -(sine**-3)))
+        local = turned.apply(self._tip) + np.array([0.0, 0.0, -upper])
         length = np.sqrt(square.value)
-        rate = np.where(free, -2.0 * length / (sine.value * self._twice.value), 0.0)
-        used = length / (upper + lower)
-        return Bend(self, cosine, sine, Frame(span, across), Frame(local, middle), used, rate)
+        rate = np.where(free, -2.0 * length * self._by_square.value / sine, 0.0)
+        outer, inner = Frame(span, across), Frame(local, self._middle)
+        return Bend(self, cosine.value, turned, outer, inner, length / (upper + lower), rate)
 
 
 class Frame:
@@ -70,42 +73,37 @@ class Frame:
 
     Attributes:
         along, across: (T, 3) vectors that make it.
-        axes: Its three axes (T, 3).
+        axes: (T, 3, 3) its three axes in columns.
     """
 
     def __init__(self, along: Dual, across: Dual) -> None:
         self.along, self.across = along, across
         first = dual_numbers.unit(along)
         third = dual_numbers.unit(dual_numbers.cross(first, across))
-        self.axes = first, dual_numbers.cross(third, first), third
+        self.axes = dual_numbers.stack([first, dual_numbers.cross(third, first), third])
 
-    def coordinates(self, vector: Dual) -> tuple[Dual, ...]:
-        """Coordinates (T,) of a (T, 3) vector in the frame."""
-        return tuple(dual_numbers.dot(vector, axis) for axis in self.axes)
+    def coordinates(self, vector: Dual) -> Dual:
+        """(T, 3) coordinates of a (T, 3) vector in the frame."""
+        return self.axes.transposed().apply(vector)
 
-    def value(self) -> Array:
-        """(T, 3, 3) matrix of the axes in columns."""
-        return np.stack([axis.value.T for axis in self.axes]).T
-
-    def turning_by_along(self, fixed: Array) -> Array:
-        """(T, 3, 3) derivative of a vector fixed in the frame by ``along``, both in the frame's coordinates.
+    def turning(self, fixed: Array) -> Array:
+        """(2, T, 3, 3) derivatives of a vector fixed in the frame by ``along`` and ``across``, in its coordinates.
 
         Moved sideways, ``along`` turns the frame about the two other axes, and about itself as far as ``across``
-        leans to it.
+        leans to it; moved along the third axis, ``across`` turns it about the first.
 
         Args:
-            fixed: (3, T) coordinates of the vector.
+            fixed: (T, 3) coordinates of the vector.
         """
-        (first, second, third), none = fixed, np.zeros_like(fixed[0])
-        u, v, _ = (axis.value for axis in self.axes)
-        lean = (self.across.value * u).sum(axis=-1) / (self.across.value * v).sum(axis=-1)
-        columns = [
-            [none, none, none],
-            [-second, first, none],
-            [-third, lean * third, first - lean * second],
-        ]
-        length = np.sqrt((self.along.value**2).sum(axis=-1))
-        return (np.array(columns) / length).T
+        x, y, z = fixed.T
+        along, beside, _ = np.einsum("tij,ti->jt", self.axes.value, self.across.value)
+        lean, length = along / beside, np.sqrt(np.einsum("ti,ti->t", self.along.value, self.along.value))
+        by_along, by_across = both = np.zeros((2, 3, 3, len(x)))
+        by_along[0, 1], by_along[1, 1] = -y, x
+        by_along[0, 2], by_along[1, 2], by_along[2, 2] = -z, lean * z, x - lean * y
+        by_across[1, 2], by_across[2, 2] = -z / beside, y / beside
+        by_along /= length
+        return both.transpose(0, 3, 1, 2)
 
 
 @dataclass(frozen=True)
@@ -114,7 +112,8 @@ class Bend:
 
     Attributes:
         links: The links.
-        cosine, sine: (T,) of the flexion, with its sign.
+        cosine: (T,) of the flexion.
+        turned: (T, 3, 3) rotation by the flexion.
         outer: Frame of the span in the world.
         inner: Frame of the span in the upper link's frame.
         used: (T,) distance of the ends over the length of the limb.
@@ -122,8 +121,8 @@ class Bend:
     """
 
     links: TwoLinks
-    cosine: Dual
-    sine: Dual
+    cosine: Array
+    turned: Dual
     outer: Frame
     inner: Frame
     used: Array
@@ -132,36 +131,33 @@ class Bend:
     @property
     def flexion(self) -> Array:
         """(T,) rad."""
-        return np.asarray(np.arccos(self.cosine.value))
+        return np.asarray(np.arccos(self.cosine))
 
     def rotations(self) -> tuple[Dual, Dual]:
         """(T, 3, 3) world rotations of the upper and the lower link."""
-        outer, inner = (dual_numbers.stack(frame.axes) for frame in (self.outer, self.inner))
-        upper = outer @ inner.transposed()
-        return upper, upper @ (dual_numbers.turned(1, self.cosine, self.sine) @ self.links.small)
+        upper = self.outer.axes @ self.inner.axes.transposed()
+        return upper, upper @ (self.turned @ self.links.small)
 
-    def carried_by_span(self, upper: Array, lower: Dual) -> tuple[Dual, Array]:
-        """(T, 3) sum of a vector of each link, in the world, and its (T, 3, 3) derivative by the span of the ends.
+    def carried(self, upper: Array, lower: Dual) -> tuple[Dual, Array]:
+        """(T, 3) sum of a vector of each link, in the world, and its (2, T, 3, 3) derivatives by span and ``across``.
 
         Args:
             upper: (3,) in the upper link's frame.
             lower: (T, 3) in the lower link's frame, turned by ``links.small``.
         """
-        turned = _about_y(self.cosine, self.sine, lower)
+        turned = self.turned.apply(lower)
         seen = self.inner.coordinates(turned + upper)
-        parts = (axis * along[..., None] for axis, along in zip(self.outer.axes, seen, strict=True))
-        carried = sum(parts, start=Dual.constant(np.zeros(3)))
-        fixed = np.array([x.value for x in seen])
-        inner, outer = self.inner.value(), self.outer.value()
+        inner, outer = self.inner.axes.value, self.outer.axes.value
         middle = self.inner.along.value + np.array([0.0, 0.0, self.links.lengths[0]])
         swung, moved = (
-            np.einsum("tji,tj->ti", inner, np.column_stack([x[:, 2], 0.0 * x[:, 1], -x[:, 0]]))
+            np.einsum("tji,jt->ti", inner, np.array([x[:, 2], 0.0 * x[:, 1], -x[:, 0]]))
             for x in (turned.value, middle)
         )
-        by_flexion = swung - np.einsum("tij,tj->ti", self.inner.turning_by_along(fixed), moved)
-        by_span = self.outer.turning_by_along(fixed)
-        by_span[:, :, 0] += by_flexion * self.flexion_by_distance[:, None]
-        return carried, outer @ by_span @ outer.transpose(0, 2, 1)
+        by_flexion = swung - np.einsum("tij,tj->ti", self.inner.turning(seen.value)[0], moved)
+        by_ends = self.outer.turning(seen.value)
+        by_ends[0, :, :, 0] += by_flexion * self.flexion_by_distance[:, None]
+        by_ends = np.einsum("tij,ntjk->ntik", outer, np.einsum("ntij,tkj->ntik", by_ends, outer))
+        return self.outer.axes.apply(seen), by_ends
 
 
 @dataclass(frozen=True)
@@ -178,6 +174,7 @@ class Limb:
         lower: (T, 3) first moment of mass of the lower link, turned by ``links.small``, kg m.
         carried_kg: Mass that goes with the far end.
         held: (T,) part of the near end's way that the span loses: 1 with the far end in place, 0 where it hangs.
+        swing: (T, 3) s where a step d of the near end changes ``across`` by d × s; None: ``across`` does not change.
     """
 
     links: TwoLinks
@@ -189,24 +186,20 @@ class Limb:
     lower: Dual
     carried_kg: float
     held: Array
+    swing: Array | None = None
 
     def moment_by_pelvis(self, pelvis: Dual) -> tuple[Dual, Array]:
         """(T, 3) first moment of mass, kg m, and its (T, 3, 3) derivative by the place of the pelvis, kg.
-
-        The derivative takes ``across`` as it is.
 
         Args:
             pelvis: (T, 3) the pelvis's origin, m.
         """
         near = pelvis + self.near
         span = self.span(near)
-        links, by_span = self.links.bend(span, self.across(near)).carried_by_span(self.upper, self.lower)
+        links, (by_span, by_across) = self.links.bend(span, self.across(near)).carried(self.upper, self.lower)
         moment = near * self.mass + links + (near + span) * self.carried_kg
         own = self.mass + self.carried_kg * (1.0 - self.held)
-        return moment, own[:, None, None] * np.eye(3) - self.held[:, None, None] * by_span
-
-
-def _about_y(cosine: Dual, sine: Dual, vector: Dual) -> Dual:
-    """(T, 3) vector turned about y by an angle whose (T,) cosine and sine are known."""
-    x, y, z = (vector[..., k] for k in range(3))
-    return dual_numbers.stack([cosine * x + sine * z, y, cosine * z - sine * x])
+        by_pelvis = own[:, None, None] * np.eye(3) - self.held[:, None, None] * by_span
+        if self.swing is not None:
+            by_pelvis += np.cross(self.swing[:, None], by_across)
+        return moment, by_pelvis

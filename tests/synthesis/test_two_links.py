@@ -52,7 +52,7 @@ def test_out_of_reach_the_limb_stays_short_and_almost_straight():
 
 def test_what_the_links_carry_is_turned_with_them():
     found = bend(moving(0.1, 0.05, -0.7))
-    carried, _ = found.carried_by_span(UPPER, found.links.small.apply(LOWER))
+    carried, _ = found.carried(UPPER, found.links.small.apply(LOWER))
     upper, lower = found.rotations()
     expected = upper.apply(UPPER) + lower.apply(LOWER)
     for x, y in zip(carried.orders, expected.orders, strict=True):
@@ -61,39 +61,50 @@ def test_what_the_links_carry_is_turned_with_them():
 
 @pytest.mark.parametrize("bends", [1.0, -1.0])
 @pytest.mark.parametrize("down", [-0.75, -0.5, -1.2])
-def test_derivatives_by_the_ends_are_the_numeric_ones(bends, down):
-    span, h = moving(0.1, 0.05, down), 1e-6
-    small = links(bends).small
+def test_derivatives_by_the_ends_and_the_axis_are_the_numeric_ones(bends, down):
+    span, axis, h = moving(0.1, 0.05, down), moving(0.2, 1.0, 0.1), 1e-6
+    made = links(bends)
 
-    def at(moved):
-        return bend(span + moved, bends).carried_by_span(UPPER, small.apply(LOWER))
+    def at(span_step, axis_step):
+        found = made.bend(span + span_step, axis + axis_step)
+        return found.carried(UPPER, made.small.apply(LOWER))
 
-    stated = at(np.zeros(3))[1]
-    for k, axis in enumerate(np.eye(3)):
-        numeric = (at(h * axis)[0].value - at(-h * axis)[0].value) / (2 * h)
-        assert np.abs(numeric - stated[:, :, k]).max() < 1e-7
+    still = np.zeros(3)
+    by_span, by_across = at(still, still)[1]
+    for k, step in enumerate(h * np.eye(3)):
+        numeric = (at(step, still)[0].value - at(-step, still)[0].value) / (2 * h)
+        assert np.abs(numeric - by_span[:, :, k]).max() < 1e-7
+        numeric = (at(still, step)[0].value - at(still, -step)[0].value) / (2 * h)
+        assert np.abs(numeric - by_across[:, :, k]).max() < 1e-7
 
 
-@pytest.mark.parametrize("held", [1.0, 0.4, 0.0])
-def test_the_moment_by_the_pelvis_is_the_numeric_derivative(held):
-    goal, hanging = moving(0.3, 0.1, 0.2), moving(0.0, 0.0, -0.6)
+def limb(held, turns):
+    """An arm that reaches a place, as far as it is held; its elbow's axis, where it turns, goes with the shoulder."""
+    goal, hanging, point = moving(0.3, 0.1, 0.2), moving(0.0, 0.0, -0.6), np.array([0.1, 0.9, -0.4])
     own = links(-1.0)
-    limb = Limb(
+    return Limb(
         own,
         moving(0.0, -0.2, 0.5),
         lambda near: hanging + (goal - near - hanging) * held,
-        lambda _: moving(0.0, 1.0, 0.0),
+        lambda near: dual_numbers.cross(point - near, goal - near) if turns else moving(0.0, 1.0, 0.0),
         5.0,
         UPPER,
         own.small.apply(LOWER),
         0.5,
         np.full(len(TIMES), held),
+        point - goal.value if turns else None,
     )
+
+
+@pytest.mark.parametrize("turns", [False, True])
+@pytest.mark.parametrize("held", [1.0, 0.4, 0.0])
+def test_the_moment_by_the_pelvis_is_the_numeric_derivative(held, turns):
     pelvis, h = moving(0.1, 0.1, 0.2), 1e-6
-    moment, stated = limb.moment_by_pelvis(pelvis)
+    reaching = limb(held, turns)
+    moment, stated = reaching.moment_by_pelvis(pelvis)
     assert moment.value.shape == (len(TIMES), 3)
-    for k, axis in enumerate(np.eye(3)):
-        ahead, behind = (limb.moment_by_pelvis(pelvis + step * axis)[0].value for step in (h, -h))
+    for k, step in enumerate(h * np.eye(3)):
+        ahead, behind = (reaching.moment_by_pelvis(pelvis + way)[0].value for way in (step, -step))
         assert np.abs((ahead - behind) / (2 * h) - stated[:, :, k]).max() < 1e-7
 
 
