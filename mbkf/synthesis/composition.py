@@ -10,7 +10,6 @@ from mbkf.conventions import Array
 from mbkf.errors import NotConverged
 from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
-from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.balance import HorizontalPath
 from mbkf.synthesis.coordinates import coordinates
 from mbkf.synthesis.curves import Curve
@@ -45,7 +44,10 @@ class Given:
 
 @dataclass
 class Composition:
-    """A plan completed by vertical shift in m, horizontal path of the centre of mass and pelvis angles."""
+    """A plan completed by vertical shift in m, horizontal path of the centre of mass and pelvis angles.
+
+    ``found`` holds (T,) times and the (T, 3) way from the centre of mass to the pelvis then, m, once it was found.
+    """
 
     plan: MotionPlan
     kinematics: InverseKinematics
@@ -53,6 +55,7 @@ class Composition:
     pelvis: tuple[Curve, Curve, Curve]
     lift_m: float = 0.0
     correction: Correction | None = None
+    found: tuple[Array, Array] | None = None
 
     def height(self, times: Array) -> Dual:
         """(T,) height of the centre of mass."""
@@ -87,15 +90,15 @@ class Composition:
 
     def pose(self, times: Array) -> Pose:
         """The body over time."""
-        return self.kinematics.pose(self.com(times), self.posture(self.given(times)))
+        com, start = self.com(times), None
+        if self.found is not None:
+            at, way = self.found
+            start = com.value + np.column_stack([np.interp(times, at, axis) for axis in way.T])
+        return self.kinematics.pose(com, self.posture(self.given(times)), start)
 
     def coordinates(self, times: Array) -> tuple[Array, Array, Array]:
         """q, v and a at times in s."""
         return coordinates(self.kinematics.model, self.pose(times))
-
-    def pelvis_rotations(self, times: Array) -> Array:
-        """(T, 3, 3) world rotations of the pelvis."""
-        return dual_numbers.euler(self._pelvis(times), order="zyx").value
 
     def _pelvis(self, times: Array) -> tuple[Dual, ...]:
         """(T,) pelvis angles about x, y and z, rad."""
@@ -135,7 +138,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
     posture = result.posture(given)
     airborne = given if tumbling is None else result.given(tumbling.times)
     turning = np.zeros((len(times), 2))
-    start: Dual | None = None
+    start: Array | None = None
     missed_m = 0.0
     for k in range(LIFTS + (ROUNDS if plan.hold is None else HOLD_ROUNDS)):
         height = result.height(times)
@@ -145,8 +148,10 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
         result.horizontal.solve(times, target, over, turning)
         posture = posture if still else result.posture(given)
         com = result.com(times)
-        pose = result.kinematics.pose(com if k >= LIFTS else com.upto(0), posture, start)
-        start = pose.origins["pelvis"]
+        values = k < LIFTS or tumbling is not None
+        pose = result.kinematics.pose(com.upto(0) if values else com, posture, start)
+        start = pose.origins["pelvis"].value
+        result.found = times, start - com.value
         result.lift_m += _lift(result, pose, times)
         if k < LIFTS:
             continue
@@ -169,7 +174,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
 def _fly(composition: Composition, tumbling: Tumbling, given: Given, rounds: int) -> float:
     """Turns the pelvis in the air; returns the last change of its rates in rad/s."""
     kinematics, com = composition.kinematics, composition.com(tumbling.times).upto(1)
-    start = kinematics.pose(com.upto(0), composition.posture(given)).origins["pelvis"]
+    start = kinematics.pose(com.upto(0), composition.posture(given)).origins["pelvis"].value
 
     def momentum(angles: tuple[Dual, Dual, Dual]) -> Array:
         return kinematics.momentum(kinematics.pose(com, composition.posture(given, angles), start))[1][0]

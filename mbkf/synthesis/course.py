@@ -128,7 +128,7 @@ def standing_height(
     times = np.linspace(0.0, seconds, count)
     load, poses = feet.load(times), feet.poses(times)
     joints = {joint: tuple(curve(times) for curve in axes) for joint, axes in angles.items()}
-    kinematics, still = InverseKinematics(model), np.zeros((count, 3))
+    kinematics = InverseKinematics(model)
     posture = kinematics.posture(joints, poses)
     usual = 0.95 * float(model.scale.mean())
     flat = Dual.constant(np.full(count, usual))
@@ -136,8 +136,8 @@ def standing_height(
     plane.solve(times, load.total_pressure, flat, np.zeros((count, 2)))
     across, height, start = plane(times).value, usual + load.mean_surface, None
     for _ in range(ROUNDS):
-        pose = kinematics.pose(Dual(np.column_stack([across, height]), still, still), posture, start)
-        start = pose.origins["pelvis"]
+        pose = kinematics.pose(Dual(np.column_stack([across, height])), posture, start)
+        start = pose.origins["pelvis"].value
         height = height + 0.9 * (np.cos(KNEE_RAD / 2) - pose.reach) * kinematics.leg_length("r")
     step = times[1]
     low = _lowest(height, round(1.5 * CALM_S / step))

@@ -188,9 +188,11 @@ def dot(a: Dual, b: Dual) -> Dual:
     return product(_inner, a, b)
 
 
-def cross(a: Dual, b: Dual) -> Dual:
-    """(T, 3) vector product of two (T, 3) dual numbers."""
-    return product(_cross, a, b)
+def cross(a: Dual, b: Dual | Array) -> Dual:
+    """(T, 3) vector product of two (T, 3) dual numbers, or with one constant (3,) on the right."""
+    if isinstance(b, Dual):
+        return product(vector_product, a, b)
+    return Dual.of(vector_product(a.orders, b))
 
 
 def unit(a: Dual) -> Dual:
@@ -236,11 +238,12 @@ def turned(axis: int, cosine: Dual, sine: Dual) -> Dual:
         sine: (T,) of the angle.
     """
     after, last = (axis + 1) % 3, (axis + 2) % 3
-    matrix = np.zeros((3, 3, *cosine.orders.shape))
+    along, across = _reversed(cosine.orders), _reversed(sine.orders)
+    matrix = np.zeros((3, 3, *along.shape))
     matrix[axis, axis, 0] = 1.0
-    matrix[after, after] = matrix[last, last] = cosine.orders
-    matrix[last, after], matrix[after, last] = sine.orders, -sine.orders
-    return Dual.of(matrix.transpose(2, 3, 0, 1))
+    matrix[after, after] = matrix[last, last] = along
+    matrix[after, last], matrix[last, after] = across, -across  # column, row
+    return Dual.of(_reversed(np.moveaxis(matrix, 2, 0)))
 
 
 def euler(about_xyz: Iterable[Dual], order: str = "yxz") -> Dual:
@@ -282,7 +285,7 @@ def _inner(x: Array, y: Array) -> Array:
     return np.asarray(np.einsum("...i,...i->...", x, y))
 
 
-def _cross(x: Array, y: Array) -> Array:
+def vector_product(x: Array, y: Array) -> Array:
     """Vector products along the last axis; :func:`numpy.cross` is slow where frames lie last in memory."""
     a, b, c = (x[..., k] for k in range(3))
     d, e, f = (y[..., k] for k in range(3))

@@ -80,7 +80,7 @@ class Tumbling:
         """Makes the momentum more constant.
 
         Args:
-            momentum: (N, 3) angular momentum about the centre of mass at the nodes, from the pelvis's angles.
+            momentum: (N, 3) angular momentum about the centre of mass at the nodes, from the pelvis's angles and rates.
             rounds: Iterations.
 
         Returns:
@@ -88,7 +88,7 @@ class Tumbling:
         """
         change = np.inf
         for _ in range(rounds):
-            angles = _angles(Dual.of(self._orders(turn, self.times)) for turn in self.turns)
+            angles = _angles(Dual.of(self._orders(turn, self.times)[:2]) for turn in self.turns)
             now = momentum(angles)
             if self._response is None:
                 self._response = np.stack(
@@ -120,4 +120,5 @@ def _angles(three: Iterable[Dual]) -> tuple[Dual, Dual, Dual]:
 
 def _faster(angles: tuple[Dual, Dual, Dual], axis: int) -> tuple[Dual, Dual, Dual]:
     """The same angles, one of them turning 1 rad/s faster."""
-    return _angles(Dual(a.value, a.first + (k == axis), a.second) for k, a in enumerate(angles))
+    rates = np.eye(3)[axis]
+    return _angles(Dual(a.value, a.first + rate) for a, rate in zip(angles, rates, strict=True))

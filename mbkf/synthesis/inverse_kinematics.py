@@ -195,15 +195,15 @@ class InverseKinematics:
         rotations |= ends[0]
         return Posture(rotations, origins, ends[1], hinged, legs, arms, fixed, mass, hung, placed)
 
-    def pose(self, com: Dual, posture: Posture, start: Dual | None = None) -> Pose:
+    def pose(self, com: Dual, posture: Posture, start: Array | None = None) -> Pose:
         """The pose with a given (T, 3) centre of mass, m.
 
         Args:
             com: Whole-body centre of mass.
             posture: Other prescribed coordinates.
-            start: Pelvis position from which the iteration starts.
+            start: (T, 3) pelvis position from which the iteration starts, m.
         """
-        pelvis = self._pelvis(com, posture, com.value if start is None else start.value)
+        pelvis = self._pelvis(com, posture, com.value if start is None else start)
         rotations = dict(posture.rotations)
         origins = {name: origin + pelvis for name, origin in posture.above.items()} | posture.ends
         knees, reach = [], np.zeros(len(com.value))
@@ -237,7 +237,7 @@ class InverseKinematics:
                 own, by_pelvis = limb.moment_by_pelvis(pelvis)
                 moment, mass = moment + own, mass + by_pelvis
             error = (com - moment / self.total_mass).orders
-            gain: Array = np.asarray(self.total_mass * np.linalg.inv(mass)) if k < NEWTON else GAIN[None]
+            gain = self.total_mass * _inverse(mass) if k < NEWTON else GAIN[None]
             pelvis = pelvis + Dual.of(np.einsum("tij,ntj->nti", gain, error))
             missed, close = np.abs(error).max(axis=(1, 2)), CLOSE[: known + 1].copy()
             if k < NEWTON:
@@ -382,15 +382,18 @@ class InverseKinematics:
         arms = {f"{side}_{part}" for side in without for part in ("upper_arm", "forearm", "hand")}
         rotations = {"pelvis": dual_numbers.euler(angles["pelvis"], order="zyx")}
         origins = {"pelvis": Dual.constant(np.zeros_like(angles["pelvis"][0].value)[:, None] + np.zeros(3))}
-        for name, parent in self.parent.items():
-            if parent == "world" or name in arms or name.endswith(("thigh", "shank", "foot", "toes")):
-                continue
-            if name == "neck":
-                x, y = angles[name][:2]
-                relative = dual_numbers.rotation(0, x) @ dual_numbers.rotation(1, y)
-            else:
-                relative = dual_numbers.euler(angles[name])
-            rotations[name] = rotations[parent] @ relative
+        names = [name for name, parent in self.parent.items() if parent != "world" and name not in arms]
+        names = [name for name in names if not name.endswith(("thigh", "shank", "foot", "toes"))]
+        free = [name for name in names if name != "neck"]
+        turned = dual_numbers.euler(
+            [dual_numbers.stack([angles[name][k] for name in free]) for k in range(3)]
+        )
+        relative = {name: turned[:, k] for k, name in enumerate(free)}
+        x, y = angles["neck"][:2]
+        relative["neck"] = dual_numbers.rotation(0, x) @ dual_numbers.rotation(1, y)
+        for name in names:
+            parent = self.parent[name]
+            rotations[name] = rotations[parent] @ relative[name]
             origins[name] = origins[parent] + rotations[parent].apply(self.offset[name])
         return rotations, origins
 
@@ -427,3 +430,10 @@ class InverseKinematics:
         ):
             second += np.einsum("nti,tk->ntik", rate.orders[1:n], value.value)
         return com, 2.0 * dual_numbers.axial(second)
+
+
+def _inverse(matrices: Array) -> Array:
+    """(T, 3, 3) inverses, by vector products of the rows."""
+    a, b, c = np.moveaxis(matrices, 1, 0)
+    crossed = np.array([dual_numbers.vector_product(*pair).T for pair in ((b, c), (c, a), (a, b))])
+    return np.einsum("rit,t->tir", crossed, 1.0 / np.einsum("ti,it->t", a, crossed[0]))

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
-from mbkf.conventions import SIDES, Array, read_only
+from mbkf.conventions import GRAVITY_M_S2, SIDES, Array, read_only
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.model.body import Body
 from mbkf.synthesis.composition import Composition, compose
 from mbkf.synthesis.contact import FRICTION, sole_outline, split
+from mbkf.synthesis.coordinates import coordinates
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.motions import registered_motion
 from mbkf.synthesis.strength import overloaded
@@ -144,18 +145,18 @@ class _Moved:
 
 def _dynamics(model: Body, composition: Composition, times: Array, every: int) -> _Moved:
     """The motion at every n-th time, wrenches at all."""
-    q, v, a = composition.coordinates(times)
-    plan = composition.plan
+    plan, kinematics, pose = composition.plan, composition.kinematics, composition.pose(times)
+    q, v, a = coordinates(model, pose)
     load = plan.load(times)
-    needed = np.array([model.inverse_dynamics(*state)[:6] for state in zip(q, v, a, strict=True)])
     for k in np.flatnonzero(~load.grounded).tolist():
-        a[k, :6] -= np.linalg.solve(model.mass_matrix(q[k])[:6, :6], needed[k])
-    rotations = composition.pelvis_rotations(times)
-    force = np.einsum("tij,tj->ti", rotations, needed[:, :3])
-    moment = np.einsum("tij,tj->ti", rotations, needed[:, 3:]) + np.cross(q[:, :3], force)
+        needed = model.inverse_dynamics(q[k], v[k], a[k])[:6]
+        a[k, :6] -= np.linalg.solve(model.mass_matrix(q[k])[:6, :6], needed)
+    com, (_, change) = kinematics.momentum(pose)
+    force = kinematics.total_mass * (com.second + np.array([0.0, 0.0, GRAVITY_M_S2]))
+    moment = change + np.cross(com.value, force)
     carried = wrenches(plan.supports, times, force)
     rest = np.hstack([force, moment]) - carried.sum(axis=1)
-    feet, centres = split(rest, load, composition.com(times).value[:, 2])
+    feet, centres = split(rest, load, com.value[:, 2])
     q, v, a, centres = q[::every], v[::every], a[::every], centres[::every]
     names = [f"{SIDE_NAMES[side]}_foot" for side in SIDES] + [SEGMENTS[s.name] for s in plan.supports]
     joints = [model.joint(name).joint_id for name in names]
@@ -163,7 +164,7 @@ def _dynamics(model: Body, composition: Composition, times: Array, every: int) -
     tau = np.empty_like(v)
     for k in range(len(tau)):
         tau[k] = model.inverse_dynamics(q[k], v[k], a[k])
-        jacobian = model.placements_and_jacobian(q[k])[2]
+        jacobian = model.spatial_jacobian(q[k])
         for contact, joint in enumerate(joints):
             tau[k] -= np.where(model.supports[joint], own[k, contact] @ jacobian, 0.0)
     return _Moved(q, v, a, tau, centres, feet, carried)

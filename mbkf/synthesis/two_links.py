@@ -19,6 +19,10 @@ STRAIGHT_RAD = np.deg2rad(2.5)
 """The middle joint never gets straighter than this; a limb asked to reach further stays short."""
 
 
+MIDDLE = np.array([0.0, 1.0, 0.0])
+"""Axis of the middle joint in the upper link's frame."""
+
+
 class TwoLinks:
     """Links along −z of their frames; the middle joint is Ry(flexion) Rx(x) Rz(z) with small x and z.
 
@@ -42,7 +46,6 @@ class TwoLinks:
         self.small = dual_numbers.rotation(0, x) @ dual_numbers.rotation(2, z)
         self._by_square = 1.0 / (dual_numbers.cos(x) * (2 * upper * lower))
         self._tip = self.small.apply(np.array([0.0, 0.0, -lower]))
-        self._middle = Dual.constant(np.zeros_like(self._tip.value) + np.array([0.0, 1.0, 0.0]))
 
     def bend(self, span: Dual, across: Dual) -> Bend:
         """The limb with its ends ``span`` apart.
@@ -64,7 +67,7 @@ class TwoLinks:
         local = turned.apply(self._tip) + np.array([0.0, 0.0, -upper])
         length = np.sqrt(square.value)
         rate = np.where(free, -2.0 * length * self._by_square.value / sine, 0.0)
-        outer, inner = Frame(span, across), Frame(local, self._middle)
+        outer, inner = Frame(span, across), Frame(local, MIDDLE)
         return Bend(self, cosine.value, turned, outer, inner, length / (upper + lower), rate)
 
 
@@ -72,11 +75,11 @@ class Frame:
     """Right-handed frame whose first axis is ``along`` and whose second is nearest to ``across``.
 
     Attributes:
-        along, across: (T, 3) vectors that make it.
+        along, across: (T, 3) vectors that make it, ``across`` also a constant (3,).
         axes: (T, 3, 3) its three axes in columns.
     """
 
-    def __init__(self, along: Dual, across: Dual) -> None:
+    def __init__(self, along: Dual, across: Dual | Array) -> None:
         self.along, self.across = along, across
         first = dual_numbers.unit(along)
         third = dual_numbers.unit(dual_numbers.cross(first, across))
@@ -96,7 +99,8 @@ class Frame:
             fixed: (T, 3) coordinates of the vector.
         """
         x, y, z = fixed.T
-        along, beside, _ = np.einsum("tij,ti->jt", self.axes.value, self.across.value)
+        across = self.across.value if isinstance(self.across, Dual) else self.across
+        along, beside, _ = np.einsum("...ij,...i->j...", self.axes.value, across)
         lean, length = along / beside, np.sqrt(np.einsum("ti,ti->t", self.along.value, self.along.value))
         by_along, by_across = both = np.zeros((2, 3, 3, len(x)))
         by_along[0, 1], by_along[1, 1] = -y, x
@@ -198,8 +202,8 @@ class Limb:
         span = self.span(near)
         links, (by_span, by_across) = self.links.bend(span, self.across(near)).carried(self.upper, self.lower)
         moment = near * self.mass + links + (near + span) * self.carried_kg
-        own = self.mass + self.carried_kg * (1.0 - self.held)
-        by_pelvis = own[:, None, None] * np.eye(3) - self.held[:, None, None] * by_span
+        by_pelvis = -self.held[:, None, None] * by_span
+        by_pelvis[:, range(3), range(3)] += (self.mass + self.carried_kg * (1.0 - self.held))[:, None]
         if self.swing is not None:
             by_pelvis += np.cross(self.swing[:, None], by_across)
         return moment, by_pelvis
