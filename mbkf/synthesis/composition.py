@@ -11,7 +11,6 @@ from mbkf.errors import NotConverged
 from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis.balance import HorizontalPath
-from mbkf.synthesis.coordinates import coordinates
 from mbkf.synthesis.curves import Curve
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.flight import SMALL, Tumbling
@@ -95,10 +94,6 @@ class Composition:
             at, way = self.found
             start = com.value + np.column_stack([np.interp(times, at, axis) for axis in way.T])
         return self.kinematics.pose(com, self.posture(self.given(times)), start)
-
-    def coordinates(self, times: Array) -> tuple[Array, Array, Array]:
-        """q, v and a at times in s."""
-        return coordinates(self.kinematics.model, self.pose(times))
 
     def _pelvis(self, times: Array) -> tuple[Dual, ...]:
         """(T,) pelvis angles about x, y and z, rad."""

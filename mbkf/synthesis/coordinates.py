@@ -12,20 +12,29 @@ from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.inverse_kinematics import Pose
 
 
-def coordinates(model: Body, pose: Pose) -> tuple[Array, Array, Array]:
-    """Arrays q (T, nq), v (T, nv), a (T, nv) of a pose, in Pinocchio's coordinates; quaternions do not jump."""
-    frames = len(pose.knee)
+def coordinates(model: Body, pose: Pose, every: int = 1) -> tuple[Array, Array, Array]:
+    """Arrays q (T, nq), v (T, nv), a (T, nv) of every n-th frame, in Pinocchio's coordinates; quaternions do not jump.
+
+    Args:
+        model: The body.
+        pose: Its pose.
+        every: The n.
+
+    Raises:
+        InvalidInput: The pose is not finite.
+    """
+    frames = len(pose.knee[::every])
     q = np.zeros((frames, model.nq))
     v, a = np.zeros((frames, model.nv)), np.zeros((frames, model.nv))
     for name, joint in model.joints.items():
         if joint.kind in ("hinge", "universal"):
             for k, angle in enumerate(pose.angles[name]):
                 at_q, at_v = joint.q.start + k, joint.v.start + k
-                q[:, at_q], v[:, at_v], a[:, at_v] = angle.orders
+                q[:, at_q], v[:, at_v], a[:, at_v] = angle[::every].orders
             continue
-        rotation, first_q, first_v = pose.rotations[name], joint.q.start, joint.v.start
+        rotation, first_q, first_v = pose.rotations[name][::every], joint.q.start, joint.v.start
         if joint.kind == "free":
-            to_body, origin = rotation.transposed(), pose.origins[name]
+            to_body, origin = rotation.transposed(), pose.origins[name][::every]
             q[:, first_q : first_q + 3] = origin.value
             v[:, first_v : first_v + 3] = _apply(to_body.value, origin.first)
             a[:, first_v : first_v + 3] = _apply(to_body.value, origin.second) + _apply(
@@ -33,7 +42,8 @@ def coordinates(model: Body, pose: Pose) -> tuple[Array, Array, Array]:
             )
             first_q, first_v = first_q + 3, first_v + 3
         else:
-            rotation = pose.rotations[model.description.segment(name).parent].transposed() @ rotation
+            parent = pose.rotations[model.description.segment(name).parent][::every]
+            rotation = parent.transposed() @ rotation
         q[:, first_q : first_q + 4] = _quaternions(rotation.value)
         v[:, first_v : first_v + 3], a[:, first_v : first_v + 3] = dual_numbers.local_rates(rotation)
     if not (np.isfinite(q).all() and np.isfinite(a).all()):

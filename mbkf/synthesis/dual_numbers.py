@@ -224,18 +224,18 @@ def where(condition: np.ndarray, a: Dual, b: Dual) -> Dual:
 
 
 def rotation(axis: int, angle: Dual) -> Dual:
-    """(T, 3, 3) rotation by a (T,) angle in rad about axis 0, 1 or 2."""
+    """(T, ..., 3, 3) rotation by a (T, ...) angle in rad about axis 0, 1 or 2."""
     s, c = np.sin(angle.value), np.cos(angle.value)
     return turned(axis, angle.chain(c, -s, -c), angle.chain(s, c, -s))
 
 
 def turned(axis: int, cosine: Dual, sine: Dual) -> Dual:
-    """(T, 3, 3) rotation by an angle whose cosine and sine are known.
+    """(T, ..., 3, 3) rotation by an angle whose cosine and sine are known.
 
     Args:
         axis: 0, 1 or 2.
-        cosine: (T,) of the angle.
-        sine: (T,) of the angle.
+        cosine: (T, ...) of the angle.
+        sine: (T, ...) of the angle.
     """
     after, last = (axis + 1) % 3, (axis + 2) % 3
     along, across = _reversed(cosine.orders), _reversed(sine.orders)
@@ -247,7 +247,7 @@ def turned(axis: int, cosine: Dual, sine: Dual) -> Dual:
 
 
 def euler(about_xyz: Iterable[Dual], order: str = "yxz") -> Dual:
-    """(T, 3, 3) product of elementary rotations by the angles about x, y and z, in the given order."""
+    """(T, ..., 3, 3) product of rotations by the (T, ...) angles about x, y and z, rad, in the given order."""
     angles = dict(zip("xyz", about_xyz, strict=True))
     product = rotation("xyz".index(order[0]), angles[order[0]])
     for axis in order[1:]:

@@ -122,7 +122,7 @@ def synthesise_motion(
         moved.centres,
         rate_hz * every,
         moved.feet,
-        plan.load(fine).surfaces,
+        moved.surfaces,
         None if flight is None else (flight.take_off_s, flight.touch_down_s),
         tuple(support.name for support in plan.supports),
         moved.supports[::every],
@@ -132,7 +132,7 @@ def synthesise_motion(
 
 @dataclass(frozen=True)
 class _Moved:
-    """q, v, a, centres (of pressure) and tau at the cameras' times; wrenches of feet and supports at the plates'."""
+    """q, v, a, tau and centres of pressure at the cameras' times; wrenches and surfaces of contact at the plates'."""
 
     q: Array
     v: Array
@@ -141,14 +141,15 @@ class _Moved:
     centres: Array
     feet: Array
     supports: Array
+    surfaces: Array
 
 
 def _dynamics(model: Body, composition: Composition, times: Array, every: int) -> _Moved:
     """The motion at every n-th time, wrenches at all."""
     plan, kinematics, pose = composition.plan, composition.kinematics, composition.pose(times)
-    q, v, a = coordinates(model, pose)
+    q, v, a = coordinates(model, pose, every)
     load = plan.load(times)
-    for k in np.flatnonzero(~load.grounded).tolist():
+    for k in np.flatnonzero(~load.grounded[::every]).tolist():
         needed = model.inverse_dynamics(q[k], v[k], a[k])[:6]
         a[k, :6] -= np.linalg.solve(model.mass_matrix(q[k])[:6, :6], needed)
     com, (_, change) = kinematics.momentum(pose)
@@ -157,7 +158,6 @@ def _dynamics(model: Body, composition: Composition, times: Array, every: int) -
     carried = wrenches(plan.supports, times, force)
     rest = np.hstack([force, moment]) - carried.sum(axis=1)
     feet, centres = split(rest, load, com.value[:, 2])
-    q, v, a, centres = q[::every], v[::every], a[::every], centres[::every]
     names = [f"{SIDE_NAMES[side]}_foot" for side in SIDES] + [SEGMENTS[s.name] for s in plan.supports]
     joints = [model.joint(name).joint_id for name in names]
     own = np.concatenate([feet, carried], axis=1)[::every]
@@ -167,7 +167,7 @@ def _dynamics(model: Body, composition: Composition, times: Array, every: int) -
         jacobian = model.spatial_jacobian(q[k])
         for contact, joint in enumerate(joints):
             tau[k] -= np.where(model.supports[joint], own[k, contact] @ jacobian, 0.0)
-    return _Moved(q, v, a, tau, centres, feet, carried)
+    return _Moved(q, v, a, tau, centres[::every], feet, carried, load.surfaces)
 
 
 def _strain(model: Body, tau: Array) -> str:

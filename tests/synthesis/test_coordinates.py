@@ -39,3 +39,9 @@ def test_velocity_and_acceleration_are_rates_along_the_configuration(body, compo
 def test_quaternions_do_not_jump(body, composition):
     q, _, _ = coordinates(body, composition.pose(np.linspace(0.0, 1.0, 101)))
     assert np.abs(np.diff(q, axis=0)).max() < 0.01
+
+
+def test_every_third_frame_is_the_same_frame(body, composition):
+    pose = composition.pose(np.linspace(0.0, 1.0, 10))
+    for whole, third in zip(coordinates(body, pose), coordinates(body, pose, 3), strict=True):
+        assert np.abs(whole[::3] - third).max() < 1e-12 * np.abs(whole).max()

@@ -18,6 +18,8 @@ CURVES = {
     "spline": spline([0.0, 0.3, 0.7, 1.0], [0.0, 1.0, 0.5, 2.0], (1.0, 0.0), (0.0, 3.0)),
     "sum": added(sinusoid(1.0, 0.7, 0.3), scaled(2.0, path([(0.0, 0.0), (1.0, 1.0)], smooth=3))),
     "cross": lambda t: dual_numbers.cross(vector(t), vector(t + 0.3)),
+    "cross with a constant": lambda t: dual_numbers.cross(vector(t), np.array([0.3, -1.0, 2.0])),
+    "inverse": lambda t: 2.0 / sinusoid(0.5, 1.1, 0.1, 2.0)(t),
     "unit": lambda t: dual_numbers.unit(vector(t)),
     "rotation": lambda t: dual_numbers.euler([sinusoid(1.0, f, 0.2)(t) for f in (0.3, 0.5, 0.7)]),
 }
@@ -47,6 +49,22 @@ def test_arrays_on_either_side_leave_the_arithmetic_to_the_jet():
     assert np.allclose((TIMES * x).first, TIMES)
     assert np.allclose((1.0 - x).first, -1.0)
     assert np.allclose((TIMES + x).value, 2 * TIMES)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_results_lack_the_derivatives_that_factors_lack(name):
+    whole = CURVES[name](TIMES)
+    for order in range(3):
+        product = whole.upto(order) * whole
+        assert np.array_equal(product.orders, (whole * whole).orders[: order + 1])
+
+
+def test_rotations_of_several_joints_at_once_are_those_of_each():
+    angles = [vector(TIMES + k) for k in range(3)]
+    together = dual_numbers.euler(angles)
+    for joint in range(3):
+        alone = dual_numbers.euler([angle[:, joint] for angle in angles])
+        assert np.allclose(together[:, joint].orders, alone.orders, rtol=0.0, atol=1e-12)
 
 
 def test_path_is_constant_outside_its_knots():
