@@ -15,6 +15,7 @@ from mbkf.conventions import SIDES, Array
 from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.dual_numbers import Dual
+from mbkf.synthesis.masses import Masses, MovingMass
 from mbkf.synthesis.two_links import Limb, TwoLinks
 
 SIDE_NAMES = {"r": "right", "l": "left"}
@@ -26,7 +27,7 @@ NEAR_M = 1e-8
 """Error of the centre of mass, m, of which one step of Newton's leaves nothing."""
 
 CLOSE = np.array([1e-13, 1e-11, 1e-9])
-"""Errors of the centre of mass at which iterations end: m, m/s, m/s²."""
+"""Errors of the centre of mass at which iterations end: m, m/s, m/s²; more, as digits are, further than 1 m away."""
 
 GAIN = np.eye(3) * [1.2, 1.2, 1.1]
 """Step of the pelvis per error of the centre of mass where Newton's steps fail; legs follow a little."""
@@ -99,8 +100,8 @@ class Posture:
         arms: Arms whose hands' place is given.
         fixed: (T, 3) first moment of mass with the pelvis's origin in the world's, without the limbs' share, kg m.
         mass: Mass that moves with the pelvis's origin, without limbs, kg.
-        hung: Mass carried by the segments of ``above``, about the pelvis's origin.
-        placed: Mass carried by the segments of ``ends``.
+        hung: Mass of the segments of ``above``, about the pelvis's origin.
+        placed: Mass of the segments of ``ends``.
     """
 
     rotations: dict[str, Dual]
@@ -111,22 +112,8 @@ class Posture:
     arms: dict[str, Limb]
     fixed: Dual
     mass: float
-    hung: Carried
-    placed: Carried
-
-
-@dataclass(frozen=True)
-class Carried:
-    """Sums over moving segments.
-
-    Attributes:
-        moment: (T, 3) first moment of mass Σ m x about an origin, kg m.
-        second: (n - 1, T, 3, 3) rates of the second moment of mass, half of them: ∫ ẋ xᵀ dm and, where accelerations
-            are known, ∫ ẍ xᵀ dm; twice their axial vectors are the angular momentum and its derivative.
-    """
-
-    moment: Dual
-    second: Array
+    hung: MovingMass
+    placed: MovingMass
 
 
 class InverseKinematics:
@@ -134,30 +121,21 @@ class InverseKinematics:
 
     Attributes:
         model: The body.
-        mass: Mass by segment, kg.
-        com: (3,) centre of mass by segment, m.
-        moments: (3, 3) second moments of mass about the centre of mass by segment, kg m².
+        masses: Masses of its segments.
         offset: (3,) joint in the parent's frame by segment, m.
     """
 
     def __init__(self, model: Body) -> None:
         self.model = model
-        self.mass: dict[str, float] = {}
-        self.com: dict[str, Array] = {}
-        self.moments: dict[str, Array] = {}
+        self.masses = Masses(model)
+        self.total_mass = sum(self.masses.kg.values())
         self.offset: dict[str, Array] = {}
         self.parent: dict[str, str] = {}
         for segment in model.description.segments:
-            inertia = model.pin_model.inertias[model.joint(segment.name).joint_id]
-            about_com = np.array(inertia.inertia)
-            self.mass[segment.name] = float(inertia.mass)
-            self.com[segment.name] = np.array(inertia.lever)
-            self.moments[segment.name] = 0.5 * np.trace(about_com) * np.eye(3) - about_com
             self.parent[segment.name] = segment.parent
             if segment.parent != "world":
                 parent = model.description.segment(segment.parent)
                 self.offset[segment.name] = model.axis_scale(parent) * segment.origin_m
-        self.total_mass = sum(self.mass.values())
 
     def leg_length(self, side: str) -> float:
         """Hip to ankle with a straight knee, m; side "r" or "l"."""
@@ -184,12 +162,14 @@ class InverseKinematics:
         held = {SIDE_NAMES[side]: hand for side, hand in (hands or {}).items()}
         rotations, origins = self._upper(angles, list(held))
         ends = self._feet(feet)
-        hung, placed = self._carried(rotations, origins), self._carried(*ends)
-        fixed, mass = hung.moment + placed.moment, sum(self.mass[name] for name in origins)
+        hung, placed = self.masses.moving(rotations, origins), self.masses.moving(*ends)
+        fixed, mass = hung.moment + placed.moment, sum(self.masses.kg[name] for name in origins)
         legs = {SIDE_NAMES[side]: self._leg(side, rotations["pelvis"], angles, feet[side]) for side in SIDES}
         arms = {name: self._arm(name, rotations, origins, angles, hand) for name, hand in held.items()}
         for name, hand in held.items():
-            fixed = fixed + hand.rotation.apply(self.mass[f"{name}_hand"] * self.com[f"{name}_hand"])
+            fixed = fixed + hand.rotation.apply(
+                self.masses.kg[f"{name}_hand"] * self.masses.com[f"{name}_hand"]
+            )
             rotations[f"{name}_hand"] = hand.rotation
         hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
         rotations |= ends[0]
@@ -221,16 +201,16 @@ class InverseKinematics:
         Place, velocity and acceleration are found one after the other: each is a linear equation once those before it
         are known.
         """
-        pelvis = Dual(start)
-        for order in range(len(com.orders)):
-            pelvis = self._solved(com.upto(order), posture, pelvis)
-            if order + 1 < len(com.orders):
-                pelvis = Dual(*pelvis.orders, com.orders[order + 1])
+        pelvis = self._solved(com.upto(0), posture, Dual(start))
+        for order, rate in enumerate(com.orders[1:], start=1):
+            pelvis = self._solved(com.upto(order), posture, Dual(*pelvis.orders, rate))
         return pelvis
 
     def _solved(self, com: Dual, posture: Posture, pelvis: Dual) -> Dual:
         """The pelvis position with its highest derivative, from one whose lower orders are right."""
-        known, limbs = len(com.orders) - 1, [*posture.legs.values(), *posture.arms.values()]
+        limbs = [*posture.legs.values(), *posture.arms.values()]
+        close = CLOSE[: len(com.orders)] * max(1.0, float(np.abs(com.value).max()))
+        solved = np.append(close[:-1], np.inf if len(close) > 1 else NEAR_M)
         for k in range(ROUNDS):
             moment, mass = posture.fixed + pelvis * posture.mass, posture.mass * np.eye(3)
             for limb in limbs:
@@ -239,10 +219,7 @@ class InverseKinematics:
             error = (com - moment / self.total_mass).orders
             gain = self.total_mass * _inverse(mass) if k < NEWTON else GAIN[None]
             pelvis = pelvis + Dual.of(np.einsum("tij,ntj->nti", gain, error))
-            missed, close = np.abs(error).max(axis=(1, 2)), CLOSE[: known + 1].copy()
-            if k < NEWTON:
-                close[known] = np.inf if known else NEAR_M
-            if (missed < close).all():
+            if (np.abs(error).max(axis=(1, 2)) < (solved if k < NEWTON else close)).all():
                 break
         return pelvis
 
@@ -277,20 +254,6 @@ class InverseKinematics:
             origins[f"{name}_{end}"] = near + span
         return bend.flexion, bend.used
 
-    def _carried(self, rotations: Mapping[str, Dual], origins: Mapping[str, Dual]) -> Carried:
-        """Mass carried by the segments that have an origin."""
-        mass = np.array([self.mass[name] for name in origins])
-        moments = np.array([self.moments[name] for name in origins])
-        turned = dual_numbers.stack([rotations[name] for name in origins]).orders
-        at = dual_numbers.stack(
-            [x + rotations[name].apply(self.com[name]) for name, x in origins.items()]
-        ).orders
-        turned = turned[: len(at)]
-        inertia = np.einsum("sij,tkjs->tiks", moments, turned[0])
-        second = np.einsum("ntijs,tjks->ntik", turned[1:], inertia)
-        second += np.einsum("ntis,tks->ntik", at[1:], mass * at[0])
-        return Carried(Dual.of(at @ mass), second)
-
     def _limb(
         self,
         names: tuple[str, str],
@@ -313,11 +276,11 @@ class InverseKinematics:
             swing: Change of ``across`` with the near end.
         """
         upper, lower = names
-        masses = self.mass[upper], self.mass[lower]
-        first = masses[0] * self.com[upper] + masses[1] * self.offset[lower]
-        last = links.small.apply(masses[1] * self.com[lower])
+        masses = self.masses.kg[upper], self.masses.kg[lower]
+        first = masses[0] * self.masses.com[upper] + masses[1] * self.offset[lower]
+        last = links.small.apply(masses[1] * self.masses.com[lower])
         held = np.ones(len(near.value)) if hand is None else hand.held.value
-        beyond = 0.0 if hand is None else self.mass[upper.replace("upper_arm", "hand")]
+        beyond = 0.0 if hand is None else self.masses.kg[upper.replace("upper_arm", "hand")]
         return Limb(links, near, span, across, sum(masses), first, last, beyond, held, swing)
 
     def _leg(self, side: str, pelvis: Dual, angles: Mapping[str, tuple[Dual, ...]], foot: FootPose) -> Limb:
@@ -418,16 +381,12 @@ class InverseKinematics:
         """
         posture, pelvis = pose.posture, pose.origins["pelvis"]
         given = {**posture.above, **posture.ends}
-        limbs = self._carried(pose.rotations, {k: x for k, x in pose.origins.items() if k not in given})
+        limbs = self.masses.moving(pose.rotations, {k: x for k, x in pose.origins.items() if k not in given})
         hung = posture.hung.moment + pelvis * posture.mass
         moment = hung + posture.placed.moment + limbs.moment
         com, n = moment / self.total_mass, len(moment.orders)
         second = limbs.second + posture.placed.second[: n - 1] + posture.hung.second[: n - 1]
-        for rate, value in (
-            (hung, pelvis),
-            (pelvis, posture.hung.moment),
-            (moment, -com),
-        ):
+        for rate, value in ((hung, pelvis), (pelvis, posture.hung.moment), (moment, -com)):
             second += np.einsum("nti,tk->ntik", rate.orders[1:n], value.value)
         return com, 2.0 * dual_numbers.axial(second)
 

@@ -6,7 +6,6 @@ import pytest
 
 from mbkf.synthesis.composition import compose
 from mbkf.synthesis.coordinates import coordinates
-from mbkf.synthesis.inverse_kinematics import InverseKinematics
 from mbkf.synthesis.kneel import kneel_plan
 from mbkf.synthesis.stand import stand_plan
 
@@ -58,7 +57,3 @@ def test_a_kneeling_body_moves_with_its_centre_of_mass(body):
     assert np.abs(less - rates[0]).max() < 1e-9
     assert len(same.orders) == 2
     assert len(composition.kinematics.pose(still, posture).origins["pelvis"].orders) == 1
-
-
-def test_masses_add_up(body):
-    assert InverseKinematics(body).total_mass == pytest.approx(body.mass_kg, abs=1e-9)
