@@ -18,9 +18,9 @@ from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.synthesis.motion import TrueMotion, synthesise_motion
-from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.synthesis.motion import TrueMotion
 from tests.motions import moderate_pose, protocol_sensor
+from tests.recordings import performer
 
 DT = 0.01
 LOAD = np.array([80.0, 40.0, 500.0, 60.0, 60.0, 20.0])
@@ -213,9 +213,7 @@ SECONDS = {"squat": 2.0, "walk": 1.5, "jump": 2.5, "sit_to_stand": 2.6}
 @cache
 def trial(name):
     """A squat, a walk, a jump or standing up from a chair, made once."""
-    subject = synthesise_subject(5)
-    model = body_of(subject)
-    motion = synthesise_motion(model, name, SECONDS[name], seed=5)
+    subject, model, motion = performer(name, SECONDS[name], 5)
     ground = tuple(plate(0.0, 0.0, name=name, outline=False) for name in ("r", "l"))
     return Trial(subject, model, motion, ground)
 

@@ -3,9 +3,9 @@
 import pytest
 
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
-from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.motions import motion_names
 from mbkf.synthesis.person import body_of, synthesise_subject
+from tests.recordings import performer
 
 SECONDS = {
     "squat": 3.0,
@@ -28,13 +28,8 @@ SECONDS = {
 class Made(dict):
     """Motions by name, each made when it is first asked for."""
 
-    def __init__(self, body):
-        super().__init__()
-        self.body = body
-
     def __missing__(self, name):
-        self[name] = synthesise_motion(self.body, name, SECONDS[name], seed=5)
-        return self[name]
+        return performer(name, SECONDS[name], 5)[2]
 
 
 @pytest.fixture(scope="session")
@@ -48,8 +43,8 @@ def body(person):
 
 
 @pytest.fixture(scope="session")
-def motions(body):
-    return Made(body)
+def motions():
+    return Made()
 
 
 @pytest.fixture(scope="session", params=motion_names())

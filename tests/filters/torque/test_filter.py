@@ -13,9 +13,9 @@ from mbkf.filters.torque.report import TorqueState
 from mbkf.filters.torque.settings import TorqueSettings, preset
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
-from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import assert_near, marker_positions, protocol_sensor
+from tests.recordings import performer
 
 pytestmark = pytest.mark.slow
 
@@ -29,8 +29,8 @@ def model():
 
 
 @pytest.fixture(scope="module")
-def motions(model):
-    return {name: synthesise_motion(model, name, 1.5, RATE_HZ, seed=5) for name in ("squat", "walk")}
+def motions():
+    return {name: performer(name, 1.5, 5)[2] for name in ("squat", "walk")}
 
 
 class Told:

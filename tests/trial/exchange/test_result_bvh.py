@@ -1,7 +1,6 @@
 """A result as BVH, read by a reader that knows the format only: every joint where the body has it."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from mbkf.errors import InvalidInput
 from mbkf.trial.exchange.result_bvh import write_result_bvh
 from tests.motions import assert_near
-from tests.recordings import LOST, broken_walk, walker
+from tests.recordings import LOST, broken_walk, performer, walker
 from tests.synthesis.conftest import SECONDS
 from tests.trial.exchange.bvh_reading import places, read
 
@@ -87,11 +86,8 @@ def test_without_angles_the_body_stands_upright_facing_z(walked):
     assert_on_the_body(nodes, np.zeros(rows.shape[1]), model, model.neutral())
 
 
-@cache
 def moved(name):
-    from mbkf.synthesis.motion import synthesise_motion
-
-    return synthesise_motion(walker()[1], name, SECONDS[name], seed=5)
+    return performer(name, SECONDS[name], 5)[2]
 
 
 @pytest.mark.parametrize("name", ["squat", "kneel", "reach"])
