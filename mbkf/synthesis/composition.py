@@ -129,7 +129,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
     )
     if plan.hold is not None:
         result.correction = Correction(plan.hold, times)
-    given, still = result.given(times), result.correction is None and tumbling is None
+    given, still = result.given(times), tumbling is None and not (plan.hold and plan.hold.lean)
     posture = result.posture(given)
     airborne = given if tumbling is None else result.given(tumbling.times)
     turning = np.zeros((len(times), 2))
