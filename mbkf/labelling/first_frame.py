@@ -8,6 +8,7 @@ with positions only) predicts the rest.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,6 +83,21 @@ class FirstFrame:
         return int((self.points != HIDDEN).sum())
 
 
+class _Fits:
+    """Fits of one frame by their first labels: limbs that are searched again often have the same ones."""
+
+    def __init__(self, fitted: Callable[[Array, Indices, None], FirstFrame], points_m: Array) -> None:
+        self._fitted, self._points_m = fitted, points_m
+        self._found: dict[bytes, FirstFrame] = {}
+
+    def of(self, labels: Indices) -> FirstFrame:
+        """Pose and labels from first labels (M,)."""
+        key = labels.tobytes()
+        if key not in self._found:
+            self._found[key] = self._fitted(self._points_m, labels, None)
+        return self._found[key]
+
+
 class FirstFrameSearch:
     """Finds a subject's markers among unlabelled points.
 
@@ -114,11 +130,12 @@ class FirstFrameSearch:
 
     def _search(self, points_m: Array, seeds: Seeds) -> FirstFrame | None:
         candidates = search_bodies(self._body, points_m, seeds, self.settings.candidates)
-        fitted = [self._fitted(points_m, one.labels, None) for one in candidates]
+        fits = _Fits(self._fitted, points_m)
+        fitted = [fits.of(one.labels) for one in candidates]
         near = [one for one in fitted if one.rms_m <= 2.0 * self.settings.rms_m] or fitted
         if not near:
             return None
-        best = self._improved(points_m, max(near, key=lambda one: one.log_ratio))
+        best = self._improved(points_m, max(near, key=lambda one: one.log_ratio), fits)
         return best if self.accepted(best, len(points_m)) else None
 
     def near_pose(self, points_m: Array, q: Array) -> FirstFrame | None:
@@ -133,10 +150,11 @@ class FirstFrameSearch:
         """Labels of points (N, 3) from rough ones (M,), which some markers may lack, or None."""
         if np.count_nonzero(labels != HIDDEN) < MIN_MARKERS:
             return None
-        found = self._improved(points_m, self._fitted(points_m, labels, None))
+        fits = _Fits(self._fitted, points_m)
+        found = self._improved(points_m, fits.of(labels), fits)
         return found if self.accepted(found, len(points_m)) else None
 
-    def _improved(self, points_m: Array, found: FirstFrame) -> FirstFrame:
+    def _improved(self, points_m: Array, found: FirstFrame, fits: _Fits) -> FirstFrame:
         """Labels with every doubtful limb searched again from the fitted body, from the fingers and toes inwards."""
         for limb in reversed(limbs(self._body)):
             own = np.concatenate([cluster.markers for cluster in limb])
@@ -145,7 +163,7 @@ class FirstFrameSearch:
             if (distance[own] <= DOUBTFUL_SDS * self.sd_m[own]).all():
                 continue
             others = [
-                self._fitted(points_m, one.labels, None)
+                fits.of(one.labels)
                 for one in search_limb(points_m, self._placed(found), limb, LIMB_CANDIDATES)
             ]
             found = max(found, *others, key=lambda one: one.log_ratio)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
-import scipy.linalg
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
@@ -53,20 +52,27 @@ class ArrowEquations:
             numpy.linalg.LinAlgError: The damped matrix is not positive definite, or not finite.
         """
         count, (frames, own, _) = len(self.corner), self.frames.shape
+        if not count:
+            damped = zip(_damped(self.frames, damping), self.frame_gradient, strict=True)
+            return -np.array([_solved(*one) for one in damped]), np.zeros(0)
         roots = np.linalg.cholesky(_damped(self.frames, damping))
         inverses = np.array([lapack.dtrtri(root.T)[0].T for root in roots])
         # L⁻¹ [border, gradient] of each frame L Lᵀ, whose products are those of the Schur complement
         half = inverses @ np.concatenate([self.border, self.frame_gradient[:, :, None]], axis=2)
-        shared = np.zeros(count)
-        if count:
-            flat = half.reshape(frames * own, count + 1)
-            product = flat.T @ flat
-            reduced = _damped(self.corner, damping) - product[:count, :count]
-            factor = scipy.linalg.cho_factor(reduced, lower=True, overwrite_a=True, check_finite=False)
-            gradient = self.corner_gradient - product[:count, count]
-            shared = -scipy.linalg.cho_solve(factor, gradient, check_finite=False)
+        flat = half.reshape(frames * own, count + 1)
+        product = flat.T @ flat
+        reduced = _damped(self.corner, damping) - product[:count, :count]
+        shared = -_solved(reduced, self.corner_gradient - product[:count, count])
         step = inverses.swapaxes(1, 2) @ (half @ np.append(shared, 1.0))[:, :, None]
         return -step[:, :, 0], shared
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """(n,) solution of a symmetric positive definite system."""
+    _, found, failed = lapack.dposv(matrix.T, right)
+    if failed:
+        raise np.linalg.LinAlgError("the matrix is not positive definite")
+    return np.asarray(found)
 
 
 def _damped(matrices: Array, damping: float) -> Array:

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 
 @cache
 def case(seed):
-    return stairs(seed)
+    return stairs(seed, seconds=1.0)
 
 
 def body_of(subject):
