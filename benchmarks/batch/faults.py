@@ -18,9 +18,10 @@ from benchmarks.checks import Check, Context
 from mbkf.conventions import StageCallback
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Task
+from mbkf.study.batch.outcome import Outcome, Task
 from mbkf.study.batch.progress import Watch, ignored
 from mbkf.study.batch.run import follow, plan_of
+from mbkf.study.batch.tasks import ReconstructTrial
 from mbkf.study.batch.workers import LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 

@@ -19,9 +19,10 @@ from time import perf_counter, sleep
 from benchmarks.checks import Check, Context
 from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task, peak_memory_mb
+from mbkf.study.batch.outcome import Outcome, Status, Task, peak_memory_mb
 from mbkf.study.batch.progress import Watch, ignored
 from mbkf.study.batch.run import follow, plan_of
+from mbkf.study.batch.tasks import ReconstructTrial
 from mbkf.study.batch.workers import LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 

@@ -22,10 +22,11 @@ from pathlib import Path
 from mbkf.app.workspace import Workspace
 from mbkf.io.atomic import write_text
 from mbkf.io.files_read import read_state
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task, failed
+from mbkf.study.batch.outcome import Outcome, Status, Task, failed
 from mbkf.study.batch.plan import Plan
 from mbkf.study.batch.progress import Progress, Watch
 from mbkf.study.batch.run import outcomes_of, sweep_plan
+from mbkf.study.batch.tasks import ReconstructTrial
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 

@@ -13,8 +13,9 @@ from mbkf.app.runs import CANCELLED, FAILED, FINISHED, RUNNING, RUNS_FILE, WAITI
 from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import SessionNotes
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status
+from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.progress import Progress
+from mbkf.study.batch.tasks import ReconstructTrial
 from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.studies import batch_here, study
 from tests.waiting import PATIENCE_S

@@ -18,10 +18,11 @@ from mbkf.io.leftovers import sweep_folder
 from mbkf.study.batch.cluster import ClusterWorkers
 from mbkf.study.batch.folder import plan_of_folder
 from mbkf.study.batch.lists import plan_of_csv, plan_of_toml
-from mbkf.study.batch.outcome import Outcome, ReconstructTrial, ScalePerson, Status
+from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.plan import Person, Plan, Trial
 from mbkf.study.batch.tables import TABLES, write_tables
 from mbkf.study.batch.task_stages import TaskStages
+from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from mbkf.conventions import StageCallback
-from mbkf.study.batch.outcome import ReconstructTrial, ScalePerson
 from mbkf.study.batch.progress import Progress
+from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
 
 
 class TaskStages:

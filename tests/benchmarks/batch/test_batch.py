@@ -7,8 +7,8 @@ import pyarrow as pa
 from benchmarks.batch import OF_THE_RUN, differing
 from benchmarks.batch.faults import FULL, KILLED, Full, Killed, _befallen
 from benchmarks.batch.study import fresh
-from mbkf.study.batch.outcome import ReconstructTrial, ScalePerson
 from mbkf.study.batch.plan import Person, Trial
+from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from mbkf.study.batch.outcome import ReconstructTrial, ScalePerson
 from mbkf.study.batch.plan import Person, Trial
 from mbkf.study.batch.progress import Progress
 from mbkf.study.batch.task_stages import TaskStages
+from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 
