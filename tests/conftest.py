@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from mbkf.cli.main import GARBAGE_AFTER
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.imu.files import IMUS
 from mbkf.kernel.loading import COMPILED, REFERENCE, SWITCH, library
@@ -26,8 +27,9 @@ def pytest_sessionstart() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Circles of references are looked for among what tests make, not among thousands of collected tests."""
+    """Circles of references are looked for as in a command, and not among thousands of collected tests."""
     gc.freeze()
+    gc.set_threshold(GARBAGE_AFTER)
     gc.enable()
 
 

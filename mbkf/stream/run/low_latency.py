@@ -13,13 +13,18 @@ SWITCH_S = 0.0005
 
 @contextmanager
 def low_latency() -> Iterator[None]:
-    """Low-latency mode inside the block: threads switch quickly, and existing objects are not garbage-collected."""
-    usual = sys.getswitchinterval()
+    """Low-latency mode inside the block: threads switch quickly, and existing objects are not garbage-collected.
+
+    A program that froze objects before keeps them as they are: Python can unfreeze only all of them at once.
+    """
+    usual, unfrozen = sys.getswitchinterval(), gc.get_freeze_count() == 0
     sys.setswitchinterval(SWITCH_S)
-    gc.collect()
-    gc.freeze()
+    if unfrozen:
+        gc.collect()
+        gc.freeze()
     try:
         yield
     finally:
-        gc.unfreeze()
+        if unfrozen:
+            gc.unfreeze()
         sys.setswitchinterval(usual)
