@@ -1,8 +1,5 @@
 """A batch from end to end: bad files cost only themselves, what is done is not done again, workers change nothing."""
 
-from functools import cache
-from tempfile import mkdtemp
-
 import numpy as np
 import pytest
 
@@ -10,19 +7,17 @@ from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.study.batch import run as module
 from mbkf.study.batch.run import batch, plan_of
 from tests.captures import snapshot
-from tests.studies import QUICK, study, walk_folder
+from tests.studies import QUICK, ThisProcess, study, walk_folder
 
 pytestmark = pytest.mark.slow
 
 TIMES = ("seconds", "peak_memory_mb", "step_seconds_median", "step_seconds_p99", "realtime_factor")
 
 
-@cache
-def done():
-    """Two persons, one with a damaged trial and one without markers in another: folder, results, table."""
-    from pathlib import Path
-
-    place = Path(mkdtemp(prefix="mbkf-batch-"))
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """Two persons, one with a damaged trial and one without markers in another: folder, results, table, progress."""
+    place = tmp_path_factory.mktemp("batch")
     source = study(place / "study", persons=2, trials=1)
     (source / "P1" / "cut.c3d").write_bytes((walk_folder() / "trial.c3d").read_bytes()[:9000])
     (source / "P3").mkdir()
@@ -32,12 +27,18 @@ def done():
     return source, place / "out", table, told
 
 
+@pytest.fixture
+def here(monkeypatch):
+    """Tasks are done in this process: the test asks nothing of workers."""
+    monkeypatch.setattr(module, "LocalWorkers", ThisProcess)
+
+
 def rows(table):
     return {row["folder"]: row for row in table.to_pylist()}
 
 
-def test_a_bad_file_costs_only_itself():
-    found = rows(done()[2])
+def test_a_bad_file_costs_only_itself(done):
+    found = rows(done[2])
     assert {name: row["status"] for name, row in found.items()} == {
         "P1/cut": "failed", "P1/walk1": "done", "P2/walk1": "done", "P3/walk": "failed",
     }  # fmt: skip
@@ -46,16 +47,17 @@ def test_a_bad_file_costs_only_itself():
     assert found["P2/walk1"]["marker_rms_mm"] > 0.0 and found["P1/cut"]["marker_rms_mm"] is None
 
 
-def test_progress_is_told():
-    told = done()[3]
+def test_progress_is_told(done):
+    told = done[3]
     assert [one for one in told if one[0] == "Trials"] == [("Trials", k, 3) for k in (1, 2, 3)]
     assert ("Scaling", 3, 3) in told
     inside = [one for one in told if one[0] == "P1/walk1: Filtering"]
     assert inside and inside[-1][1] == inside[-1][2] > 100
 
 
-def test_a_second_run_does_nothing_again():
-    source, out, table, _ = done()
+@pytest.mark.usefixtures("here")
+def test_a_second_run_does_nothing_again(done):
+    source, out, table, _ = done
     before = {name: data for name, data in snapshot(out).items() if "/" in name}
     again = rows(batch(source, out, workers=1, settings=QUICK))
     assert {row["status"] for row in again.values()} == {"unchanged", "failed"}
@@ -66,8 +68,9 @@ def test_a_second_run_does_nothing_again():
                 assert again[name][key] == value, (name, key)
 
 
-def test_shards_make_the_whole_and_numbers_do_not_depend_on_the_workers(tmp_path):
-    source, _, table, _ = done()
+@pytest.mark.usefixtures("here")
+def test_shards_make_the_whole_and_numbers_do_not_depend_on_the_workers(done, tmp_path):
+    source, _, table, _ = done
     parts = [batch(source, tmp_path, workers=1, shard=(k, 2), settings=QUICK) for k in (1, 2)]
     assert sum(len(part) for part in parts) == len(table)
     assert {path.name for path in tmp_path.glob("summary*.csv")} == {
@@ -86,6 +89,7 @@ def test_shards_make_the_whole_and_numbers_do_not_depend_on_the_workers(tmp_path
     assert {row["status"] for row in whole.values()} == {"unchanged", "failed"}
 
 
+@pytest.mark.usefixtures("here")
 def test_what_was_interrupted_is_gone_on_with(tmp_path):
     source = study(tmp_path / "study", trials=2)
 

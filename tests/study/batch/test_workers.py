@@ -76,7 +76,7 @@ def test_an_error_that_no_task_should_raise_becomes_a_reason(workers, tmp_path):
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 @pytest.mark.parametrize("always", [False, True])
 def test_a_worker_that_is_stopped_is_replaced_and_its_task_done_again(tmp_path, monkeypatch, always):
-    monkeypatch.setattr(module, "STILL_S", 3.0)
+    monkeypatch.setattr(module, "STILL_S", 1.5)
     workers = LocalWorkers(2)
     found = dict(workers.run([Answer(0, tmp_path), Stop(tmp_path, always), Answer(2, tmp_path)]))
     assert [found[k].reason for k in (0, 2)] == ["0", "2"]
