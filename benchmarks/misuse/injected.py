@@ -47,6 +47,9 @@ HIT, OTHER = "P1", "P2"
 
 PACKAGE = str(Path(mbkf.__file__).parent)
 STEPS = {"os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.link", "os.truncate", "open"}
+QUEUE = "mbkf-runs"
+"""Name of the thread of the runs."""
+
 WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 
 Raised = Callable[[], BaseException]
@@ -71,16 +74,16 @@ class Places:
         self.at, self.error, self.count = at, error, 0
         self._seen: Counter[object] = Counter()
 
-    def entered(self, frame: FrameType, event: str) -> None:
-        """A profiler's call."""
+    def entered(self, frame: FrameType, _event: str, _argument: object) -> None:
+        """A tracer's call, at the entrance of a function."""
         code = frame.f_code
-        if event == "call" and code.co_filename.startswith(PACKAGE) and self._seen[code] < OFTEN:
+        if code.co_filename.startswith(PACKAGE) and self._seen[code] < OFTEN:
             self._seen[code] += 1
             self._passed()
 
     def file_step(self, event: str, arguments: tuple[object, ...]) -> None:
         """An audit hook's call."""
-        if event not in STEPS or threading.current_thread().name != "mbkf-runs":
+        if event not in STEPS or threading.current_thread().name != QUEUE:
             return
         if event == "open" and not (isinstance(arguments[2], int) and arguments[2] & WRITES):
             return
@@ -108,19 +111,20 @@ def watched(places: Places) -> Iterator[None]:
         sys.addaudithook(_audit)
         _hooked.append(_audit)
     _places = places
-    threading.setprofile(lambda frame, event, _: places.entered(frame, event) if _is_queue() else None)
+    threading.settrace(partial(_traced, places))
     try:
         yield
     finally:
-        threading.setprofile(None)
+        threading.settrace(None)
         _places = None
 
 
 _hooked: list[object] = []
 
 
-def _is_queue() -> bool:
-    return threading.current_thread().name == "mbkf-runs"
+def _traced(places: Places, _frame: FrameType, _event: str, _argument: object) -> None:
+    """The first call of a thread: that of the runs goes on to report its calls, any other does not."""
+    sys.settrace(places.entered if threading.current_thread().name == QUEUE else None)
 
 
 class InThread:

@@ -1,18 +1,24 @@
 """Errors at places of a run of the page: counted the same each time, raised once, and without harm to the queue."""
 
 import random
+from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
 
 from benchmarks.misuse import injected
-from benchmarks.misuse.injected import ERRORS, HIT, MODES, Places
+from benchmarks.misuse.injected import ERRORS, HIT, MODES, OTHER, Places
 from mbkf.app.runs import FAILED, FINISHED, RunState
+
+SECONDS = 1.5
+"""Length of the walk."""
 
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory):
-    return injected._lab(tmp_path_factory.mktemp("injected") / "lab", MODES[0])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(import_module("benchmarks.batch.study"), "SECONDS", SECONDS)
+        return injected._lab(tmp_path_factory.mktemp("injected") / "lab", MODES[0])
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +33,10 @@ def test_places_lie_in_scaling_filters_writing_and_the_queue(count):
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")  # the first place of all
-@pytest.mark.parametrize("part", range(8))
+@pytest.mark.parametrize("part", range(len(ERRORS)))
 def test_an_error_anywhere_costs_only_its_run(lab, count, part):
-    at = 1 + part * count // 8 + 3 * part
-    places = Places(at, ERRORS[part % len(ERRORS)])
+    at = 1 + part * count // len(ERRORS) + 3 * part
+    places = Places(at, ERRORS[part])
     assert injected._case(lab, MODES[0], places) == ""
     assert places.count >= at
 
@@ -50,10 +56,10 @@ def test_a_run_has_a_reason_or_whole_results(tmp_path, state, fault):
     assert fault in found and bool(fault) == bool(found)
 
 
-def test_an_unreadable_result_is_a_fault(lab):
-    assert injected._case(lab, MODES[0], Places()) == ""
-    (lab / "results" / HIT / "walk01" / "motion.h5").write_bytes(b"")
-    assert "results of P1" in injected._unreadable(lab, HIT)
+def test_an_unreadable_result_is_a_fault(lab, count):
+    assert count and injected._unreadable(lab, OTHER) == "", "each case leaves the other session done"
+    (lab / "results" / OTHER / "walk01" / "motion.h5").write_bytes(b"")
+    assert "results of P2" in injected._unreadable(lab, OTHER)
 
 
 def test_places_are_spread_over_the_whole_run():
