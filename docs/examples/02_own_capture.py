@@ -10,7 +10,7 @@ from sys import executable
 import mbkf
 
 # Make files as a laboratory stores them: static.c3d, trial.c3d (with force plates), truth.h5 and others.
-run([executable, "-m", "mbkf", "synth", "--motion", "squat", "--seconds", "1.5", "--out", "lab"], check=True)
+run([executable, "-m", "mbkf", "synth", "--motion", "squat", "--seconds", "1", "--out", "lab"], check=True)
 
 # Scale: 17 factors and the marker positions on this person, from a standing trial.
 static = mbkf.read_capture("lab/static.c3d")

@@ -4,7 +4,7 @@ import numpy as np
 
 import mbkf
 
-subject, recorded = mbkf.synthesise("squat", seconds=1.5, seed=3)
+subject, recorded = mbkf.synthesise("squat", seconds=1.0, seed=3)
 points = recorded.raw.markers.positions_m
 print(f"{points.shape[0]} frames with up to {points.shape[1]} points for {len(subject.markers)} markers")
 

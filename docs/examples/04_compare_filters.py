@@ -6,7 +6,7 @@ states, ``dynamic`` (the default) has accelerations and foot wrenches as states 
 
 import mbkf
 
-subject, recorded = mbkf.synthesise("squat", seconds=1.5, seed=2)
+subject, recorded = mbkf.synthesise("squat", seconds=1.0, seed=2)
 
 runs = {
     "kinematic": mbkf.ReconstructSettings(filter="kinematic", smooth=False),

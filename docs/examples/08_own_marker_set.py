@@ -24,7 +24,7 @@ for words in ([], ["--lost", "thigh_r,knee_r"]):
     print(told.stdout)
 
 # Scale and reconstruct with it. The synthetic capture has more markers; those the protocol does not name are left out.
-_, recorded = mbkf.synthesise("squat", seconds=1.5, seed=5)
+_, recorded = mbkf.synthesise("squat", seconds=1.0, seed=5)
 subject = mbkf.scale(recorded.static, protocol=protocol)
 causal = mbkf.ReconstructSettings(smooth=False)
 result = mbkf.reconstruct(recorded.trial, subject, settings=causal)

@@ -16,7 +16,7 @@ print(f"{body.name}: {len(body.segments)} segments, feet {body.roles.feet}")
 for joint in body.clinical_joints:
     print(f"  {joint.name}: {', '.join(angle.name for angle in joint.angles)}")
 
-_, recorded = mbkf.synthesise("squat", seconds=1.5, seed=5)
+_, recorded = mbkf.synthesise("squat", seconds=1.0, seed=5)
 subject = mbkf.scale(recorded.static, body=body)
 print(f"{len(subject.markers)} markers on the legs; the subject carries the body '{subject.body}'")
 

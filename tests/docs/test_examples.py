@@ -1,19 +1,41 @@
 """Every example of the documentation runs, and what it asserts holds."""
 
+import io
 import runpy
+import subprocess
+import sys
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
+
+from mbkf.cli.main import main
+from tests.studies import ThisProcess
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs" / "examples").glob("[0-9]*.py"))
 
 
+def command(words, *, capture_output=False, text=False, check):
+    """Does in this process what an example lets a process of its own do: commands of mbkf."""
+    assert words[:3] == [sys.executable, "-m", "mbkf"] and check
+    with redirect_stdout(io.StringIO() if capture_output else sys.stdout) as printed:
+        assert main(words[3:]) == 0
+    return subprocess.CompletedProcess(words, 0, printed.getvalue() if text else None)
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """No example starts a process, since other tests prove that commands and workers are processes."""
+    monkeypatch.setattr(subprocess, "run", command)
+    monkeypatch.setattr("mbkf.study.batch.run.LocalWorkers", ThisProcess)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("here", "registries")
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
-def test_example_runs(registries, script, tmp_path, monkeypatch, capsys):
+def test_example_runs(script, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", str(ROOT), prepend=":")
     runpy.run_path(str(script), run_name="__main__")
     assert capsys.readouterr().out.strip(), "an example shows what it found"
 
