@@ -45,7 +45,7 @@ def site(wheel, tmp_path_factory) -> Path:
 
 def pip(*words: str, **environment: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "pip", *words],
+        [sys.executable, "-m", "pip", "--disable-pip-version-check", *words],
         env=os.environ | environment,
         capture_output=True,
         text=True,

@@ -7,6 +7,9 @@ from typing import Any
 
 from benchmarks.app.visit import Visit
 
+STILL_MS = 400.0
+"""Time between two looks that see the same, ms."""
+
 
 def every_page(user: Visit, every_trial: bool = False) -> Iterator[tuple[str, list[Any]]]:
     """Opens each page of a session that was run; yields its name and its frames, the outer one first.
@@ -20,10 +23,25 @@ def every_page(user: Visit, every_trial: bool = False) -> Iterator[tuple[str, li
         name = button.inner_text()
         button.click()
         user.page.locator("dialog[open]").wait_for()
-        user.page.wait_for_timeout(1500)
+        _wait_until_still(user.page)
         yield name, list(user.page.frames)
         user.page.locator("dialog .bar button", has_text="Close").last.click()
         user.page.locator("dialog").wait_for(state="detached")
+
+
+def _wait_until_still(page: Any) -> None:
+    """Waits until all frames are loaded and two looks see the same number of elements."""
+    before, now = None, _elements(page)
+    while now != before:
+        page.wait_for_timeout(STILL_MS)
+        before, now = now, _elements(page)
+
+
+def _elements(page: Any) -> list[int]:
+    """The number of elements of each frame, once it is loaded."""
+    for frame in page.frames:
+        frame.wait_for_load_state()
+    return [frame.evaluate("document.getElementsByTagName('*').length") for frame in page.frames]
 
 
 def _dialogs(user: Visit, every_trial: bool) -> list[Any]:

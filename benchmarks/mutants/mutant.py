@@ -68,9 +68,15 @@ def mirrored_tests(path: Path, root: Path = ROOT) -> list[str]:
     return [
         test.relative_to(root).as_posix()
         for test in sorted(folder.glob("test_*.py"))
-        if test.stem == f"test_{path.stem}"
-        or any(found == name or found.startswith(f"{name}.") for found in imports_of(test, root))
+        if test.stem == f"test_{path.stem}" or _imports(test, name, root)
     ]
+
+
+def _imports(test: Path, name: str, root: Path) -> bool:
+    """True for a file that imports a module, or one below it; only files with its last name are parsed."""
+    if name.rpartition(".")[2] not in test.read_text(encoding="utf-8"):
+        return False
+    return any(found == name or found.startswith(f"{name}.") for found in imports_of(test, root))
 
 
 def times_found(mutant: Mutant, root: Path) -> int:

@@ -15,7 +15,7 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.records import AnalogChannel, CaptureEvent
 from mbkf.io.session import SessionNotes, TrialNotes, write_session
-from tests.studies import study
+from tests.studies import runs_here, study
 
 
 @pytest.fixture(scope="module")
@@ -39,13 +39,14 @@ def shown(browser, tmp_path_factory):
     write_session(
         SessionNotes(name=EVIL[0], trials={"out": TrialNotes(excluded=EVIL[1])}), session / "session.toml"
     )
-    server = AppServer(lab, workers=1)
-    user = visit(browser, server.url)
-    user.wait("tbody tr")
-    user.click("button.main")
-    user.wait("text=Done in")
-    yield user
-    server.close()
+    with runs_here():
+        server = AppServer(lab, workers=1)
+        user = visit(browser, server.url)
+        user.wait("tbody tr")
+        user.click("button.main")
+        user.wait("text=Done in")
+        yield user
+        server.close()
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,7 @@
 """A folder's sessions are found, looked at once, and nothing can be put outside of it."""
 
+import shutil
+
 import pytest
 
 from mbkf.app import workspace as module
@@ -48,9 +50,11 @@ def test_its_plan_is_that_of_a_batch_and_results_are_no_captures(workspace):
     assert set(plan.trials) < set(plan_of_folder(workspace.root).trials)
     with pytest.raises(InvalidInput, match="no result of 'walk1' yet"):
         workspace.result("P2", "walk1")
+    (workspace.root / "P2" / "walk2.c3d").unlink()
+    shutil.rmtree(workspace.root / "P1")
     batch_here(workspace.root, workspace.root / RESULTS)
     assert workspace.result("P2", "walk1") == workspace.root / RESULTS / "P2" / "walk1"
-    assert workspace.sessions() == ("P1", "P2")
+    assert workspace.sessions() == ("P2",)
     with pytest.raises(InvalidInput, match="no result of 'other' yet"):
         workspace.result("P2", "other")
 

@@ -5,7 +5,7 @@ import pytest
 from mbkf.cli.batch import shard_of
 from mbkf.cli.main import main
 from mbkf.errors import InvalidInput
-from tests.studies import study
+from tests.studies import ThisProcess, study
 
 pytestmark = pytest.mark.slow
 
@@ -14,7 +14,8 @@ def run(*words) -> int:
     return main(["batch", *(str(word) for word in words)])
 
 
-def test_a_study_is_done_and_failures_are_told(tmp_path, capsys):
+def test_a_study_is_done_and_failures_are_told(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("mbkf.study.batch.run.LocalWorkers", ThisProcess)
     source, out = study(tmp_path / "study"), tmp_path / "out"
     words = (source, "--out", out, "--workers", "1", "--filter", "kinematic", "--causal", "--spreads", "none")
     assert run(*words) == 0

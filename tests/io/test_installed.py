@@ -176,7 +176,7 @@ def test_pip_installs_such_a_package(tmp_path):
         '[build-system]\nrequires = []\nbuild-backend = "backend"\nbackend-path = ["."]\n'
     )
     options = ("-q", "--no-deps", "--no-build-isolation", "--target", place)
-    pip = [sys.executable, "-m", "pip", "install", *options, source]
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", *options, source]
     subprocess.run(pip, check=True, capture_output=True)
     trial = write_xyz(tmp_path / "a.xyz", tuple("abcdefgh"), standing_points(20) / 1e3)
     shown = mbkf_command(place, "info", trial)

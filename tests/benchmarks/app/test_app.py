@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.app import sessions
 from benchmarks.app.accessible import findings
 from benchmarks.app.names import EVIL, active, evil_session
 from benchmarks.app.path import differing, same
@@ -65,7 +66,8 @@ def test_results_that_are_missing_differ(tmp_path):
     assert differing(tmp_path / "lab", tmp_path / "batch") == 1.0
 
 
-def test_sessions_are_as_told(tmp_path):
+def test_sessions_are_as_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(sessions, "WALK_S", 1.0)
     session = new_user(tmp_path, seed=1)
     assert read_session(session / "session.toml").mass_kg == WRONG_KG
     assert sorted(path.name for path in session.glob("*.c3d")) == [

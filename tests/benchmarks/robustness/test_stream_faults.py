@@ -75,8 +75,20 @@ def test_what_failed_is_counted_and_named():
     assert any(name.startswith("lsl b:2: ") for name in checks)
 
 
-def test_a_process_that_dies_is_replaced_for_the_next(tmp_path):
-    """Without a capture each process ends at once."""
-    found = stream_faults.follow((NATNET, ["count negative:1", "count negative:2"]), tmp_path)
-    assert set(found) == {"natnet count negative:1", "natnet count negative:2"}
-    assert all(told["died"] == ["the process died or hung"] for told in found.values())
+DYING = """
+import json, os, sys
+done, dies = sys.argv[3:5]
+for told in ({"begin": done}, {"end": done, "died": []}, {"begin": dies}):
+    print(json.dumps(told), flush=True)
+os._exit(1)
+"""
+
+
+def test_a_process_that_dies_is_replaced_for_the_next(tmp_path, monkeypatch):
+    """Each follows its first run, and dies of its second."""
+    (tmp_path / "dying.py").write_text(DYING)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    words = [f"count negative:{seed}" for seed in range(4)]
+    found = stream_faults.follow((NATNET, words), tmp_path, "dying")
+    dead = ["the process died or hung"]
+    assert [found[f"natnet {word}"]["died"] for word in words] == [[], dead, [], dead]

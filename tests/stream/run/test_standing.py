@@ -170,7 +170,7 @@ def test_points_that_are_nobody_are_told_and_it_keeps_trying(tmp_path, visit, mo
     monkeypatch.setattr(prompting, "AGAIN_S", 1000.0)
     monkeypatch.setattr(prompting, "TELL_S", 1000.0)
     said = []
-    names = tuple(f"M{k}" for k in range(18))
+    names = tuple(f"M{k}" for k in range(12))
     scattered = np.random.default_rng(4).uniform([-0.4, -0.4, 0.0], [0.4, 0.4, 1.7], (len(names), 3))
     places = np.broadcast_to(scattered, (visit.markers.frames, *scattered.shape))
     strange = replace(visit, markers=replace(visit.markers, names=names, positions_m=places), plates=())
