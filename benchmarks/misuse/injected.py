@@ -75,7 +75,11 @@ class Places:
         self._seen: Counter[object] = Counter()
 
     def entered(self, frame: FrameType, _event: str, _argument: object) -> None:
-        """A tracer's call, at the entrance of a function."""
+        """A tracer's call, at the entrance of a function.
+
+        Args:
+            frame: The function's.
+        """
         code = frame.f_code
         if code.co_filename.startswith(PACKAGE) and self._seen[code] < OFTEN:
             self._seen[code] += 1

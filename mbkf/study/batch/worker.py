@@ -91,6 +91,7 @@ def main() -> None:
     threading.Thread(target=_live, args=(line, busy), name="mbkf-beat", daemon=True).start()
     while True:
         packed = tasks.get()
+        line.send(BEAT)  # the first one comes before a task that ends or stops the process at once
         busy.set()
         outcome = answer(packed, line)
         busy.clear()
