@@ -18,8 +18,8 @@ SMALL = FilmSettings(width=320, height=180)
 
 
 def walk():
-    """A little of true walking."""
-    return recorded("walk", 0.8, 5)
+    """A second of true walking."""
+    return recorded("walk", 1.0, 5)
 
 
 def late_walk():
