@@ -60,6 +60,7 @@ def test_rajagopal_walk(real_data):
     static, forces = folder / "static_walk_1.trc", folder / "grf_walk.mot"
     found = followed(folder / "motion_capture_walk.trc", 85.07, static, forces, filter="kinematic")
     assert marker_rms_mm(found) <= 6.0
+    assert found.names_exchanged == ()
     ours, theirs = (
         low_passed(opensim_table(found, "torques.sto")),
         read_storage(folder / "reference_walk" / "id_walk.sto"),

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.slow
 
 def test_demo_prints_errors_and_writes_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A second of squat through the whole chain."""
-    words = ["demo", "--motion", "squat", "--seconds", "1.5", "--seed", "1", "--out", str(tmp_path / "demo")]
+    words = ["demo", "--motion", "squat", "--seconds", "1", "--seed", "1", "--out", str(tmp_path / "demo")]
     args = build_parser(["demo"]).parse_args(words)
     assert run(args) == 0
     printed = capsys.readouterr().out

@@ -21,7 +21,7 @@ def look_briefly():
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("worn")
-    squat = worn("squat", 2.0)
+    squat = worn("squat", 1.2)
     write_imu_csv(squat.moving, folder / "squat.csv")
     write_imu_csv(squat.standing, folder / "stand.csv")
     write_subject(squat.subject, folder / "subject.toml")
@@ -36,7 +36,7 @@ def test_readings_become_a_result(files, tmp_path, capsys):
     assert "knee_angle_r" in said and "path of the pelvis" in said
     assert "exchanged" not in said and "the other way round" not in said
     found, summary = read_reconstruction(out), read_summary(out)
-    assert summary["protocol"] == "inertial sensors" and found.frames == len(worn("squat", 2.0).motion.q)
+    assert summary["protocol"] == "inertial sensors" and found.frames == len(worn("squat", 1.2).motion.q)
     assert next(mount.name for mount in read_mounts(out / "mounts.toml")) == "pelvis"
 
 

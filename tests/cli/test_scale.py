@@ -64,7 +64,7 @@ def test_report_is_kept_with_the_subject(person, tmp_path, capsys):
 
 def test_a_second_run_replaces_the_file_and_leaves_nothing_else(person, tmp_path):
     path = tmp_path / "s.toml"
-    path.write_text("# old, written by mbkf\n")
+    path.write_text("# A scaled subject, written by mbkf. Lengths in m, mass in kg\nbody = 'x'\n")
     assert scale(person.static, "--out", path) == 0
     first = path.read_bytes()
     assert scale(person.static, "--out", path) == 0

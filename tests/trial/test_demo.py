@@ -13,8 +13,8 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Demo:
-    """A squat of two seconds by the first synthetic person."""
-    return run_demo("squat", tmp_path_factory.mktemp("demo"), seconds=2.0, seed=0)
+    """A squat of a second and a half by the first synthetic person."""
+    return run_demo("squat", tmp_path_factory.mktemp("demo"), seconds=1.5, seed=0)
 
 
 def test_the_capture_and_the_result_are_on_disk(demo: Demo) -> None:

@@ -17,12 +17,14 @@ FRAMES = 45
 
 @cache
 def squat():
-    """A person whose factors are known to 2 % and markers to 5 mm, and the trial."""
+    """A person whose factors are known to 2 % and markers to 5 mm, and the beginning of the trial."""
     person, recorded = mbkf.synthesise("squat", seconds=2.0, seed=4)
     factors, markers = tuple(person.scale_factors), tuple(marker.name for marker in person.markers)
     sd = np.concatenate([np.full(len(factors), 0.02), np.full(3 * len(markers), 0.005)])
     person = replace(person, covariance=BodyCovariance(factors, markers, np.diag(sd)))
-    trial = recorded.trial
+    markers = recorded.trial.markers
+    short = replace(markers, positions_m=markers.positions_m[: FRAMES + 15])
+    trial = replace(recorded.trial, markers=short)
     return person, trial, mbkf.plate_wrenches(trial.plates, trial.markers.times_s, trial.markers.rate_hz)
 
 

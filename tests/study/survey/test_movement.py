@@ -24,7 +24,7 @@ RATE_HZ = 100.0
 )
 def test_synthetic_motions(motion, seed, kind):
     """The floor may be at any height."""
-    _, made = synthesise(motion, seed=seed)
+    _, made = synthesise(motion, seconds=3.0, seed=seed)
     assert kind_of_markers(made.trial.markers) == kind
     assert kind_of_markers(made.static.markers) == TrialKind.STATIC
     names = tuple(f"*{k}" for k in range(len(made.trial.markers.names)))

@@ -75,13 +75,13 @@ def test_a_laboratory_s_exchange_is_told_and_fits_better(real_data):
 @pytest.mark.parametrize(
     ("trial", "static", "mass_kg"),
     [
-        ("rajagopal_walk_run/motion_capture_walk.trc", "rajagopal_walk_run/static_walk_1.trc", 85.07),
         ("gait2354_walk/subject01_walk1.trc", "gait2354_walk/subject01_static.trc", 72.6),
         ("biomechzoo_walk_turn/HC044A_Straight_HC044A15.c3d", "biomechzoo_walk_turn/HC044A_Static_HC044A01.c3d", 60.3),
         ("biobuddy_functional/functional_right_knee.c3d", "biobuddy_functional/static.c3d", 70.0),
     ],
 )  # fmt: skip
 def test_clean_captures_stay_as_they_are(trial, static, mass_kg, real_data):
+    """The walk of tests/test_real_captures.py, too."""
     subject = scale(read_capture(real_data / static), mass_kg=mass_kg)
     markers = subject_markers(read_capture(real_data / trial).markers, subject)
     assert names_put_right(markers, subject) == (markers, ())
