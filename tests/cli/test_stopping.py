@@ -10,7 +10,13 @@ from types import SimpleNamespace
 import pytest
 
 from mbkf.cli import stopping
-from mbkf.cli.stopping import Terminated, ended_by_signal, stop_with_input, stopped_by_signal
+from mbkf.cli.stopping import (
+    EXIT_INTERRUPTED,
+    Terminated,
+    ended_by_signal,
+    stop_with_input,
+    stopped_by_signal,
+)
 from tests.waiting import PATIENCE_S, until
 
 
@@ -113,3 +119,30 @@ def test_a_command_that_ends_by_itself_is_not_broken_off(monkeypatch):
             signal.raise_signal(signal.SIGTERM)
         until(lambda: ended)
     assert ended == [143]
+
+
+INTERRUPTED_AT = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+class Interrupts:
+    def find_spec(self, name, *_):
+        if name == NAME:
+            signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupts())
+from mbkf.__main__ import main
+sys.argv[1:] = ["protocol", "list"]
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs POSIX signals")
+@pytest.mark.parametrize(
+    ("module", "code"), [("mbkf.cli.main", -signal.SIGINT), ("mbkf.cli.protocol_list", None)]
+)
+def test_an_interruption_while_libraries_load_is_no_traceback(module, code):
+    words = [sys.executable, "-c", INTERRUPTED_AT.replace("NAME", repr(module))]
+    ended = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert "Traceback" not in ended.stderr and ended.stdout == ""
+    assert ended.returncode == code if code else ended.returncode in {EXIT_INTERRUPTED, -signal.SIGINT}
