@@ -38,15 +38,37 @@ def noisy(made, seed=0):
     )
 
 
-def test_attitude_and_bias_are_found():
-    made = turning(24.0)
-    found, last, _ = course(*noisy(made))
-    assert apart_deg(found, made.truth)[1800:].max() < 2.0
+def long_turning(shake_mps2=1.0):
+    """A sensor that turns, and is shaken, for 24 s."""
+    return turning(24.0, shake_mps2=shake_mps2)
+
+
+DISTURBED = slice(1500, 1800)
+
+
+def disturbed(field):
+    """A magnet passes by."""
+    found = field.copy()
+    found[DISTURBED] += [30.0, 25.0, 0.0]
+    return found
+
+
+@pytest.fixture(scope="module")
+def three():
+    """Quaternions (T, 4) of a sensor that turns, of the same beside a magnet and of a shaken one; the last state."""
+    gyro, force, field = noisy(long_turning())
+    states = courses([(gyro, force, field), (gyro, force, disturbed(field)), noisy(long_turning(8.0))])
+    return [np.array([s.quaternion[n] for s in states]) for n in range(3)], states[-1]
+
+
+def test_attitude_and_bias_are_found(three):
+    (found, _, _), last = three
+    assert apart_deg(found, long_turning().truth)[1800:].max() < 2.0
     np.testing.assert_allclose(last.gyro_bias[0], BIAS, atol=0.003)
 
 
 def test_without_a_field_only_the_heading_is_lost():
-    made = turning(24.0)
+    made = long_turning()
     gyro, force, _ = noisy(made)
     found, _, _ = course(gyro, force, None)
     up = np.degrees(
@@ -81,23 +103,17 @@ def test_its_statement_of_error_is_honest_without_shaking():
     assert 0.02 < np.mean(ratios) < 2.0
 
 
-def test_a_magnet_passing_by_does_not_turn_the_heading():
-    made = turning(24.0)
-    gyro, force, field = noisy(made)
-    disturbed = field.copy()
-    disturbed[1500:1800] += [30.0, 25.0, 0.0]
-    states = courses([(gyro, force, field), (gyro, force, disturbed)])
-    clean, found = (np.array([s.quaternion[n] for s in states]) for n in range(2))
+def test_a_magnet_passing_by_does_not_turn_the_heading(three):
+    (clean, found, _), _ = three
+    gyro, force, field = noisy(long_turning())
     assert apart_deg(found, clean)[1500:].max() < 3.0
     blind = OrientationSettings(field_tolerance=1e6, dip_tolerance_rad=1e6)
-    led, _, _ = course(*(part[:1800] for part in (gyro, force, disturbed)), blind)
+    led, _, _ = course(*(part[:1800] for part in (gyro, force, disturbed(field))), blind)
     assert apart_deg(led, clean[:1800])[1500:].max() > 3 * apart_deg(found, clean)[1500:1800].max()
 
 
-def test_strong_shaking_does_not_tilt_it():
-    made = turning(20.0, shake_mps2=8.0)
-    found, _, _ = course(*noisy(made))
-    assert apart_deg(found, made.truth)[1500:].max() < 5.0
+def test_strong_shaking_does_not_tilt_it(three):
+    assert apart_deg(three[0][2], long_turning(8.0).truth)[1500:].max() < 5.0
 
 
 def test_many_sensors_are_as_one():
