@@ -29,8 +29,16 @@ from benchmarks.misuse.world import changed, digests, made_world
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 SIGNALLED, QUICK_SIGNALLED = 160, 8
-START_S, SPREAD = 0.3, 1.1
-"""Signals come from a third of a second, when Python has begun, to a little after the command's own time."""
+SPREAD = 1.1
+"""Signals come from the command's beginning to a little after its own time."""
+
+BEGUN = """
+import os, sys
+from mbkf.__main__ import main
+os.write(2, b"begun\\n")
+sys.exit(main())
+"""
+"""The command, which says when Python has begun: before, an interruption is Python's own affair."""
 
 ENDS_S = 10.0
 """After so long a signalled command hangs. That a run of a session ends within 2 s is measured by its own part."""
@@ -123,12 +131,14 @@ def signalled(
     """
     shutil.copytree(old.folder, place)
     was = digests(place)
-    words = [sys.executable, "-m", "mbkf", *case.call({}, str(place / case.out))]
-    after = START_S + share * SPREAD * old.seconds
+    words = [sys.executable, "-c", BEGUN, *case.call({}, str(place / case.out))]
+    after = share * SPREAD * old.seconds
     result = partial(Signalled, case, name, after)
     with subprocess.Popen(
         words, cwd=world, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as process:
+        assert process.stderr is not None
+        process.stderr.readline()
         time.sleep(after)
         process.send_signal(name)
         try:
