@@ -103,7 +103,7 @@ class MarkerSensor:
         """(M, 4 J) weights of the joints' axes and origins in each marker's position."""
         places = np.zeros((len(self.segments), len(self.model.supports), 4))
         places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
-        return places.reshape(len(self.segments), -1)
+        return places.reshape(len(self.segments), 4 * len(self.model.supports))
 
     def positions(self, q: Array) -> Array:
         """(M, 3) world positions at the configuration q (nq,)."""
