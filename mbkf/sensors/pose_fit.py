@@ -97,11 +97,8 @@ def _with_limbs(sensor: MarkerSensor, target_m: Array, seen: BoolArray, poses: A
     axes, origins = np.array([one for one, _ in placed]), np.array([one for _, one in placed])
     turns = []
     for joint in joints:
-        own, parents, origin = (
-            np.flatnonzero(names == joint.segment),
-            axes[:, joint.joint_id],
-            origins[:, joint.joint_id],
-        )
+        own = np.flatnonzero(names == joint.segment)
+        parents, origin = axes[:, joint.joint_id], origins[:, joint.joint_id]
         arms = np.where(seen[:, own, None], target_m[:, own] - origin[:, None], 0.0)
         attitude = np.swapaxes(arms, 1, 2) @ sensor.local_m[own] + _NEUTRAL_PULL * parents
         turned = nearest_rotations(attitude)
@@ -139,17 +136,20 @@ def fit_pose(
     nv = sensor.model.nv
     markers, weights = MarkerInformation(sensor, noise_m), posture.weights(1.0, np.zeros(nv, dtype=bool))
 
+    def weighed(positions_m: Array, deviation: Array) -> float:
+        errors, pull = (positions_m[seen] - target) / noise, deviation * weights
+        return float((errors**2).sum() + pull @ pull)
+
     def cost(q: Array) -> float:
-        errors = (sensor.positions(q)[seen] - target) / noise
-        deviation = posture.deviation(q)[0] * weights
-        return float((errors**2).sum() + deviation @ deviation)
+        return weighed(sensor.positions(q), posture.deviation(q)[0])
 
     def linearise(q: Array) -> ArrowEquations:
-        reading = sensor.reading(q)
+        reading, (deviation, turning) = sensor.reading(q), posture.deviation(q)
         known = markers.at(reading, measured_m - reading.positions_m, seen)
-        known += prior_information(posture, *posture.deviation(q), weights)
+        known += prior_information(posture, deviation, turning, weights)
         hessian, gradient = known.matrix[None] + 1e-9 * np.eye(nv), -known.vector[None]
-        return ArrowEquations(hessian, np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient, np.zeros(0), cost(q))
+        found = weighed(reading.positions_m, deviation)
+        return ArrowEquations(hessian, np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient, np.zeros(0), found)
 
     solution = minimise(
         start,
