@@ -72,7 +72,6 @@ ELSEWHERE = {
     "sensors.gating.ObservedDofs.carried_by": "sensors/test_gating.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
     "model.scale_derivatives.OriginLevers.summed": "model/test_scale_derivatives.py",
-    "model.scale_derivatives.origin_derivatives": "model/test_scale_derivatives.py",
     "scaling.standing.UprightPosture.linearised": "scaling/test_standing.py",
     "sensors.block.Rows.jacobian": "block_contract.py jacobian",
     "sensors.pose_fit.segment_by_segment": "sensors/test_pose_fit.py",

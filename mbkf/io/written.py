@@ -115,15 +115,6 @@ def form_of(path: str | Path) -> str | None:
     return next(fits, None)
 
 
-def written_by_mbkf(path: str | Path) -> bool:
-    """True for a file whose content shows that mbkf wrote it, and for an empty one.
-
-    Raises:
-        OSError: It cannot be read.
-    """
-    return form_of(path) is not None
-
-
 def check_replaceable(path: str | Path, *, edits: bool = False, form: str | None = None) -> None:
     """Makes sure that nothing of value is lost when a file is written; a path without a file passes.
 

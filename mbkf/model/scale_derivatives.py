@@ -45,14 +45,3 @@ class OriginLevers:
         turned = rotations[..., self.parents, :, :] @ levers
         found: Array = self._before[joints] @ turned.reshape(*turned.shape[:-2], -1)
         return found.reshape(*found.shape[:-1], *turned.shape[-2:])
-
-
-def origin_derivatives(model: Body, rotations: Array) -> Array:
-    """(…, J, 3, K) derivative of every joint's world origin by the scale factors, at fixed configurations.
-
-    Args:
-        model: The scaled body.
-        rotations: (…, J, 3, 3) world rotations of its joints, of one configuration or many.
-    """
-    levers = OriginLevers(model)
-    return levers.summed(rotations, levers.levers)

@@ -18,7 +18,6 @@ from mbkf.io.written import (
     check_replaceable,
     form_of,
     overwriting,
-    written_by_mbkf,
 )
 
 OURS = "# Something, written by mbkf.\n"
@@ -189,7 +188,7 @@ FOREIGN = {
 @pytest.mark.parametrize("name", FOREIGN)
 def test_files_of_others_are_not_taken_for_our_own(name, tmp_path):
     (tmp_path / name).write_bytes(FOREIGN[name])
-    assert not written_by_mbkf(tmp_path / name)
+    assert form_of(tmp_path / name) is None
 
 
 EARLIER = {
@@ -214,7 +213,7 @@ EARLIER = {
 @pytest.mark.parametrize("name", EARLIER)
 def test_files_of_earlier_versions_are_known(name, tmp_path):
     (tmp_path / name).write_bytes(EARLIER[name])
-    assert written_by_mbkf(tmp_path / name)
+    assert form_of(tmp_path / name) is not None
 
 
 def test_the_permission_ends_with_its_block(monkeypatch):

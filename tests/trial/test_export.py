@@ -8,7 +8,7 @@ import pytest
 import mbkf
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.io.written import written_by_mbkf
+from mbkf.io.written import form_of
 from mbkf.model.body_file import load_body
 from mbkf.trial.export import FORMATS, RESULT_FORMATS, export_result, export_subject
 from tests.recordings import walk
@@ -29,7 +29,7 @@ def test_a_subject_is_written_with_its_markers(tmp_path, kind, tag, name):
     root = ET.parse(path).getroot()
     assert root.tag == tag
     assert any(element.get("name") == name for element in root.iter())
-    assert written_by_mbkf(path)
+    assert form_of(path) is not None
     assert [p.name for p in path.parent.iterdir()] == [path.name]
 
 
@@ -46,7 +46,7 @@ def test_a_result_is_written_whole(tmp_path, kind):
     path = tmp_path / "deeper" / f"walk.{kind}"
     mbkf.export_result(walk(), kind, path)
     assert path.stat().st_size > 10_000
-    assert written_by_mbkf(path)
+    assert form_of(path) is not None
     assert [p.name for p in path.parent.iterdir()] == [path.name]
 
 

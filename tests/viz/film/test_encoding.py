@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mbkf.io.written import written_by_mbkf
+from mbkf.io.written import form_of
 from mbkf.viz.film.encoding import write_gif, write_mp4
 
 COUNT, HEIGHT, WIDTH, RATE = 30, 72, 128, 25
@@ -28,7 +28,7 @@ def assert_alike(found):
 
 def test_a_gif_has_its_pictures_pace_and_no_end(tmp_path):
     write_gif(pictures(), RATE, tmp_path / "film")
-    assert written_by_mbkf(tmp_path / "film")
+    assert form_of(tmp_path / "film") is not None
     with Image.open(tmp_path / "film") as film:
         assert (film.format, film.n_frames, film.size) == ("GIF", COUNT, (WIDTH, HEIGHT))
         assert film.info["loop"] == 0
@@ -43,7 +43,7 @@ def test_a_gif_has_its_pictures_pace_and_no_end(tmp_path):
 def test_an_mp4_has_its_pictures_and_pace(tmp_path):
     av = pytest.importorskip("av", reason="PyAV is not installed: pip install '.[film]'")
     write_mp4(pictures(), RATE, tmp_path / "film")
-    assert written_by_mbkf(tmp_path / "film")
+    assert form_of(tmp_path / "film") is not None
     with av.open(str(tmp_path / "film")) as film:
         stream = film.streams.video[0]
         assert (stream.codec_context.name, stream.average_rate, stream.width, stream.height) == (

@@ -7,7 +7,7 @@ pytest.importorskip("matplotlib", reason="needs the extra 'figures'")
 from matplotlib.figure import Figure
 
 from mbkf.io.files_read import own_files_read
-from mbkf.io.written import written_by_mbkf
+from mbkf.io.written import form_of
 from mbkf.viz.imu.figure_file import write_figure
 
 
@@ -17,6 +17,6 @@ def test_a_figure_is_known_and_replaced(suffix, tmp_path):
     for _ in range(2):
         with own_files_read():
             write_figure(Figure(), path, dpi=20)
-    assert written_by_mbkf(path)
+    assert form_of(path) is not None
     Figure().savefig(path)
-    assert not written_by_mbkf(path)
+    assert form_of(path) is None
