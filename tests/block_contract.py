@@ -144,7 +144,7 @@ def whole(said, size):
 
 
 def derivative(found, rng, left_out=False):
-    """What a statement says of its own slope, and what finite differences say, along random tangent vectors.
+    """Stated slope and finite differences, along random tangent vectors.
 
     ``left_out``: they stay within the components that its rows hold.
 

@@ -25,7 +25,7 @@ def edited_toml(text: str, written: str) -> str:
         _lay_over(document, wanted)
         found = tomlkit.dumps(document)
         return found if tomllib.loads(found) == wanted else written
-    except (TOMLKitError, tomllib.TOMLDecodeError, ValueError):
+    except (TOMLKitError, ValueError):
         return written
 
 
@@ -37,5 +37,5 @@ def _lay_over(old: MutableMapping[str, object], new: Mapping[str, object]) -> No
         before = old.get(key)
         if isinstance(before, MutableMapping) and isinstance(value, Mapping):
             _lay_over(before, value)
-        elif before is None or getattr(before, "unwrap", lambda one=before: one)() != value:
+        elif before != value:
             old[key] = value

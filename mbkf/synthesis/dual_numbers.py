@@ -64,7 +64,7 @@ class Dual:
         return self.orders[2]
 
     def upto(self, order: int) -> Dual:
-        """The same without the derivatives beyond an order; 0 leaves the value alone."""
+        """The quantity cut at an order of its derivatives; order 0 is the value."""
         return Dual.of(self.orders[: order + 1])
 
     def __getitem__(self, index: Index) -> Dual:

@@ -19,6 +19,10 @@ excluded = "stumbled"  # ask the physiotherapist
 
 [trial.walk2]
 kind = "walk"
+
+[[trial.walk2.events]]
+side = "r"  # seen in the video
+time_s = 0.5
 """
 
 
