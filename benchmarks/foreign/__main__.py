@@ -1,0 +1,87 @@
+"""Scores of chosen persons, motions, scalings and filters, as tables."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from benchmarks.__main__ import DATA_VARIABLE
+from benchmarks.dynamic.methods import in_parallel
+from benchmarks.foreign.errors import Judged
+from benchmarks.foreign.followed import FILTERS, SCALINGS, SMOOTHED, Job, followed, jobs
+from benchmarks.foreign.score import score
+from benchmarks.foreign.tables import group_table, offset_table, score_table
+from benchmarks.foreign.truth import FOLDER, foreigners
+from mbkf.errors import InvalidInput, MbkfError
+
+WIDTH = 150
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Scores persons and prints tables.
+
+    Args:
+        arguments: What follows ``python -m benchmarks.foreign``; taken from ``sys.argv`` when None.
+
+    Returns:
+        0, or 2 on bad input.
+    """
+    args = _parser().parse_args(arguments)
+    try:
+        _show(args)
+    except (MbkfError, OSError) as error:
+        print(f"benchmarks.foreign: error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.foreign", description=__doc__)
+    data = os.environ.get(DATA_VARIABLE)
+    parser.add_argument(
+        "--data", type=Path, default=data, metavar="DIR", help="folder of the reference captures"
+    )
+    parser.add_argument("--made", type=Path, metavar="DIR", help="persons of this folder instead")
+    parser.add_argument(
+        "--persons", nargs="+", default=[], metavar="NAME", help="these persons (default: all)"
+    )
+    parser.add_argument(
+        "--motions", nargs="+", default=[], metavar="NAME", help="these motions (default: all)"
+    )
+    parser.add_argument("--scaling", nargs="+", default=list(SCALINGS), choices=list(SCALINGS))
+    parser.add_argument("--filter", nargs="+", default=[SMOOTHED], choices=list(FILTERS))
+    return parser
+
+
+def _show(args: argparse.Namespace) -> None:
+    if args.made is None and args.data is None:
+        raise InvalidInput(
+            f"the persons are needed; give --data DIR, set {DATA_VARIABLE}, or give --made DIR"
+        )
+    persons = foreigners(args.made or args.data / FOLDER, args.persons)
+    found: dict[str, list[Judged]] = {}
+    work: list[tuple[str, Job]] = [
+        (f"{scaling}, {name}", job)
+        for scaling in args.scaling
+        for name in args.filter
+        for job in jobs(persons, scaling, args.motions, name)
+    ]
+    with in_parallel() as mapper:
+        results = mapper(followed, [job for _, job in work])
+    for (label, _), result in zip(work, results, strict=True):
+        found.setdefault(label, []).extend(result)
+    console = Console(width=WIDTH)
+    scores = {label: score(held) for label, held in found.items()}
+    console.print(score_table("legs; calibration error and median sd of all angles", scores))
+    console.print(group_table("groups of angles", scores))
+    for label, held in found.items():
+        console.print(offset_table(f"hip flexion, {label}", held))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
