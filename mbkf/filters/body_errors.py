@@ -1,7 +1,8 @@
 """Error of an estimate caused by errors of the person's scaled body: the part that repeats.
 
-Scaling leaves scale factors and marker places p with a covariance Σ = L Lᵀ. A filter takes them for known. In a posture
-q, markers that are weighed with R, beside a prior of information Π, then put the pose wrong by
+Scaling leaves scale factors, marker places and displacements of the skin by flexion, together p, with a covariance
+Σ = L Lᵀ. A filter takes them for known. In a posture q, markers that are weighed with R, beside a prior of information
+Π, then put the pose wrong by
 
     δq = W δp,   W = −(Hᵀ R⁻¹ H + Π)⁻¹ Hᵀ R⁻¹ H_p,
 
@@ -29,6 +30,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
 from mbkf.model.scale_derivatives import OriginLevers
 from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 LOOK_S = 0.02
@@ -112,15 +114,19 @@ class BodyErrors:
         sensor: The markers on the body.
     """
 
-    def __init__(self, sensor: MarkerSensor, noise_m: Array, root: Array) -> None:
+    def __init__(
+        self, sensor: MarkerSensor, noise_m: Array, root: Array, skin: FlexedSkin | None = None
+    ) -> None:
         """Makes it.
 
         Args:
             sensor: The markers on the body.
             noise_m: (M,) standard deviation that the filter weighs each marker with, m.
-            root: (K + 3 M, r) L of the covariance of scale factors and marker places.
+            root: (K + 3 M (1 + D), r) L of the covariance of scale factors, marker places and displacements by flexion.
+            skin: Shares of these displacements; None where no skin is known (D = 0).
         """
         model = sensor.model
+        self._skin = skin
         self.sensor, self._model = sensor, model
         self._weight = np.repeat(1.0 / noise_m, 3)[:, None]
         posture = np.asarray(model.posture_sd)
@@ -131,8 +137,9 @@ class BodyErrors:
         self._take(root @ self._directions())
 
     def _take(self, root: Array) -> None:
-        count = len(self._model.scale)
-        self._factors, self._places = root[:count], root[count:].reshape(len(self.sensor.joint_ids), 3, -1)
+        count, markers = len(self._model.scale), len(self.sensor.joint_ids)
+        moved = root[count:].reshape(-1, markers, 3, root.shape[1])
+        self._factors, self._places, self._slides = root[:count], moved[0], moved[1:]
         self._levers = self._origins.levers @ self._factors
 
     def _directions(self) -> Array:
@@ -158,7 +165,11 @@ class BodyErrors:
         rotations, _ = self._model.placements(q)
         joints, nv = self.sensor.joint_ids, self._model.nv
         H = self.sensor.reading(q).jacobian
-        by_places = rotations[joints] @ self._places
+        places = self._places
+        if self._skin is not None:
+            shares = self._skin.shares(q).T[:, :, None, None]
+            places = places + sum(share * slide for share, slide in zip(shares, self._slides, strict=True))
+        by_places = rotations[joints] @ places
         by_factors = self._origins.summed(rotations, self._levers, joints)
         moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1) * self._weight
         weighed = H.reshape(len(moved), nv) * self._weight

@@ -1,4 +1,4 @@
-"""Uncertainty that scaling leaves in a person's body: the covariance of scale factors and marker places."""
+"""Uncertainty that scaling leaves in a person's body: the covariance of scale factors, marker places and skin."""
 
 from __future__ import annotations
 
@@ -26,75 +26,93 @@ class CovarianceTable(TypedDict):
 
     factors: list[str]
     markers: list[str]
+    flexions: int
     root: list[list[float]]
 
 
 @dataclass(frozen=True)
 class BodyCovariance:
-    """Covariance Σ = L Lᵀ of p, the K scale factors and then the places of M markers in their segments' frames.
+    """Covariance Σ = L Lᵀ of scale factors, of places of markers in their segments, and of displacements by flexion.
+
+    There are K factors, M markers, and D flexions that displace a marker (:mod:`mbkf.sensors.flexed_skin`).
 
     Attributes:
         factors: (K,) names of the scale factors.
         markers: (M,) names of the markers.
-        root: (K + 3 M, K + 3 M) L, lower triangular; rows of factors are pure numbers, of markers m.
+        root: (s, s) L, lower triangular, s = K + 3 M (1 + D); rows of factors are pure numbers, the others m.
+        flexions: D; 0 where scaling learnt nothing of the skin.
     """
 
     factors: tuple[str, ...]
     markers: tuple[str, ...]
     root: Array
+    flexions: int = 0
 
     def __post_init__(self) -> None:
         """Raises: ShapeError: the root does not have the size of the names' parameters."""
-        size = len(self.factors) + 3 * len(self.markers)
+        size = len(self.factors) + 3 * len(self.markers) * (1 + self.flexions)
         object.__setattr__(self, "root", read_only(self.root))
         if self.root.shape != (size, size):
             raise ShapeError("root", f"({size}, {size})", self.root.shape)
 
     @classmethod
-    def of(cls, factors: tuple[str, ...], markers: tuple[str, ...], covariance: Array) -> BodyCovariance:
+    def of(
+        cls, factors: tuple[str, ...], markers: tuple[str, ...], covariance: Array, flexions: int = 0
+    ) -> BodyCovariance:
         """From Σ itself, which may be singular.
 
         Args:
             factors: (K,) names of the scale factors.
             markers: (M,) names of the markers.
-            covariance: (K + 3 M, K + 3 M) Σ.
+            covariance: (s, s) Σ.
+            flexions: D.
         """
         values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T))
         wide = vectors * np.sqrt(np.maximum(values, 0.0))
         lower = np.asarray(np.linalg.qr(wide.T, mode="r")).T
-        return cls(factors, markers, lower * np.where(np.diag(lower) < 0.0, -1.0, 1.0))
+        return cls(factors, markers, lower * np.where(np.diag(lower) < 0.0, -1.0, 1.0), flexions)
 
     @property
     def covariance(self) -> Array:
-        """(K + 3 M, K + 3 M) Σ."""
+        """(s, s) Σ."""
         return self.root @ self.root.T
 
-    def rows(self, markers: Sequence[str], unseen_sd_m: Mapping[str, float]) -> Array:
-        """(K + 3 n, r) a root of the covariance of factors and the places of n markers.
+    def rows(self, markers: Sequence[str], unseen_sd_m: Mapping[str, float], skin: Array) -> Array:
+        """(K + 3 n (1 + D), r) a root of the covariance of factors, places of n markers and their displacements.
 
         Args:
             markers: (n,) their names.
             unseen_sd_m: Standard deviation of the place of a marker that scaling did not see, per coordinate, m.
+            skin: (D, 3 n, 3 n) prior covariance of the displacements by each flexion, m², for markers whose own
+                displacements scaling did not learn.
         """
         count, known = len(self.factors), {name: n for n, name in enumerate(self.markers)}
         unseen = [name for name in markers if name not in known]
-        rows = np.zeros((count + 3 * len(markers), len(self.root) + 3 * len(unseen)))
-        width = len(self.root)
+        places, width = 3 * len(markers), len(self.root)
+        rows = np.zeros((count + places * (1 + len(skin)), width + 3 * len(unseen) + places * len(skin)))
         rows[:count, :width] = self.root[:count]
+        learnt = [name in known and self.flexions == len(skin) for name in markers]
         for n, name in enumerate(markers):
-            mine = slice(count + 3 * n, count + 3 * n + 3)
             if name in known:
-                first = count + 3 * known[name]
-                rows[mine, :width] = self.root[first : first + 3]
+                of_marker = count + 3 * known[name] + 3 * len(self.markers) * np.arange(1 + self.flexions)
+                for d, first in enumerate(of_marker[: 1 + len(skin) * learnt[n]]):
+                    mine = count + d * places + 3 * n
+                    rows[mine : mine + 3, :width] = self.root[first : first + 3]
             else:
-                first = width + 3 * unseen.index(name)
-                rows[mine, first : first + 3] = unseen_sd_m[name] * np.eye(3)
+                mine, first = count + 3 * n, width + 3 * unseen.index(name)
+                rows[mine : mine + 3, first : first + 3] = unseen_sd_m[name] * np.eye(3)
+        new = np.repeat(np.logical_not(learnt), 3)
+        apart = rows[count + places :, width + 3 * len(unseen) :]
+        for d, covariance in enumerate(skin):
+            own = slice(d * places, (d + 1) * places)
+            apart[own, own] = new[:, None] * np.linalg.cholesky(covariance)
         return rows
 
     def as_table(self) -> CovarianceTable:
         """The table of a subject file: names, and the lower triangle row by row."""
         rows = [[float(f"{x:.{DIGITS}g}") for x in row[: n + 1]] for n, row in enumerate(self.root)]
-        return CovarianceTable(factors=list(self.factors), markers=list(self.markers), root=rows)
+        names = (list(self.factors), list(self.markers))
+        return CovarianceTable(factors=names[0], markers=names[1], flexions=self.flexions, root=rows)
 
 
 def read_covariance(read: Entries) -> BodyCovariance:
@@ -108,10 +126,13 @@ def read_covariance(read: Entries) -> BodyCovariance:
     root = np.zeros((len(rows), len(rows)))
     for n, row in enumerate(rows):
         root[n, : n + 1] = row
-    found = BodyCovariance(read.need(_FACTORS), read.need(_MARKERS), root)
+    found = BodyCovariance(read.need(_FACTORS), read.need(_MARKERS), root, int(read.get(_FLEXIONS) or 0))
     spreads = np.sqrt((root * root).sum(axis=1))
     if spreads.size and spreads.max() > MOST_SPREAD:
-        k, names = int(spreads.argmax()), [*found.factors, *np.repeat(found.markers, 3)]
+        k, names = (
+            int(spreads.argmax()),
+            [*found.factors, *np.tile(np.repeat(found.markers, 3), 1 + found.flexions)],
+        )
         reason = f"the standard deviation of {names[k]} is {spreads[k]:.3g}, more than {MOST_SPREAD:g}"
         raise read.fault(reason, _ROOT.key)
     return found
@@ -131,6 +152,7 @@ def _triangle(value: object) -> list[list[float]] | None:
 
 _FACTORS = fields.texts("factors", "names of the scale factors", required=True)
 _MARKERS = fields.texts("markers", "names of the markers", required=True)
+_FLEXIONS = fields.number("flexions", "number of flexions whose displacements are learnt", (0.0, 8.0))
 _ROOT = fields.Field(
     "root",
     "rows of L, whose square L Lᵀ is the covariance",
@@ -138,5 +160,5 @@ _ROOT = fields.Field(
     _triangle,
     True,
 )
-COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _ROOT)
+COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _FLEXIONS, _ROOT)
 """Entries of the covariance in a subject file."""

@@ -206,26 +206,46 @@ def number(
 
 
 def numbers(
-    key: str, meaning: str, count: int, largest: float, unit: str = "", *, required: bool = False
+    key: str, meaning: str, count: int | None, largest: float, unit: str = "", *, required: bool = False
 ) -> Field[Array]:
     """A list of finite numbers.
 
     Args:
         key: Its name.
         meaning: For the documentation.
-        count: How many there are.
+        count: How many there are; None for any number of them.
         largest: Bound of their size.
         unit: Their unit; empty for pure numbers.
         required: True where the table is refused without it.
     """
 
     def read(value: object) -> Array | None:
-        listed = value if isinstance(value, list) else []
-        found = [_number_in(one, -largest, largest) for one in listed]
-        return None if len(found) != count or None in found else np.array(found, dtype=float)
+        found = [_number_in(one, -largest, largest) for one in value] if isinstance(value, list) else [None]
+        wrong = None in found or len(found) != (len(found) if count is None else count)
+        return None if wrong else np.array(found, dtype=float)
 
-    expected = f"{count} numbers of at most {largest:g} {unit}".rstrip()
+    expected = f"{'a list of' if count is None else count} numbers of at most {largest:g} {unit}".rstrip()
     return Field(key, meaning, expected, read, required, unit)
+
+
+def rows(key: str, meaning: str, width: int, largest: float, unit: str = "") -> Field[Array]:
+    """Rows of finite numbers, read as (rows, width).
+
+    Args:
+        key: Its name.
+        meaning: For the documentation.
+        width: Number of numbers in a row.
+        largest: Bound of their size.
+        unit: Their unit; empty for pure numbers.
+    """
+    row = numbers(key, meaning, width, largest, unit)
+
+    def read(value: object) -> Array | None:
+        found = [row.parse(one) for one in value] if isinstance(value, list) else [None]
+        known = [one for one in found if one is not None]
+        return np.array(known).reshape(-1, width) if len(known) == len(found) else None
+
+    return Field(key, meaning, f"rows of {row.expected}", read, unit=unit)
 
 
 def texts(key: str, meaning: str, *, required: bool = False) -> Field[tuple[str, ...]]:

@@ -98,13 +98,14 @@ def _write_covariance(file: h5py.File, known: BodyCovariance | None) -> None:
     """Writes the root of the covariance of the subject's body, with the names that it belongs to."""
     if known is None:
         return
-    places = (f"{marker}_{axis}" for marker in known.markers for axis in "xyz")
+    places = [f"{marker}_{axis}" for marker in known.markers for axis in "xyz"]
+    slides = [f"{place}_by_flexion_{d + 1}" for d in range(known.flexions) for place in places]
     for axis, labels in zip(
-        _COVARIANCE.axes, ((*known.factors, *places), numbered(len(known.root))), strict=True
+        _COVARIANCE.axes, ((*known.factors, *places, *slides), numbered(len(known.root))), strict=True
     ):
         write_labels(file, AXES[axis].names, labels, AXES[axis].meaning)
     write_array(file, _COVARIANCE, known.root)
-    for name in ("factors", "markers"):
+    for name in ("factors", "markers", "flexions"):
         file[_COVARIANCE.key].attrs[name] = json.dumps(getattr(known, name))
 
 
@@ -114,11 +115,20 @@ def _read_covariance(file: h5py.File) -> BodyCovariance | None:
     factors, markers = (
         tuple(json.loads(file[_COVARIANCE.key].attrs[name])) for name in ("factors", "markers")
     )
-    return BodyCovariance(factors, markers, array(file, _COVARIANCE.key, np.float64))
+    flexions = int(json.loads(file[_COVARIANCE.key].attrs.get("flexions", "0")))
+    return BodyCovariance(factors, markers, array(file, _COVARIANCE.key, np.float64), flexions)
 
 
 def _subject(table: dict[str, Any], covariance: BodyCovariance | None) -> Subject:
     markers = tuple(
-        SubjectMarker(**{**entry, "position_m": read_only(entry["position_m"])}) for entry in table["markers"]
+        SubjectMarker(
+            **entry
+            | {
+                "position_m": read_only(entry["position_m"]),
+                "slides_m": read_only(np.reshape(entry.get("slides_m", []), (-1, 3))),
+                "slid": read_only(entry.get("slid", [])),
+            }
+        )
+        for entry in table["markers"]
     )
     return Subject(**{**table, "markers": markers, "covariance": covariance})

@@ -25,6 +25,9 @@ FARTHEST_M, SPREADS_M, SCALES, HEIGHTS_M = 1.5, (1e-6, 1.0), (0.2, 2.0), (0.3, 2
 FARTHEST_TURN = 1e3
 """Bound of a coordinate of the posture, rad or m."""
 
+MOST_SLID = 10.0
+"""Bound of a share of a displacement by flexion; at 180° it is 2."""
+
 STANDING_KEY = "standing_q"
 """Key of a subject's report for the posture of the static trial: its configuration, nq numbers."""
 
@@ -39,8 +42,22 @@ _SESSION_SD = fields.number(
 _ALIASES = fields.texts("aliases", "other names in captures")
 _CORRELATED = fields.number("correlated_m", "correlated part of the noise", (0.0, SPREADS_M[1]), "m")
 _CORRELATION = fields.number("correlation_s", "time constant of that part", (0.0, 1e3), "s")
+_SLIDES = fields.rows(
+    "slides_m", "displacement by each flexion of the body file's skin, at 60°", 3, SPREADS_M[1], "m"
+)
+_SLID = fields.numbers("slid", "shares of these displacements in position_m; 0 by default", None, MOST_SLID)
 MARKER = fields.record(
-    "marker", _NAME, _SEGMENT, _POSITION, _NOISE, _SESSION_SD, _ALIASES, _CORRELATED, _CORRELATION
+    "marker",
+    _NAME,
+    _SEGMENT,
+    _POSITION,
+    _NOISE,
+    _SESSION_SD,
+    _ALIASES,
+    _CORRELATED,
+    _CORRELATION,
+    _SLIDES,
+    _SLID,
 )
 """Entries of a marker in a subject file."""
 
@@ -76,6 +93,10 @@ SUBJECT = fields.record(
 """Entries of a subject file."""
 
 
+NO_SLIDES, NO_SHARES = read_only(np.zeros((0, 3))), read_only(np.zeros(0))
+"""Displacements by flexion, and shares of them, of a marker of which scaling learnt nothing of the skin."""
+
+
 @dataclass(frozen=True)
 class SubjectMarker:
     """A marker on this subject.
@@ -90,6 +111,10 @@ class SubjectMarker:
         correlated_m: Correlated part of the noise, per coordinate, m; 0 for a marker on skin, whose slow movement the
             filters model by themselves.
         correlation_s: Time constant of that part, s.
+        slides_m: (D, 3) displacement by each flexion (:mod:`mbkf.sensors.flexed_skin`), at 60°; no rows where scaling
+            learnt nothing of the skin.
+        slid: (D,) shares of them that ``position_m`` holds: 0 after scaling, where it is the place in the neutral
+            posture; those of a trial's usual posture where it was corrected on that trial.
     """
 
     name: str
@@ -100,6 +125,13 @@ class SubjectMarker:
     aliases: tuple[str, ...] = ()
     correlated_m: float = 0.0
     correlation_s: float = 0.0
+    slides_m: Array = field(default_factory=lambda: NO_SLIDES)
+    slid: Array = field(default_factory=lambda: NO_SHARES)
+
+    @property
+    def neutral_m(self) -> Array:
+        """(3,) position in the neutral posture, m."""
+        return self.position_m - self.slid @ self.slides_m if self.slid.size else self.position_m
 
 
 @dataclass(frozen=True)
@@ -205,6 +237,10 @@ def _marker_table(marker: SubjectMarker) -> dict[str, object]:
     table = asdict(marker)
     if not marker.correlated_m:
         del table["correlated_m"], table["correlation_s"]
+    if not marker.slides_m.any():
+        del table["slides_m"], table["slid"]
+    elif not marker.slid.any():
+        del table["slid"]
     return table
 
 
@@ -257,8 +293,20 @@ def _markers(read: Entries) -> tuple[SubjectMarker, ...]:
             one.get(_ALIASES) or (),
             correlated_m,
             one.get(_CORRELATION) or 0.0,
+            *_skin(one),
         )
     return tuple(found.values())
+
+
+def _skin(one: Entries) -> tuple[Array, Array]:
+    """(D, 3) displacements of a marker by flexion and (D,) shares of them in its place."""
+    slides, slid = one.get(_SLIDES), one.get(_SLID)
+    if slides is None or not len(slides):
+        return NO_SLIDES, NO_SHARES
+    shares = np.zeros(len(slides)) if slid is None else slid
+    if len(shares) != len(slides):
+        raise one.fault(f"slid has {len(shares)} numbers and slides_m {len(slides)} rows", _SLID.key)
+    return read_only(slides), read_only(shares)
 
 
 def _inertia(read: Entries) -> dict[str, SegmentInertia]:

@@ -1,7 +1,7 @@
 """Reference bodies from files: those that come with mbkf, and a user's own.
 
 A body file is TOML; ``models/human18.toml`` shows every entry: segments and joints, inertias, scale factors,
-landmarks, the sole, roles, clinical coordinates, shapes.
+landmarks, the sole, roles, clinical coordinates, shapes, skin.
 
 The masses of the segments sum to the reference person's: Newton's law for the whole body relates the ground reactions
 to the movement of all of its mass. A body of the legs alone therefore carries head, arms and trunk as part of its
@@ -30,12 +30,16 @@ from mbkf.model.description import (
     Roles,
     Segment,
     SegmentShape,
+    SegmentSkin,
     Sole,
 )
 from mbkf.model.sides import mirrored
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
+
+LARGEST_SKIN_M = 0.1
+"""Bound of the spread of skin in a body file, m."""
 
 REMARKS = ("source", "_printed_m", "_printed_kg_m2", "_correction")
 """Endings of keys that document the source of numbers."""
@@ -48,7 +52,7 @@ _ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title")
 KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "roles", "segment", "landmark", "sole",
-        "clinical_joint", "shape", "bearing",
+        "clinical_joint", "shape", "bearing", "skin",
     ),
     "segment": _SEGMENT_KEYS,
     "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
@@ -61,6 +65,7 @@ KNOWN = {
     "clinical_joint.translation": _ANGLE_KEYS,
     "shape": ("segment", "kind", "numbers", "to"),
     "bearing": ("name", "segment", "position_m", "radius_m", "lever_m"),
+    "skin": ("segment", "flexions", "common_mm", "own_mm"),
 }  # fmt: skip
 """Entries of a body's file."""
 
@@ -145,6 +150,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         clinical_joints=_clinical(table["clinical_joint"], segments, path),
         shapes=_shapes(table.get("shape", []), segments, path),
         bearings=_bearings(table.get("bearing", []), segments, path),
+        skin=_skin(table.get("skin", []), segments, path),
         text=kept,
     )
 
@@ -342,4 +348,27 @@ def _bearings(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path
         if other in names and other != segment:
             place = place * [1.0, -1.0, 1.0]
             found.setdefault(mirrored(name), Bearing(mirrored(name), other, read_only(place), *size))
+    return found
+
+
+def _skin(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path) -> dict[str, SegmentSkin]:
+    """Movement of the skin by segment; that of a right segment is mirrored to the left one, where that exists."""
+    names = {segment.name for segment in segments}
+    found: dict[str, SegmentSkin] = {}
+    for entry in entries:
+        segment = _known(entry["segment"], segments, f"{path}, skin")
+        where = f"{path}, skin of {segment}"
+        flexions = tuple(tuple(_known(joint, segments, where) for joint in one) for one in entry["flexions"])
+        sizes = (1e-3 * float(entry["common_mm"]), 1e-3 * float(entry["own_mm"]))
+        if not all(flexions) or not 0.0 < min(sizes) <= max(sizes) < LARGEST_SKIN_M:
+            raise FileFormatError(
+                path,
+                f"skin of {segment}: each flexion needs the names of its joints' distal segments; common_mm and own_mm "
+                f"are positive and less than {1e3 * LARGEST_SKIN_M:.0f}",
+            )
+        found[segment] = SegmentSkin(segment, flexions, *sizes)
+        other = mirrored(segment)
+        if other in names and other != segment:
+            turned = tuple(tuple(mirrored(joint) for joint in one) for one in flexions)
+            found.setdefault(other, SegmentSkin(other, turned, *sizes))
     return found

@@ -1,4 +1,4 @@
-"""A reference body as records: segments, joints, inertias, landmarks, roles, clinical angles and shapes.
+"""A reference body as records: segments, joints, inertias, landmarks, roles, clinical angles, shapes and skin.
 
 :mod:`mbkf.model.body_file` reads them from a file.
 """
@@ -146,6 +146,25 @@ class SegmentShape:
     to: str = ""
 
 
+@dataclass(frozen=True)
+class SegmentSkin:
+    """Movement of a segment's skin on its bone as neighbouring joints flex.
+
+    Attributes:
+        segment: The segment.
+        flexions: For each flexion that moves the skin, the distal segments of its joints, which turn about y; of
+            several joints their mean counts.
+        common_m: Spread of the displacement that all markers of the segment share, per coordinate, at
+            :data:`mbkf.sensors.flexed_skin.FLEXED_RAD`, m.
+        own_m: The same of one marker's own, m.
+    """
+
+    segment: str
+    flexions: tuple[tuple[str, ...], ...]
+    common_m: float
+    own_m: float
+
+
 @dataclass(frozen=True, eq=False)
 class BodyDescription:
     """A reference body; equal to itself only, so that results for it can be cached.
@@ -161,6 +180,7 @@ class BodyDescription:
         clinical_joints: The clinical coordinates of every segment's joint, in the order of the segments.
         shapes: Shapes for drawing, by segment; segments without one are drawn as plain limbs.
         bearings: Parts that may bear load besides the feet, by name.
+        skin: Movement of the skin, by segment; that of other segments does not depend on the posture.
         text: The file it was read from, word for word; "" for the bodies that come with mbkf.
     """
 
@@ -174,6 +194,7 @@ class BodyDescription:
     clinical_joints: tuple[ClinicalJoint, ...]
     shapes: dict[str, SegmentShape]
     bearings: dict[str, Bearing]
+    skin: dict[str, SegmentSkin]
     text: str = ""
 
     @property

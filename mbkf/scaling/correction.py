@@ -2,6 +2,7 @@
 
 Skin shifts between standing with spread arms and walking, and markers are attached anew. With the scale factors fixed,
 each marker's offset in its segment is found anew over frames of the whole trial, near its place in the subject file.
+Displacements by flexion stay as scaling found them; the place of a marker is that in the trial's usual posture.
 
 A trial does not separate a rigid displacement of all markers of a segment from another pose of that segment. Left to
 the offsets of single markers, it would move joint centres by a centimetre, and torques with them. On the segments
@@ -23,8 +24,10 @@ from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.covariance import corrected_covariance
 from mbkf.scaling.evidence import learnt_prior
+from mbkf.scaling.fit import with_skin
 from mbkf.scaling.frames import choose_frames
-from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, FrameWeights, ScalingPrior, ScalingProblem
+from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, ScalingProblem
+from mbkf.scaling.records import FrameWeights, ScalingPrior
 from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
@@ -44,6 +47,10 @@ MOVED_M = 0.01
 """Distance beyond which a marker was attached anew, or exchanged, and does not count for the common displacement."""
 
 FIXED_FACTOR_SD = 1e-5
+
+KNOWN_SKIN = 0.01
+"""Spread of a trial's displacements by flexion about the subject's, over that of the body file: one trial does not
+separate them from its poses, and a person's skin moves alike in all trials."""
 
 
 def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
@@ -75,19 +82,27 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
         state = solution.state
     learnt = learnt_prior(problem, state, solution.equations.schur_complement())
-    problem = _with_precision(problem, learnt.offset_precision)
+    problem = problem.with_prior(replace(learnt, factor_covariance=problem.prior.factor_covariance))
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
-    found = {marker.name: position for marker, position in zip(problem.markers, local, strict=True)}
+    shares = problem.usual_shares(state.poses)
     before = subject.covariance
     if before is not None:
         before = corrected_covariance(before, problem, solution.equations.schur_complement())
-    return replace(
-        subject,
-        markers=tuple(replace(m, position_m=found.get(m.name, m.position_m)) for m in subject.markers),
-        covariance=before,
-    )
+    found = {
+        marker.name: (position, problem.prior.slides_m[:, m], shares[:, m])
+        for m, (marker, position) in enumerate(zip(problem.markers, local, strict=True))
+    }
+    return replace(subject, markers=tuple(_moved(m, found) for m in subject.markers), covariance=before)
+
+
+def _moved(marker: SubjectMarker, found: dict[str, tuple[Array, Array, Array]]) -> SubjectMarker:
+    """A marker at its place in the usual posture of a trial; one that is not in the trial keeps its own."""
+    if marker.name not in found:
+        return marker
+    place, slides, shares = found[marker.name]
+    return replace(marker, position_m=place + shares @ slides, slides_m=slides, slid=shares)
 
 
 def _with_precision(problem: ScalingProblem, offset_precision: Array) -> ScalingProblem:
@@ -114,9 +129,19 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         ),
     )
     keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)
+    if not keypoints:
+        prior = with_skin(prior, body, [m.segment for m in markers], KNOWN_SKIN)
+        prior = replace(prior, slides_m=_slides_m(subject, markers, len(prior.slides_m)))
     posture = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_OBSERVATIONS
     weights = FrameWeights.moving(count, OBSERVATIONS, posture)
     return ScalingProblem(body, markers, frames.measured_m, weights, prior)
+
+
+def _slides_m(subject: Subject, markers: tuple[ProtocolMarker, ...], flexions: int) -> Array:
+    """(D, M, 3) displacements by flexion that scaling found; 0 where it learnt nothing of them."""
+    own = {marker.name: marker.slides_m for marker in subject.markers}
+    found = [own[m.name] if len(own[m.name]) == flexions else np.zeros((flexions, 3)) for m in markers]
+    return np.array(found).swapaxes(0, 1)
 
 
 def _offset_precision(
@@ -145,5 +170,5 @@ def rigid_displacements(points_m: Array) -> Array:
 
 def _as_protocol_marker(marker: SubjectMarker) -> ProtocolMarker:
     return ProtocolMarker(
-        marker.name, marker.segment, marker.position_m, "technical", marker.session_sd_m, marker.noise_m
+        marker.name, marker.segment, marker.neutral_m, "technical", marker.session_sd_m, marker.noise_m
     )

@@ -1,7 +1,8 @@
 """Covariance of scale factors and of marker places in their segments' frames after scaling.
 
-The unknowns are factors k and offsets δ; a marker's place is p = D_b(k) m̄ + δ. At the minimum the inverse of the
-information on (k, δ), frames eliminated, is their covariance; that of (k, p) follows linearly.
+The unknowns are factors k, offsets δ and displacements by flexion c; a marker's place in the neutral posture is
+p = D_b(k) m̄ + δ. At the minimum the inverse of the information on (k, δ, c), frames eliminated, is their covariance;
+that of (k, p, c) follows linearly.
 """
 
 from __future__ import annotations
@@ -11,50 +12,53 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.scaling.problem import ScalingProblem
+from mbkf.sensors.flexed_skin import slide_covariance
 
 
 def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovariance:
-    """The covariance of (k, p).
+    """The covariance of (k, p, c).
 
     Args:
         problem: The problem that was solved.
-        information: (K + 3 M, K + 3 M) information on (k, δ) at the minimum, frames eliminated.
+        information: (K + 3 M (1 + D), …) information on (k, δ, c) at the minimum, frames eliminated.
     """
-    to_places = problem.places_by_factors_and_offsets()
+    to_places = problem.places_by_unknowns()
     covariance = to_places @ np.linalg.inv(information) @ to_places.T
     names = tuple(marker.name for marker in problem.markers)
-    return BodyCovariance.of(tuple(problem.body.scale_factors), names, covariance)
+    return BodyCovariance.of(
+        tuple(problem.body.scale_factors), names, covariance, len(problem.prior.slides_m)
+    )
 
 
 def corrected_covariance(
     before: BodyCovariance, problem: ScalingProblem, information: Array
 ) -> BodyCovariance:
-    """The covariance of (k, p) after places alone were found anew on a trial, with unchanged factors.
+    """The covariance of (k, p, c) after places and displacements were found anew on a trial, with unchanged factors.
 
-    With J = J_d + Π, the information of the trial and of the prior about the places before,
+    With s = (p, c) and J = J_d + Π, the information of the trial and of the prior about s before,
 
-        p̂ − p = J⁻¹ (Π (p̂₀ − p₀) − J_d,pk (k̂ − k) + noise),
+        ŝ − s = J⁻¹ (Π (ŝ₀ − s₀) − J_d,sk (k̂ − k) + noise),
 
     where the noise of the trial and the movement of markers between sessions together have the covariance J⁻¹.
 
     Args:
         before: That of scaling.
-        problem: The correction's problem, whose factors are fixed and whose offsets have the prior precision Π.
-        information: (K + 3 M, K + 3 M) information on (k, δ) at the minimum, frames eliminated.
+        problem: The correction's problem, whose factors are fixed and whose offsets and displacements have the prior
+            precision Π.
+        information: (K + 3 M (1 + D), …) information on (k, δ, c) at the minimum, frames eliminated.
     """
-    count = len(problem.body.scale_factors)
-    places = slice(count, len(information))
-    data = information.copy()
-    data[:count, :count] -= problem.factor_root.T @ problem.factor_root
-    precision = problem.prior.offset_precision
-    data[places, places] -= precision
-    back = 2.0 * np.eye(len(data)) - problem.places_by_factors_and_offsets()
-    data = back.T @ data @ back
-    J = data[places, places] + precision
-    names = tuple(marker.name for marker in problem.markers)
-    root = before.rows(names, {marker.name: marker.placement_sd_m for marker in problem.markers})
-    gain = np.linalg.solve(J, np.hstack([-data[places, :count], precision]))
+    count, prior = len(problem.body.scale_factors), problem.prior
+    found_anew = slice(count, len(information))
+    precision = prior.precision
+    back = 2.0 * np.eye(len(information)) - problem.places_by_unknowns()
+    data = back.T @ (information - precision) @ back
+    precision = precision[found_anew, found_anew]
+    J = data[found_anew, found_anew] + precision
+    names, segments = zip(*((marker.name, marker.segment) for marker in problem.markers), strict=True)
+    skin = slide_covariance(problem.body, segments)[: len(prior.slides_m)]
+    root = before.rows(names, {marker.name: marker.placement_sd_m for marker in problem.markers}, skin)
+    gain = np.linalg.solve(J, np.hstack([-data[found_anew, :count], precision]))
     moved = np.vstack([root[:count], gain @ root])
     covariance = moved @ moved.T
-    covariance[places, places] += np.linalg.inv(J)
-    return BodyCovariance.of(before.factors, names, covariance)
+    covariance[found_anew, found_anew] += np.linalg.inv(J)
+    return BodyCovariance.of(before.factors, names, covariance, len(prior.slides_m))

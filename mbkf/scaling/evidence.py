@@ -2,8 +2,8 @@
 
 The prior's spreads of markers about their landmarks and of proportions are wide enough for anybody. The spreads of this
 laboratory and person show in the fit. With residuals u of a group of unknowns (markers at landmarks, markers
-anywhere, proportions) under the prior precision Λ₀, posterior covariance Σ and prior covariance Λ₀⁻¹, the evidence of
-the data is largest where the prior's variance is multiplied by
+anywhere, displacements by flexion, proportions) under the prior precision Λ₀, posterior covariance Σ and prior
+covariance Λ₀⁻¹, the evidence of the data is largest where the prior's variance is multiplied by
 
     s² = (b + uᵀ Λ₀ u) / (b + γ),   γ = n − tr(Σ Λ₀ / s²),
 
@@ -16,15 +16,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.scaling.problem import ScalingPrior, ScalingProblem, ScalingState
+from mbkf.scaling.problem import ScalingProblem
+from mbkf.scaling.records import ScalingPrior, ScalingState
 
 PRIOR_WEIGHT = 1.0
 """b: weight of the prior's own spread, in unknowns that the data determine."""
 
 RANGE = (0.2, 2.0)
 """Least and greatest factor s on a spread."""
+
+PROPORTIONS, SKIN = "", "skin"
+"""Groups of the factors and of the displacements; those of the offsets have the names of the markers' kinds."""
 
 ROUNDS = 12
 """Number of iterations of s²; the last ones change it by a few percent."""
@@ -36,25 +41,25 @@ def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Arra
     Args:
         problem: The problem that was solved; offsets of markers of different kinds are independent beforehand.
         state: Its solution.
-        information: (K + 3 M, K + 3 M) information on factors and offsets there, frames eliminated.
+        information: (K + 3 M (1 + D), …) information on factors, offsets and displacements there, frames eliminated.
     """
-    prior, count = problem.prior, len(problem.body.scale_factors)
-    precision = np.zeros_like(information)
-    precision[:count, :count] = np.linalg.inv(prior.factor_covariance)
-    precision[count:, count:] = prior.offset_precision
-    kinds = np.array([""] * count + [m.kind for m in problem.markers for _ in range(3)])
-    groups = [kinds == kind for kind in np.unique(kinds)]
-    away = np.concatenate([state.factors - prior.factors, (state.offsets_m - prior.offsets_m).ravel()])
-    squares = variance_factors(information, precision, away, groups)
-    learnt = prior.offset_precision.copy()
-    factor = 1.0
-    for group, square in zip(groups, squares, strict=True):
-        if group[0]:
-            factor = square
-        else:
-            mine = group[count:]
-            learnt[np.ix_(mine, mine)] /= square
-    return replace(prior, factor_covariance=factor * prior.factor_covariance, offset_precision=learnt)
+    prior, kinds = problem.prior, _kinds(problem)
+    groups = {str(kind): kinds == kind for kind in np.unique(kinds)}
+    squares = variance_factors(information, prior.precision, prior.away(state), list(groups.values()))
+    learnt = dict(zip(groups, squares, strict=True))
+    of_offsets = np.array([learnt[m.kind] for m in problem.markers for _ in range(3)])
+    return replace(
+        prior,
+        factor_covariance=learnt[PROPORTIONS] * prior.factor_covariance,
+        offset_precision=prior.offset_precision / of_offsets[:, None],
+        slide_precision=prior.slide_precision / learnt.get(SKIN, 1.0),
+    )
+
+
+def _kinds(problem: ScalingProblem) -> NDArray[np.str_]:
+    """(K + 3 M (1 + D),) group of each unknown."""
+    markers, slides = [m.kind for m in problem.markers for _ in range(3)], problem.prior.slides_m.size
+    return np.array([PROPORTIONS] * len(problem.body.scale_factors) + markers + [SKIN] * slides)
 
 
 def variance_factors(

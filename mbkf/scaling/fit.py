@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
-from mbkf.io.subject import STANDING_KEY, Subject, SubjectMarker
+from mbkf.io.subject import NO_SLIDES, STANDING_KEY, Subject, SubjectMarker
 from mbkf.model.body import Body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, ProtocolMarker
@@ -19,16 +19,10 @@ from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.covariance import body_covariance
 from mbkf.scaling.evidence import learnt_prior
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
-from mbkf.scaling.problem import (
-    FACTOR_BOUNDS,
-    KEYPOINT_POSTURE_FRAMES,
-    FrameWeights,
-    ScalingPrior,
-    ScalingProblem,
-    ScalingSettings,
-    ScalingState,
-)
+from mbkf.scaling.problem import FACTOR_BOUNDS, KEYPOINT_POSTURE_FRAMES, ScalingProblem
+from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingSettings, ScalingState
 from mbkf.scaling.verdict import DOUBTS_KEY, FitQuality, as_each_other
+from mbkf.sensors.flexed_skin import slide_covariance
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -78,7 +72,7 @@ def scale_subject(
     if not static and not dynamic:
         raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
-    problem = scaling_problem(frames, len(static), protocol, height_m, settings)
+    problem = scaling_problem(frames, len(static), protocol, height_m, settings, skin=len(dynamic) > 0)
     start = problem.start(first_poses(problem))
     solution = _minimise(problem, start, progress)
     dropped = problem.outliers(solution.state, settings.outlier_m)
@@ -158,6 +152,8 @@ def scaling_problem(
     protocol: Protocol,
     height_m: float | None,
     settings: ScalingSettings,
+    *,
+    skin: bool = False,
 ) -> ScalingProblem:
     """The least-squares problem of chosen frames.
 
@@ -167,6 +163,7 @@ def scaling_problem(
         protocol: The marker protocol.
         height_m: Body height, if known.
         settings: Weights of the priors.
+        skin: Markers are displaced by flexion, unless a network places them.
     """
     body = protocol.body
     weights = _weights(frames, static_trials, settings)
@@ -179,7 +176,27 @@ def scaling_problem(
         offsets_m=np.zeros((len(frames.markers), 3)),
         offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
     )
+    if skin and all(marker.kind != "keypoint" for marker in frames.markers):
+        prior = with_skin(prior, body, [m.segment for m in frames.markers])
     return ScalingProblem(body, frames.markers, frames.measured_m, weights, prior, settings.standing_sd_rad)
+
+
+def with_skin(
+    prior: ScalingPrior, body: BodyDescription, segments: Sequence[str], share: float = 1.0
+) -> ScalingPrior:
+    """The prior with displacements of the markers by flexion, of a share of the spread that the body file states.
+
+    Args:
+        prior: Prior of factors and offsets.
+        body: The reference body.
+        segments: (M,) segment of each marker.
+        share: The share.
+    """
+    covariance = share**2 * slide_covariance(body, segments)
+    if not len(covariance):
+        return prior
+    expected = np.zeros((len(covariance), len(segments), 3))
+    return replace(prior, slides_m=expected, slide_precision=np.linalg.inv(covariance[0]))
 
 
 def factor_covariance(body: BodyDescription, stature_sd: float, settings: ScalingSettings) -> Array:
@@ -251,38 +268,49 @@ def _subject(
     settings: ScalingSettings,
 ) -> Subject:
     state = solution.state
-    local = problem.local_m(state.factors, state.offsets_m)
-    found = {m.name: position for m, position in zip(problem.markers, local, strict=True)}
+    markers = _subject_markers(problem, state, protocol)
     body = problem.body
-    markers = []
-    for marker in protocol.markers:
-        if marker.kind == "computed":
-            continue
-        reference = (body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
-        seen = marker.name in found
-        markers.append(
-            SubjectMarker(
-                marker.name,
-                marker.segment,
-                found[marker.name] if seen else reference,
-                marker.noise_m,
-                _session_sd_m(marker, seen),
-                marker.aliases,
-                marker.correlated_m,
-                marker.correlation_s,
-            )
-        )
     return Subject(
         body=body.name,
         mass_kg=float(mass_kg),
         scale_factors={n: float(k) for n, k in zip(body.scale_factors, state.factors, strict=True)},
-        markers=tuple(markers),
+        markers=markers,
         protocol=protocol.name,
         height_m=height_m,
         report=_report(problem, solution, frames, dropped, settings),
         body_text=body.text,
         covariance=body_covariance(problem, solution.equations.schur_complement()),
     )
+
+
+def _subject_markers(
+    problem: ScalingProblem, state: ScalingState, protocol: Protocol
+) -> tuple[SubjectMarker, ...]:
+    """The protocol's markers that are measured; one without samples is at its place on the scaled reference body."""
+    local = problem.local_m(state.factors, state.offsets_m)
+    index = {marker.name: m for m, marker in enumerate(problem.markers)}
+    found = []
+    for marker in protocol.markers:
+        if marker.kind == "computed":
+            continue
+        m = index.get(marker.name)
+        reference = (problem.body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
+        slides = NO_SLIDES if m is None or not len(state.slides_m) else state.slides_m[:, m]
+        found.append(
+            SubjectMarker(
+                marker.name,
+                marker.segment,
+                reference if m is None else local[m],
+                marker.noise_m,
+                _session_sd_m(marker, m is not None),
+                marker.aliases,
+                marker.correlated_m,
+                marker.correlation_s,
+                slides,
+                np.zeros(len(slides)),
+            )
+        )
+    return tuple(found)
 
 
 def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:

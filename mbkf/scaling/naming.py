@@ -24,7 +24,7 @@ from mbkf.model.protocol import Protocol
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.fit import first_poses, scaling_problem
 from mbkf.scaling.frames import ScalingFrames, choose_frames
-from mbkf.scaling.problem import ScalingSettings, ScalingState
+from mbkf.scaling.records import ScalingSettings, ScalingState
 
 Indices = NDArray[np.intp]
 

@@ -61,7 +61,8 @@ class ScaledMarkers:
         Args:
             poses: (N, nq) configurations.
             factors: (K,) scale factors.
-            offsets_m: (M, 3) distances from the scaled reference places, in the segments' frames.
+            offsets_m: (M, 3) distances from the scaled reference places, in the segments' frames; (N, M, 3) where they
+                differ between configurations.
         """
         frames = np.array([self._model.frames(q) for q in poses]).reshape(len(poses), -1, 4, 3)
         axes = frames[:, self._joints, :3].swapaxes(2, 3)
@@ -90,4 +91,4 @@ class ScaledMarkers:
     ) -> Array:
         local = self._by_scale @ factors + offsets_m
         origins = frames[:, :, 3] + moved
-        return np.ascontiguousarray(origins[:, self._joints] + (axes @ local[:, :, None])[..., 0])
+        return np.ascontiguousarray(origins[:, self._joints] + (axes @ local[..., None])[..., 0])

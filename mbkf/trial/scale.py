@@ -17,7 +17,7 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
-from mbkf.scaling.problem import ScalingSettings
+from mbkf.scaling.records import ScalingSettings
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
 from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right

@@ -10,6 +10,7 @@ from mbkf.filters.body_errors import LOOK_S, LOOSE, BodyErrors
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import assert_near, protocol_sensor, random_model, smooth_motion
 
@@ -19,12 +20,13 @@ STEP = 1e-5
 
 @dataclass(frozen=True)
 class Case:
-    """Errors by one root l of factors and places, in a moment of a motion under loads."""
+    """Errors by one root l of factors, places and displacements by flexion, in a moment of a motion under loads."""
 
     errors: BodyErrors
     noise_m: np.ndarray
     factors: np.ndarray
     places: np.ndarray
+    slides: np.ndarray
     q: np.ndarray
     v: np.ndarray
     a: np.ndarray
@@ -38,30 +40,37 @@ class Case:
         """The markers on the body that is wrong by ``step`` times the root."""
         body = HumanModel(self.model.description, self.model.scale + step * self.factors, self.model.mass_kg)
         sensor = self.errors.sensor
-        return MarkerSensor(body, sensor.segments, sensor.local_m + step * self.places)
+        shares = FlexedSkin(self.model, sensor.segments).shares(self.q)
+        wrong = self.places + np.einsum("md,dmi->mi", shares, self.slides)
+        return MarkerSensor(body, sensor.segments, sensor.local_m + step * wrong)
 
     def at(self, contact=None):
         return self.errors.at(self.q, self.v, self.a, self.wrenches, contact)
 
 
 def case(*parts):
-    """The errors of wrong factors, wrong places, or both."""
+    """The errors of wrong factors, wrong places, wrong displacements by flexion, or several of them."""
     rng = np.random.default_rng(5)
     model = random_model(rng)
     sensor, names = protocol_sensor(model)
     noise_m = rng.uniform(0.003, 0.015, len(names))
     factors = 0.03 * rng.normal(size=17) * ("factors" in parts)
     places = 0.01 * rng.normal(size=(len(names), 3)) * ("places" in parts)
-    errors = BodyErrors(sensor, noise_m, np.concatenate([factors, places.ravel()])[:, None])
+    skin = FlexedSkin(model, sensor.segments)
+    slides = 0.01 * rng.normal(size=(skin.flexions, len(names), 3)) * ("skin" in parts)
+    root = np.concatenate([factors, places.ravel(), slides.ravel()])[:, None]
+    errors = BodyErrors(sensor, noise_m, root, skin)
     motion = smooth_motion(model, rng)
     wrenches = rng.normal(size=(2, 6)) * [60.0, 60.0, 300.0, 40.0, 40.0, 10.0]
     wrenches[:, 2] = [250.0, 500.0]
-    return Case(errors, noise_m, factors, places, motion.q(0.4), motion.v(0.4), motion.a(0.4), wrenches)
+    return Case(
+        errors, noise_m, factors, places, slides, motion.q(0.4), motion.v(0.4), motion.a(0.4), wrenches
+    )
 
 
 @pytest.fixture(scope="module")
 def both():
-    return case("factors", "places")
+    return case("factors", "places", "skin")
 
 
 def refitted(one, q, step):
@@ -91,7 +100,7 @@ def column(one, root):
     return np.sign(fitted_slope(one) @ one.errors.pose_root(one.q)[:, 0]) * root[:, 0]
 
 
-@pytest.mark.parametrize("part", ["factors", "places"])
+@pytest.mark.parametrize("part", ["factors", "places", "skin"])
 def test_a_pose_is_off_as_one_fitted_with_the_wrong_body(part):
     one = case(part)
     assert_near(column(one, one.errors.pose_root(one.q)), fitted_slope(one), 2e-9)

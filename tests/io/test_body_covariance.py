@@ -19,23 +19,26 @@ NAMES = st.lists(
 )
 
 
-def made(factors, markers, seed=0, rank=None):
-    """A covariance of random errors, of full rank unless told."""
-    rng, size = np.random.default_rng(seed), len(factors) + 3 * len(markers)
+RIGID = np.zeros((0, 9, 9))
+
+
+def made(factors, markers, seed=0, rank=None, flexions=0):
+    """A covariance of random errors, of full rank by default."""
+    rng, size = np.random.default_rng(seed), len(factors) + 3 * len(markers) * (1 + flexions)
     some = rng.normal(size=(size, size if rank is None else rank)) * 10.0 ** rng.uniform(-5, -1, (size, 1))
-    return BodyCovariance.of(tuple(factors), tuple(markers), some @ some.T), some @ some.T
+    return BodyCovariance.of(tuple(factors), tuple(markers), some @ some.T, flexions), some @ some.T
 
 
 def read(table):
     return read_covariance(Entries(COVARIANCE, table, Origin(Path("subject.toml"))))
 
 
-@given(NAMES, NAMES, st.integers(0, 99))
+@given(NAMES, NAMES, st.integers(0, 99), st.integers(0, 2))
 @settings(max_examples=30, deadline=None)
-def test_it_is_read_back_to_the_digits_written(factors, markers, seed):
-    known, _ = made(factors, markers, seed)
+def test_it_is_read_back_to_the_digits_written(factors, markers, seed, flexions):
+    known, _ = made(factors, markers, seed, flexions=flexions)
     found = read(known.as_table())
-    assert (found.factors, found.markers) == (known.factors, known.markers)
+    assert (found.factors, found.markers, found.flexions) == (known.factors, known.markers, flexions)
     np.testing.assert_allclose(found.root, known.root, rtol=10.0 ** (1 - DIGITS))
 
 
@@ -48,7 +51,7 @@ def test_the_root_is_lower_triangular_and_the_covariance_its_square(rank):
 
 def test_markers_come_in_any_order_and_one_that_scaling_did_not_see_by_itself():
     known, covariance = made(["a"], ["A", "B", "C"])
-    rows = known.rows(["C", "new", "A"], {"A": 9.0, "new": 0.02})
+    rows = known.rows(["C", "new", "A"], {"A": 9.0, "new": 0.02}, RIGID)
     found = rows @ rows.T
     place = [0, 7, 8, 9, 1, 2, 3]
     seen = [0, 1, 2, 3, 7, 8, 9]
@@ -57,6 +60,27 @@ def test_markers_come_in_any_order_and_one_that_scaling_did_not_see_by_itself():
     )
     np.testing.assert_allclose(found[4:7, 4:7], 0.02**2 * np.eye(3), rtol=1e-12)
     assert not found[4:7][:, seen].any()
+
+
+@pytest.mark.parametrize("flexions", [0, 2])
+def test_displacements_that_scaling_did_not_learn_have_the_spread_of_the_body_file(flexions):
+    """Those of a marker that it saw are its own; of another one, and of all where it learnt none, the prior's."""
+    rng, count = np.random.default_rng(1), 1 + 3 * 2 * (1 + flexions)
+    some = 0.01 * rng.normal(size=(count, count))
+    known = BodyCovariance.of(("a",), ("A", "B"), some @ some.T, flexions)
+    skin = np.array([(d + 1) * (np.eye(6) + 0.5) for d in range(2)]) * 1e-4
+    rows = known.rows(["B", "new"], {"new": 0.02}, skin)
+    found = rows @ rows.T
+    for d in range(2):
+        start = 1 + 6 * (1 + d)
+        of_b, of_new = slice(start, start + 3), slice(start + 3, start + 6)
+        np.testing.assert_allclose(found[of_new, of_new], skin[d][3:, 3:], rtol=1e-9)
+        if flexions:
+            stored = slice(1 + 6 * (1 + d) + 3, 1 + 6 * (1 + d) + 6)
+            np.testing.assert_allclose(found[of_b, of_b], known.covariance[stored, stored], rtol=1e-9)
+            np.testing.assert_allclose(found[of_b, 0], known.covariance[stored, 0], rtol=1e-9)
+        else:
+            np.testing.assert_allclose(found[start : start + 6, start : start + 6], skin[d], rtol=1e-9)
 
 
 @pytest.mark.parametrize(

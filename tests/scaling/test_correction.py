@@ -10,6 +10,7 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling import correction
 from mbkf.scaling.correction import correct_markers, rigid_displacements
+from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import marker_positions, moderate_pose, random_model, subject_of
 
@@ -59,6 +60,35 @@ def test_markers_in_place_stay_in_place(model, subject):
     assert max(moved.values()) < 2.0  # the posture prior draws a little
 
 
+def test_known_displacements_by_flexion_are_not_taken_for_shifts(model, subject):
+    """Skin moves as the subject file states: places in the neutral posture stay; the trial's usual ones are used."""
+    rng = np.random.default_rng(4)
+    skin = FlexedSkin(model, [m.segment for m in subject.markers])
+    slides = rng.normal(0.0, 0.012, (len(subject.markers), skin.flexions, 3))
+    known = replace(
+        subject, markers=tuple(replace(m, slides_m=c) for m, c in zip(subject.markers, slides, strict=True))
+    )
+    sensor = MarkerSensor(model, [m.segment for m in known.markers], [m.position_m for m in known.markers])
+    positions, shares = [], []
+    for _ in range(20):
+        q = moderate_pose(model, rng, spread=0.6)
+        shares.append(skin.shares(q))
+        moved = np.einsum("md,mdi->mi", shares[-1], slides)
+        axes = model.placements(q)[0][sensor.joint_ids]
+        positions.append(sensor.positions(q) + np.einsum("mij,mj->mi", axes, moved))
+    one = MarkerTrajectories(tuple(m.name for m in known.markers), np.array(positions), 100.0)
+    away = {}
+    for name, person in (("known", known), ("unknown", subject)):
+        found = correct_markers(person, one).markers
+        away[name] = [
+            np.linalg.norm(n.neutral_m - m.position_m) for n, m in zip(found, known.markers, strict=True)
+        ]
+        for n, m, share in zip(found, person.markers, np.mean(shares, axis=0), strict=True):
+            if len(m.slides_m):
+                np.testing.assert_allclose(n.slid, share, atol=0.02)
+    assert max(away["known"]) < 0.003 < max(away["unknown"])
+
+
 def test_markers_not_in_the_trial_keep_their_place(model, subject):
     after = correct_markers(subject, trial(model, subject, SHIFT_M, lost=("RTHI", "C7")))
     moved = moved_mm(subject, after)
@@ -71,7 +101,10 @@ def test_only_places_change(model, subject):
     assert after.scale_factors == subject.scale_factors
     assert (after.mass_kg, after.body, after.protocol) == (subject.mass_kg, subject.body, subject.protocol)
     for old, new in zip(subject.markers, after.markers, strict=True):
-        assert replace(new, position_m=()) == replace(old, position_m=())
+        (mine, *rest), (theirs, *other) = (
+            [replace(m, position_m=(), slides_m=(), slid=()), m.slides_m] for m in (new, old)
+        )
+        assert mine == theirs and not rest[0].any() and not other[0].any()
 
 
 def test_a_tight_marker_moves_less_than_a_loose_one(model, subject):

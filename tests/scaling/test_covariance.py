@@ -5,7 +5,8 @@ import pytest
 
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.covariance import body_covariance
-from mbkf.scaling.problem import ScalingPrior, ScalingProblem, ScalingState
+from mbkf.scaling.problem import ScalingProblem
+from mbkf.scaling.records import ScalingPrior, ScalingState
 from tests.motions import assert_near, moderate_pose, reference_model
 from tests.scaling.test_problem import BODY, MARKERS, ONE_FRAME, random_covariance
 
@@ -34,7 +35,7 @@ def test_places_follow_factors_and_offsets(problem):
 
     at = np.r_[factors, offsets.ravel()]
     slopes = [(told(at + h * one) - told(at - h * one)) / (2 * h) for one in np.eye(SIZE)]
-    assert_near(problem.places_by_factors_and_offsets(), np.array(slopes).T, 1e-9)
+    assert_near(problem.places_by_unknowns(), np.array(slopes).T, 1e-9)
 
 
 def test_the_covariance_is_that_of_the_places_of_drawn_errors(problem):
@@ -43,7 +44,7 @@ def test_the_covariance_is_that_of_the_places_of_drawn_errors(problem):
     found = body_covariance(problem, information)
     assert found.factors == tuple(BODY.scale_factors)
     assert found.markers == tuple(marker.name for marker in MARKERS)
-    T = problem.places_by_factors_and_offsets()
+    T = problem.places_by_unknowns()
     np.testing.assert_allclose(T.T @ np.linalg.inv(found.covariance) @ T, information, rtol=1e-6, atol=1e-6)
 
 

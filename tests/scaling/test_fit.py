@@ -11,7 +11,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling import fit
 from mbkf.scaling.fit import factor_covariance, scale_subject
-from mbkf.scaling.problem import ScalingSettings
+from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import marker_positions, moderate_pose, reference_model

@@ -7,13 +7,14 @@ import pytest
 
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.scaling.problem import FACTOR_BOUNDS, FrameWeights, ScalingPrior, ScalingProblem, ScalingState
+from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingProblem
+from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingState
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_scale, reference_model
 
 MODEL = reference_model()
 BODY = MODEL.description
 MARKERS = load_protocol("reference36").markers[:20]
-FRAMES = 3
+FRAMES, FLEXIONS = 3, 2
 ONE_FRAME = FrameWeights.moving(1, 1.0, 1.0)
 
 
@@ -22,8 +23,14 @@ def random_covariance(rng, size):
     return 0.01 * (A @ A.T / size + 0.3 * np.eye(size))
 
 
+@pytest.fixture(scope="module", params=[0, FLEXIONS], ids=["rigid", "skin"])
+def flexions(request):
+    """Number of flexions that displace markers."""
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def problem():
+def problem(flexions):
     """Some markers in some frames, one not at all, correlated prior, unequal weights of frames."""
     rng = np.random.default_rng(1)
     measured = rng.uniform(-1, 1, (FRAMES, len(MARKERS), 3))
@@ -35,6 +42,12 @@ def problem():
         offsets_m=rng.uniform(-0.02, 0.02, (len(MARKERS), 3)),
         offset_precision=np.linalg.inv(0.01 * random_covariance(rng, 3 * len(MARKERS))),
     )
+    if flexions:
+        prior = replace(
+            prior,
+            slides_m=rng.uniform(-0.02, 0.02, (flexions, len(MARKERS), 3)),
+            slide_precision=np.linalg.inv(0.01 * random_covariance(rng, 3 * len(MARKERS))),
+        )
     weights = FrameWeights(
         np.array([1.0, 0.5, 0.2]), np.array([0.0, 0.3, 1.0]), np.zeros(FRAMES, dtype=bool), np.zeros(FRAMES)
     )
@@ -42,10 +55,22 @@ def problem():
 
 
 @pytest.fixture(scope="module")
-def state():
+def state(flexions):
     rng = np.random.default_rng(2)
     poses = np.array([moderate_pose(MODEL, rng) for _ in range(FRAMES)])
-    return ScalingState(poses, random_scale(rng), rng.uniform(-0.03, 0.03, (len(MARKERS), 3)))
+    displacements = rng.uniform(-0.03, 0.03, (1 + flexions, len(MARKERS), 3))
+    return ScalingState(poses, random_scale(rng), displacements[0], displacements[1:])
+
+
+def flexing(segment):
+    """Joints of each flexion that moves the skin of a segment."""
+    return BODY.skin[segment].flexions if segment in BODY.skin else ()
+
+
+def bend(model, q, segment):
+    """Rotation of a joint about y from neutral, of its rotation vector."""
+    dofs = model.joint(segment).v
+    return model.difference(model.neutral(), q)[dofs][0 if dofs.stop - dofs.start == 1 else 1]
 
 
 def residuals(problem, state):
@@ -60,6 +85,9 @@ def residuals(problem, state):
                 local = (
                     model.axis_scale(BODY.segment(marker.segment)) * marker.position_m + state.offsets_m[i]
                 )
+                for d, joints in enumerate(flexing(marker.segment)[: len(state.slides_m)]):
+                    theta = np.mean([bend(model, q, joint) for joint in joints])
+                    local = local + np.sin(theta / 2) / np.sin(np.pi / 6) * state.slides_m[d, i]
                 at = origins[joint] + rotations[joint] @ local
                 noise_m = marker.noise_m / np.sqrt(problem.weights.markers[t])
                 rows.append((at - problem.measured_m[t, i]) / noise_m)
@@ -69,12 +97,18 @@ def residuals(problem, state):
     rows.append(whiten @ (state.factors - problem.prior.factors))
     offsets = (state.offsets_m - problem.prior.offsets_m).ravel()
     rows.append(np.linalg.cholesky(problem.prior.offset_precision).T @ offsets)
+    for slide, expected in zip(state.slides_m, problem.prior.slides_m, strict=True):
+        rows.append(np.linalg.cholesky(problem.prior.slide_precision).T @ (slide - expected).ravel())
     return np.concatenate(rows)
+
+
+def shared_size(state):
+    return 17 + 3 * len(MARKERS) * (1 + len(state.slides_m))
 
 
 def numeric_jacobian(problem, state, h=1e-6):
     """Of :func:`residuals` by (poses, factors, offsets)."""
-    own, shared = FRAMES * MODEL.nv, 17 + 3 * len(MARKERS)
+    own, shared = FRAMES * MODEL.nv, shared_size(state)
     columns = []
     for i in range(own + shared):
         step = np.zeros(own + shared)
@@ -111,7 +145,7 @@ def test_gradient_is_half_the_slope_of_the_cost(problem, state, stands):
     problem = ScalingProblem(BODY, MARKERS, problem.measured_m, weights, problem.prior)
     equations = problem.linearise(state)
     for _ in range(5):
-        own, shared = rng.normal(size=(FRAMES, MODEL.nv)), rng.normal(size=17 + 3 * len(MARKERS))
+        own, shared = rng.normal(size=(FRAMES, MODEL.nv)), rng.normal(size=shared_size(state))
         ahead, behind = (problem.cost(problem.move(state, s * h * own, s * h * shared)) for s in (1, -1))
         slope = 2 * ((equations.frame_gradient * own).sum() + equations.corner_gradient @ shared)
         assert slope == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)
@@ -162,6 +196,6 @@ def test_with_unit_factors_and_no_offsets_markers_are_the_protocols():
 
 
 def test_factors_stay_inside_their_bounds(problem, state):
-    far = np.concatenate([np.where(np.arange(17) % 2, 5.0, -5.0), np.zeros(3 * len(MARKERS))])
+    far = np.concatenate([np.where(np.arange(17) % 2, 5.0, -5.0), np.zeros(shared_size(state) - 17)])
     factors = problem.move(state, np.zeros((FRAMES, MODEL.nv)), far).factors
     assert set(factors) == set(FACTOR_BOUNDS)

@@ -26,7 +26,7 @@ from mbkf.model.protocol import Protocol
 from mbkf.numerics.runs import spread_indices
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.naming import Naming, NamingProblem
-from mbkf.scaling.problem import ScalingSettings
+from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.renaming import likeliest, settled_names
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrors
@@ -18,9 +19,13 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
 from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.sensors.flexed_skin import FlexedSkin, slide_covariance
 from mbkf.sensors.lasting_noise import MOVEMENT_HZ, white_noise_m
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.preparation.filters import FilterInputs
+
+NEVER_LEARNT = 0.3
+"""Share of the skin's spread that no scaling removes: skin is not exactly of the form that is fitted."""
 
 MIN_PRESENT = 0.02
 """A marker seen in a smaller share of the frames than this does not count as observing a dof."""
@@ -92,7 +97,14 @@ def _body_errors(
     if known is None:
         return None
     session = {marker.name: marker.session_sd_m for marker in subject.markers}
-    return BodyErrors(sensor, noise_m, known.rows(names, session))
+    keypoint = {marker.name for marker in subject.markers if marker.correlated_m > 0.0}
+    segments = ["" if name in keypoint else s for name, s in zip(names, sensor.segments, strict=True)]
+    unseen = slide_covariance(sensor.model.description, segments)
+    root = known.rows(names, session, unseen)
+    never_learnt = [np.zeros((len(root) - len(unseen) * 3 * len(names), 0))]
+    never_learnt += [NEVER_LEARNT * np.linalg.cholesky(one) for one in unseen]
+    root = np.hstack([root, block_diag(*never_learnt)])
+    return BodyErrors(sensor, noise_m, root, FlexedSkin(sensor.model, segments) if len(unseen) else None)
 
 
 def _noise(markers: Sequence[SubjectMarker], dt_s: float, share: float) -> tuple[Array, Array | None]:

@@ -1,0 +1,129 @@
+"""Settings, weights, prior and state of scaling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from mbkf.conventions import Array, BoolArray, read_only
+
+
+@dataclass(frozen=True)
+class ScalingSettings:
+    """Weights of the priors of scaling.
+
+    Attributes:
+        proportion_sd: Spread of a factor about the person's overall size.
+        side_sd: Spread of a factor about the mean of both sides; a person's limbs differ by a hundredth in length.
+        stature_sd: Spread of overall size when no height is given.
+        known_stature_sd: Spread of overall size when the height is given.
+        standing_sd_rad: Spread of a joint's angle about neutral in a static trial, rad.
+        static_posture_frames: Number of independent observations of the posture in a static trial.
+        dynamic_posture_frames: The same in a dynamic trial.
+        dynamic_marker_frames: Number of independent observations of the markers in a dynamic trial: skin moves with the
+            posture and not anew in every frame.
+        frames_per_trial: Greatest number of frames taken from one trial.
+        outlier_m: Distance from the fitted body beyond which a sample is left out, m.
+    """
+
+    proportion_sd: float = 0.06
+    side_sd: float = 0.015
+    stature_sd: float = 0.20
+    known_stature_sd: float = 0.02
+    standing_sd_rad: float = 0.14
+    static_posture_frames: float = 1.0
+    dynamic_posture_frames: float = 1.0
+    dynamic_marker_frames: float = 15.0
+    frames_per_trial: int = 40
+    outlier_m: float = 0.06
+
+
+RIGID = read_only(np.zeros((0, 0, 3)))
+"""Displacements of markers whose skin does not move with the posture."""
+
+
+@dataclass(frozen=True)
+class ScalingState:
+    """One point of the search.
+
+    Attributes:
+        poses: (N, nq) configurations.
+        factors: (K,) scale factors.
+        offsets_m: (M, 3) offsets of the markers.
+        slides_m: (D, M, 3) their displacements by flexion.
+    """
+
+    poses: Array
+    factors: Array
+    offsets_m: Array
+    slides_m: Array = field(default_factory=lambda: RIGID)
+
+
+@dataclass(frozen=True)
+class FrameWeights:
+    """Weights of N frames.
+
+    Attributes:
+        markers: (N,) independent observations of the markers.
+        posture: (N,) independent observations of the posture.
+        standing: (N,) True where the person stands straight.
+        upright: (N,) weight of flat feet and an upright root.
+    """
+
+    markers: Array
+    posture: Array
+    standing: BoolArray
+    upright: Array
+
+    @classmethod
+    def moving(cls, frames: int, markers: float, posture: float) -> FrameWeights:
+        """Frames of a movement.
+
+        Args:
+            frames: Number of frames.
+            markers: Observations of the markers in all of them, at most one in each.
+            posture: The same for the posture.
+        """
+        of_markers, of_posture = (
+            np.full(frames, min(1.0, count / max(1, frames))) for count in (markers, posture)
+        )
+        return cls(of_markers, of_posture, np.zeros(frames, dtype=bool), np.zeros(frames))
+
+
+@dataclass(frozen=True)
+class ScalingPrior:
+    """Prior knowledge of factors, offsets and displacements by flexion.
+
+    Attributes:
+        factors: (K,) expected scale factors k₀.
+        factor_covariance: (K, K) their covariance.
+        offsets_m: (M, 3) expected offsets δ₀ of the markers.
+        offset_precision: (3 M, 3 M) inverse covariance of the offsets, 1/m², marker by marker.
+        slides_m: (D, M, 3) expected displacements by flexion c₀.
+        slide_precision: (3 M, 3 M) inverse covariance of those of one flexion; flexions are independent.
+    """
+
+    factors: Array
+    factor_covariance: Array
+    offsets_m: Array
+    offset_precision: Array
+    slides_m: Array = field(default_factory=lambda: RIGID)
+    slide_precision: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @property
+    def precision(self) -> Array:
+        """(K + 3 M (1 + D), …) inverse covariance of factors, offsets and displacements."""
+        blocks = [np.linalg.inv(self.factor_covariance), self.offset_precision]
+        return block_diag(*blocks, *[self.slide_precision] * len(self.slides_m))
+
+    def away(self, state: ScalingState) -> Array:
+        """(K + 3 M (1 + D),) factors, offsets and displacements of a state minus the expected ones."""
+        return np.concatenate(
+            [
+                state.factors - self.factors,
+                (state.offsets_m - self.offsets_m).ravel(),
+                state.slides_m.ravel() - self.slides_m.ravel(),
+            ]
+        )

@@ -1,0 +1,90 @@
+"""Skin that moves with the joints: displacements of markers in their segments' frames by flexion.
+
+A marker is at p + Σ_d f(θ_d) c_d, with θ_d the flexions of the joints beside its segment and c_d its displacement at
+:data:`FLEXED_RAD`. f(θ) = sin(θ/2) / sin(FLEXED_RAD/2) is 0 in the neutral posture and saturates: in bone-pin and
+fluoroscopic studies skin moves in proportion to flexion, and less so when deep (Reinschmidt et al. 1997,
+Akbarshahi et al. 2010). The body file has the spread of c_d
+(:class:`mbkf.model.description.SegmentSkin`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.body import Body
+from mbkf.model.description import BodyDescription
+from mbkf.sensors.posture_sensor import PostureSensor
+
+FLEXED_RAD = np.pi / 3.0
+"""Flexion at which a displacement is stated, rad."""
+
+UNMOVED_M = 1e-3
+"""Spread of displacements whose share is always zero, m: they stay at zero, whatever it is."""
+
+
+class FlexedSkin:
+    """Shares of the displacements c in the places of M markers.
+
+    Attributes:
+        flexions: D, the greatest number of flexions that move a segment's skin; markers with fewer have zero shares.
+    """
+
+    def __init__(self, model: Body, segments: Sequence[str]) -> None:
+        """Prepares the shares.
+
+        Args:
+            model: A body of the description.
+            segments: (M,) segment of each marker; "" for one that no skin carries.
+        """
+        skin = model.description.skin
+        self.flexions = flexions_of(model.description, segments)
+        self._posture = PostureSensor(model)
+        self._turning = np.zeros((len(segments), self.flexions, model.nv))
+        for m, name in enumerate(segments):
+            for d, joints in enumerate(skin[name].flexions if name in skin else ()):
+                for joint in joints:
+                    self._turning[m, d, _bending_dof(model, joint)] = 1.0 / len(joints)
+
+    def shares(self, q: Array) -> Array:
+        """(M, D) f(θ) at a configuration q (nq,)."""
+        return _share(self._turning @ self._posture.deviation(q)[0])
+
+    def linearised(self, q: Array) -> tuple[Array, Array]:
+        """(M, D) f(θ) at a configuration q (nq,) and their derivative (M, D, nv) in its tangent space."""
+        deviation, jacobian = self._posture.deviation(q)
+        theta = self._turning @ deviation
+        slope = 0.5 * np.cos(0.5 * theta) / np.sin(0.5 * FLEXED_RAD)
+        return _share(theta), slope[..., None] * (self._turning @ jacobian)
+
+
+def _share(theta: Array) -> Array:
+    return np.asarray(np.sin(0.5 * theta) / np.sin(0.5 * FLEXED_RAD))
+
+
+def _bending_dof(model: Body, segment: str) -> int:
+    """The dof that turns a joint about y: a hinge's only one, of other joints the second."""
+    dofs = model.joint(segment).v
+    return dofs.start if dofs.stop - dofs.start == 1 else dofs.start + 1
+
+
+def slide_covariance(body: BodyDescription, segments: Sequence[str]) -> Array:
+    """(D, 3 M, 3 M) prior covariances of the displacements of M markers by each flexion, m².
+
+    Args:
+        body: The reference body.
+        segments: (M,) segment of each marker; "" for one that no skin carries.
+    """
+    names = np.array(segments)
+    together = UNMOVED_M**2 * np.eye(len(names))
+    for name in set(segments) & set(body.skin):
+        here, skin = np.flatnonzero(names == name), body.skin[name]
+        together[np.ix_(here, here)] = skin.common_m**2 + skin.own_m**2 * np.eye(len(here))
+    return np.repeat(np.kron(together, np.eye(3))[None], flexions_of(body, segments), axis=0)
+
+
+def flexions_of(body: BodyDescription, segments: Sequence[str]) -> int:
+    """D: the greatest number of flexions that move the skin of one of some segments."""
+    return max((len(body.skin[name].flexions) for name in segments if name in body.skin), default=0)
