@@ -89,4 +89,4 @@ def test_a_marker_that_scaling_did_not_see_may_be_anywhere_its_session_allows():
     largest = dof_names(inputs.sensor.model)[int(more.argmax())]
     assert largest.startswith(("right_thigh", "right_shank", "right_foot")) and more.max() > 0.01
     other = [not name.startswith("right") for name in dof_names(inputs.sensor.model)]
-    assert more[other].max() < 0.2 * more.max()
+    assert more[other].max() < 0.5 * more.max()
