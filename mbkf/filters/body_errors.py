@@ -45,7 +45,7 @@ FACTOR_STEP = 1e-4
 POSTURES, POSTURE_RAD = 12, 0.4
 """Errors by the body are compared in so many postures, joints turned from neutral by such angles (1 sd)."""
 
-KEPT_VARIANCE = 0.995
+KEPT_VARIANCE = 0.99
 """Share of the variance kept: half of the columns of L move no joint."""
 
 LOOSE = 1e-6

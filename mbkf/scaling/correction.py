@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotConverged
+from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import reference_body, scale_of
@@ -24,10 +25,10 @@ from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.covariance import corrected_covariance
 from mbkf.scaling.evidence import learnt_prior
-from mbkf.scaling.fit import with_skin
 from mbkf.scaling.frames import choose_frames
 from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, ScalingProblem
-from mbkf.scaling.records import FrameWeights, ScalingPrior
+from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingState
+from mbkf.sensors.flexed_skin import flexions_of, slide_covariance
 from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
@@ -49,8 +50,8 @@ MOVED_M = 0.01
 FIXED_FACTOR_SD = 1e-5
 
 KNOWN_SKIN = 0.01
-"""Spread of a trial's displacements by flexion about the subject's, over that of the body file: one trial does not
-separate them from its poses, and a person's skin moves alike in all trials."""
+"""Spread of a trial's displacements by flexion about the subject's, over that of the body file, for the covariance: one
+trial does not separate them from its poses, and a person's skin moves alike in all trials."""
 
 
 def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
@@ -82,19 +83,27 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
         state = solution.state
     learnt = learnt_prior(problem, state, solution.equations.schur_complement())
-    problem = problem.with_prior(replace(learnt, factor_covariance=problem.prior.factor_covariance))
+    problem = _with_precision(problem, learnt.offset_precision)
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
     shares = problem.usual_shares(state.poses)
     before = subject.covariance
     if before is not None:
-        before = corrected_covariance(before, problem, solution.equations.schur_complement())
+        before = _corrected(before, problem, state)
     found = {
         marker.name: (position, problem.prior.slides_m[:, m], shares[:, m])
         for m, (marker, position) in enumerate(zip(problem.markers, local, strict=True))
     }
     return replace(subject, markers=tuple(_moved(m, found) for m in subject.markers), covariance=before)
+
+
+def _corrected(before: BodyCovariance, problem: ScalingProblem, state: ScalingState) -> BodyCovariance:
+    """The covariance after correction: displacements by flexion, fixed in the fit, err as scaling left them."""
+    covariance = KNOWN_SKIN**2 * slide_covariance(problem.body, problem.segments)
+    if len(problem.prior.slides_m):
+        problem = problem.with_prior(replace(problem.prior, slide_precision=np.linalg.inv(covariance[0])))
+    return corrected_covariance(before, problem, problem.linearise(state).schur_complement())
 
 
 def _moved(marker: SubjectMarker, found: dict[str, tuple[Array, Array, Array]]) -> SubjectMarker:
@@ -130,8 +139,8 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
     )
     keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)
     if not keypoints:
-        prior = with_skin(prior, body, [m.segment for m in markers], KNOWN_SKIN)
-        prior = replace(prior, slides_m=_slides_m(subject, markers, len(prior.slides_m)))
+        flexions = flexions_of(body, [m.segment for m in markers])
+        prior = replace(prior, slides_m=_slides_m(subject, markers, flexions))
     posture = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_OBSERVATIONS
     weights = FrameWeights.moving(count, OBSERVATIONS, posture)
     return ScalingProblem(body, markers, frames.measured_m, weights, prior)
@@ -141,7 +150,7 @@ def _slides_m(subject: Subject, markers: tuple[ProtocolMarker, ...], flexions: i
     """(D, M, 3) displacements by flexion that scaling found; 0 where it learnt nothing of them."""
     own = {marker.name: marker.slides_m for marker in subject.markers}
     found = [own[m.name] if len(own[m.name]) == flexions else np.zeros((flexions, 3)) for m in markers]
-    return np.array(found).swapaxes(0, 1)
+    return np.array(found).reshape(len(markers), flexions, 3).swapaxes(0, 1)
 
 
 def _offset_precision(

@@ -25,9 +25,7 @@ def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovarian
     to_places = problem.places_by_unknowns()
     covariance = to_places @ np.linalg.inv(information) @ to_places.T
     names = tuple(marker.name for marker in problem.markers)
-    return BodyCovariance.of(
-        tuple(problem.body.scale_factors), names, covariance, len(problem.prior.slides_m)
-    )
+    return BodyCovariance.of(tuple(problem.body.scale_factors), names, covariance, problem.prior.flexions)
 
 
 def corrected_covariance(
@@ -55,10 +53,10 @@ def corrected_covariance(
     precision = precision[found_anew, found_anew]
     J = data[found_anew, found_anew] + precision
     names, segments = zip(*((marker.name, marker.segment) for marker in problem.markers), strict=True)
-    skin = slide_covariance(problem.body, segments)[: len(prior.slides_m)]
+    skin = slide_covariance(problem.body, segments)[: prior.flexions]
     root = before.rows(names, {marker.name: marker.placement_sd_m for marker in problem.markers}, skin)
     gain = np.linalg.solve(J, np.hstack([-data[found_anew, :count], precision]))
     moved = np.vstack([root[:count], gain @ root])
     covariance = moved @ moved.T
     covariance[found_anew, found_anew] += np.linalg.inv(J)
-    return BodyCovariance.of(before.factors, names, covariance, len(prior.slides_m))
+    return BodyCovariance.of(before.factors, names, covariance, prior.flexions)

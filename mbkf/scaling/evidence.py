@@ -58,8 +58,9 @@ def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Arra
 
 def _kinds(problem: ScalingProblem) -> NDArray[np.str_]:
     """(K + 3 M (1 + D),) group of each unknown."""
-    markers, slides = [m.kind for m in problem.markers for _ in range(3)], problem.prior.slides_m.size
-    return np.array([PROPORTIONS] * len(problem.body.scale_factors) + markers + [SKIN] * slides)
+    markers = [m.kind for m in problem.markers for _ in range(3)]
+    skin = [SKIN] * (len(markers) * problem.prior.flexions)
+    return np.array([PROPORTIONS] * len(problem.body.scale_factors) + markers + skin)
 
 
 def variance_factors(

@@ -72,7 +72,7 @@ def scale_subject(
     if not static and not dynamic:
         raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
-    problem = scaling_problem(frames, len(static), protocol, height_m, settings, skin=len(dynamic) > 0)
+    problem = scaling_problem(frames, len(static), protocol, height_m, settings)
     start = problem.start(first_poses(problem))
     solution = _minimise(problem, start, progress)
     dropped = problem.outliers(solution.state, settings.outlier_m)
@@ -83,7 +83,10 @@ def scale_subject(
         )
     if dropped.any():
         problem = problem.without(dropped)
-        solution = _minimise(problem, solution.state, progress)
+    if dynamic:
+        problem = problem.with_prior(with_skin(problem))
+    if dynamic or dropped.any():
+        solution = _minimise(problem, problem.start_from(solution.state), progress)
     problem = problem.with_prior(learnt_prior(problem, solution.state, solution.equations.schur_complement()))
     solution = _minimise(problem, solution.state, progress)
     rms = float(np.sqrt(np.nanmean(np.linalg.norm(problem.errors_m(solution.state), axis=2) ** 2)))
@@ -152,8 +155,6 @@ def scaling_problem(
     protocol: Protocol,
     height_m: float | None,
     settings: ScalingSettings,
-    *,
-    skin: bool = False,
 ) -> ScalingProblem:
     """The least-squares problem of chosen frames.
 
@@ -163,7 +164,6 @@ def scaling_problem(
         protocol: The marker protocol.
         height_m: Body height, if known.
         settings: Weights of the priors.
-        skin: Markers are displaced by flexion, unless a network places them.
     """
     body = protocol.body
     weights = _weights(frames, static_trials, settings)
@@ -176,27 +176,16 @@ def scaling_problem(
         offsets_m=np.zeros((len(frames.markers), 3)),
         offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
     )
-    if skin and all(marker.kind != "keypoint" for marker in frames.markers):
-        prior = with_skin(prior, body, [m.segment for m in frames.markers])
     return ScalingProblem(body, frames.markers, frames.measured_m, weights, prior, settings.standing_sd_rad)
 
 
-def with_skin(
-    prior: ScalingPrior, body: BodyDescription, segments: Sequence[str], share: float = 1.0
-) -> ScalingPrior:
-    """The prior with displacements of the markers by flexion, of a share of the spread that the body file states.
-
-    Args:
-        prior: Prior of factors and offsets.
-        body: The reference body.
-        segments: (M,) segment of each marker.
-        share: The share.
-    """
-    covariance = share**2 * slide_covariance(body, segments)
-    if not len(covariance):
-        return prior
-    expected = np.zeros((len(covariance), len(segments), 3))
-    return replace(prior, slides_m=expected, slide_precision=np.linalg.inv(covariance[0]))
+def with_skin(problem: ScalingProblem) -> ScalingPrior:
+    """The prior with unknown displacements of the markers by flexion, unless a network places them."""
+    covariance = slide_covariance(problem.body, problem.segments)
+    if not len(covariance) or any(marker.kind == "keypoint" for marker in problem.markers):
+        return problem.prior
+    expected = np.zeros((len(covariance), len(problem.markers), 3))
+    return replace(problem.prior, slides_m=expected, slide_precision=np.linalg.inv(covariance[0]))
 
 
 def factor_covariance(body: BodyDescription, stature_sd: float, settings: ScalingSettings) -> Array:

@@ -52,7 +52,7 @@ class _Shown:
         by_pose: (N, M, 3, nv) derivative by the frame's pose.
         by_factors: (N, M, 3, K) by the scale factors.
         axes: (N, M, 3, 3) by the marker's own offset.
-        shares: (1 + D, N, M) 1 and f: derivative by a displacement, over that by the offset.
+        shares: (1 + D, N, M) 1 and f: derivative by an unknown displacement, over that by the offset.
     """
 
     errors: Array
@@ -95,7 +95,7 @@ class ScalingProblem:
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
         model = HumanModel.scaled(body=body)
         self.posture = PostureSensor(model)
-        self.skin = FlexedSkin(model, self.segments) if len(prior.slides_m) else None
+        self.skin = FlexedSkin(model, self.segments)
         self._usual = UsualPosture(self.posture, standing_sd_rad)
         self._upright = UprightPosture(model)
         self._worn = ScaledMarkers(model, self.segments, self.reference_m)
@@ -104,6 +104,10 @@ class ScalingProblem:
         """State with the prior's factors, offsets and displacements."""
         return ScalingState(poses, self.prior.factors, self.prior.offsets_m, self.prior.slides_m)
 
+    def start_from(self, state: ScalingState) -> ScalingState:
+        """A state of a problem with another number of flexions, with the prior's displacements."""
+        return ScalingState(state.poses, state.factors, state.offsets_m, self.prior.slides_m)
+
     def local_m(self, factors: Array, offsets_m: Array) -> Array:
         """(M, 3) marker positions in their segments' frames: D_b(k) m̄ + δ."""
         return np.einsum("mak,k->ma", self._segment_scale, factors) * self.reference_m + offsets_m
@@ -111,7 +115,7 @@ class ScalingProblem:
     def places_by_unknowns(self) -> Array:
         """(K + 3 M (1 + D), …) derivative of (factors, places, displacements) by (factors, offsets, displacements)."""
         count, places = len(self.body.scale_factors), 3 * len(self.markers)
-        derivative = np.eye(count + places * (1 + len(self.prior.slides_m)))
+        derivative = np.eye(count + places * (1 + self.prior.flexions))
         derivative[count : count + places, :count] = self.places_by_factors().reshape(-1, count)
         return derivative
 
@@ -137,7 +141,7 @@ class ScalingProblem:
     def _shares(self, poses: Array) -> Array:
         """(1 + D, N, M) 1 and f of N configurations."""
         size = (len(poses), len(self.markers))
-        if self.skin is None:
+        if not len(self.prior.slides_m):
             return np.ones((1, *size))
         found = np.array([self.skin.shares(q) for q in poses]).reshape(*size, -1)
         return np.concatenate([np.ones((1, *size)), np.moveaxis(found, 2, 0)])
@@ -206,7 +210,9 @@ class ScalingProblem:
             np.array([model.integrate(q, dq) for q, dq in zip(state.poses, own, strict=True)]),
             np.clip(state.factors + shared[:count], *FACTOR_BOUNDS),
             state.offsets_m + shared[count:end].reshape(state.offsets_m.shape),
-            state.slides_m + shared[end:].reshape(state.slides_m.shape),
+            state.slides_m + shared[end:].reshape(state.slides_m.shape)
+            if self.prior.flexions
+            else state.slides_m,
         )
 
     def linearise(self, state: ScalingState) -> ArrowEquations:
@@ -274,7 +280,7 @@ class ScalingProblem:
         whiten = np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
         errors = np.array([one.positions_m for one in reading.markers]) - self.measured_m
         by_pose = np.array([one.jacobian for one in reading.markers])
-        if self.skin is not None:
+        if len(state.slides_m):
             by_share = np.array([self.skin.linearised(q)[1] for q in state.poses])
             by_pose += reading.axes @ np.einsum("dmi,tmdv->tmiv", state.slides_m, by_share)
         by_pose *= whiten[..., None]
@@ -283,5 +289,5 @@ class ScalingProblem:
             by_pose,
             reading.by_factors * whiten[..., None],
             reading.axes * whiten[..., None],
-            shares,
+            shares[: 1 + self.prior.flexions],
         )

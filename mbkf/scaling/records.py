@@ -102,7 +102,8 @@ class ScalingPrior:
         offsets_m: (M, 3) expected offsets δ₀ of the markers.
         offset_precision: (3 M, 3 M) inverse covariance of the offsets, 1/m², marker by marker.
         slides_m: (D, M, 3) expected displacements by flexion c₀.
-        slide_precision: (3 M, 3 M) inverse covariance of those of one flexion; flexions are independent.
+        slide_precision: (3 M, 3 M) inverse covariance of those of one flexion; flexions are independent. Without
+            rows the displacements are known, and are no unknowns.
     """
 
     factors: Array
@@ -113,17 +114,19 @@ class ScalingPrior:
     slide_precision: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
+    def flexions(self) -> int:
+        """Number of flexions whose displacements are unknown."""
+        return len(self.slides_m) if self.slide_precision.size else 0
+
+    @property
     def precision(self) -> Array:
-        """(K + 3 M (1 + D), …) inverse covariance of factors, offsets and displacements."""
+        """(K + 3 M (1 + D), …) inverse covariance of factors, offsets and unknown displacements."""
         blocks = [np.linalg.inv(self.factor_covariance), self.offset_precision]
-        return block_diag(*blocks, *[self.slide_precision] * len(self.slides_m))
+        return block_diag(*blocks, *[self.slide_precision] * self.flexions)
 
     def away(self, state: ScalingState) -> Array:
-        """(K + 3 M (1 + D),) factors, offsets and displacements of a state minus the expected ones."""
+        """(K + 3 M (1 + D),) factors, offsets and unknown displacements of a state minus the expected ones."""
+        slides = (state.slides_m - self.slides_m) if self.flexions else RIGID
         return np.concatenate(
-            [
-                state.factors - self.factors,
-                (state.offsets_m - self.offsets_m).ravel(),
-                state.slides_m.ravel() - self.slides_m.ravel(),
-            ]
+            [state.factors - self.factors, (state.offsets_m - self.offsets_m).ravel(), slides.ravel()]
         )
