@@ -63,12 +63,7 @@ def scale_subject(
         NotConverged: The fit is poor, or the proportions are impossible: the markers are not this protocol's.
     """
     settings = settings or ScalingSettings()
-    if not (np.isfinite(mass_kg) and mass_kg > 0):
-        raise InvalidInput(f"the body mass must be positive, got {mass_kg} kg; give --mass KG")
-    if height_m is not None and not 0.5 < height_m < 2.6:
-        raise InvalidInput(
-            f"the body height must be between 0.5 and 2.6 m, got {height_m} m; give --height M"
-        )
+    _check_size(mass_kg, height_m)
     if not static and not dynamic:
         raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
@@ -117,6 +112,16 @@ def scale_subject(
         model = problem.posture.model
         subject.report[STANDING_KEY] = [round(float(x), 7) for x in _middle(model, standing)]
     return subject
+
+
+def _check_size(mass_kg: float, height_m: float | None) -> None:
+    """Refuses a mass or a height that people do not have."""
+    if not (np.isfinite(mass_kg) and mass_kg > 0):
+        raise InvalidInput(f"the body mass must be positive, got {mass_kg} kg; give --mass KG")
+    if height_m is not None and not 0.5 < height_m < 2.6:
+        raise InvalidInput(
+            f"the body height must be between 0.5 and 2.6 m, got {height_m} m; give --height M"
+        )
 
 
 def _at_bound(factor: float) -> bool:
