@@ -7,7 +7,13 @@ import pytest
 from mbkf.app.server import AppServer
 from tests.app.asking import asked
 from tests.studies import runs_here, study
-from tests.viz.conftest import browser, opened  # noqa: F401 — for this folder's tests, too
+from tests.viz.conftest import FLAGS, browser, opened, tab  # noqa: F401 — for this folder's tests, too
+
+
+@pytest.fixture(scope="module")
+def flags():
+    """Frames within frames need the graphics software, which puts them together."""
+    return FLAGS
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,13 @@ FLAGS = (
 
 
 @pytest.fixture(scope="module")
-def browser():
+def flags():
+    """Of the browser: the 3-D view alone is drawn by the graphics software, and the page around it without."""
+    return (*FLAGS, "--disable-gpu-compositing")
+
+
+@pytest.fixture(scope="module")
+def browser(flags):
     chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if chromium is None:
         message = "no chromium on this machine; install it (Debian: apt-get install chromium)"
@@ -23,28 +29,51 @@ def browser():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
+        made = playwright.chromium.launch(executable_path=chromium, args=flags)
         yield made
         made.close()
 
 
+def forgotten(page):
+    """Leaves a page for an empty one, and nothing that it kept is there for the next."""
+    page.evaluate(
+        "(() => { try { localStorage.clear(); } catch { /* a page of the browser keeps nothing */ } })()"
+    )
+    page.context.clear_cookies()
+    page.goto("about:blank")
+
+
+@pytest.fixture(scope="module")
+def tab(browser):
+    """The page that the tests of a file open one after the other: a new one would compile every script again."""
+    made = browser.new_page()
+    made.set_default_timeout(1e3 * PATIENCE_S)
+    return made
+
+
 @pytest.fixture
-def opened(browser):
-    """Opens an address; afterwards the page must have reported no error."""
-    errors, pages = [], []
+def opened(tab):
+    """Opens one address at a time; afterwards the page must have reported no error."""
+    errors = []
+    heard = {
+        "request": lambda request: tab.requested.append(request.url),
+        "pageerror": lambda error: errors.append(str(error)),
+        "console": lambda said: errors.append(said.text) if said.type == "error" else None,
+    }
 
     @contextmanager
     def open_(url):
-        page = browser.new_page(viewport={"width": 920, "height": 420})
-        page.set_default_timeout(1e3 * PATIENCE_S)
-        page.requested = []
-        page.on("request", lambda request: page.requested.append(request.url))
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda m: errors.append(m.text) if m.type == "error" else None)
-        page.answer = page.goto(url)
-        pages.append(page)
-        yield page
-        page.close()
+        tab.requested = []
+        tab.set_viewport_size({"width": 920, "height": 420})
+        for event, hear in heard.items():
+            tab.on(event, hear)
+        try:
+            tab.answer = tab.goto(url)
+            yield tab
+        finally:
+            for event, hear in heard.items():
+                tab.remove_listener(event, hear)
+            forgotten(tab)
 
     open_.errors = errors
     yield open_

@@ -124,9 +124,12 @@ def test_events_that_another_page_set_are_chosen_by_the_person(page, server, own
     theirs = (FootEvent("left", EventKind.OFF, 0.5),)
     server.workspace.change_events("P1", "walk1", None, theirs)
     asked = []
-    page.on(
-        "dialog", lambda dialog: (asked.append(dialog.message), dialog.accept() if own else dialog.dismiss())
-    )
+
+    def answer(dialog):
+        asked.append(dialog.message)
+        (dialog.accept if own else dialog.dismiss)()
+
+    page.on("dialog", answer)
     chosen(page, "right", "strike")
     page.keyboard.press("Delete")
     saved(page)
@@ -137,6 +140,7 @@ def test_events_that_another_page_set_are_chosen_by_the_person(page, server, own
     page.keyboard.press("ArrowRight")
     saved(page)
     assert len(asked) == 1 and len(by_hand(server)) == page.evaluate("viewer.events.list.length")
+    page.remove_listener("dialog", answer)
 
 
 def test_an_event_is_dragged_and_one_comes_with_a_double_click(page, server):
