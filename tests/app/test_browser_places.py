@@ -8,6 +8,7 @@ from mbkf.app.server import AppServer
 from mbkf.io.session import read_session
 from tests.studies import runs_here, study
 from tests.viz.browsing import until
+from tests.viz.conftest import forgotten
 
 
 @pytest.fixture
@@ -19,22 +20,36 @@ def lab(tmp_path):
         server.close()
 
 
+@pytest.fixture(scope="module")
+def tabs(browser):
+    """Two pages of the same browser."""
+    context = browser.new_context(viewport={"width": 1280, "height": 720}, locale="en")
+    return [context.new_page() for _ in range(2)]
+
+
 @pytest.fixture
-def pages(browser, lab):
-    """Opens pages, each in the same browser; none may have reported an error but for a refused request."""
-    context, troubles = browser.new_context(viewport={"width": 1280, "height": 720}, locale="en"), []
+def pages(tabs, lab):
+    """Opens pages, at most two at a time; none may have reported an error but for a refused request."""
+    free, troubles = list(tabs), []
+
+    def note(error):
+        troubles.append(str(error))
 
     def open_(query=""):
-        page = context.new_page()
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        if not context.cookies():
+        page = free.pop()
+        page.on("pageerror", note)
+        if not page.context.cookies():
             page.goto(lab.url)
         page.goto(f"http://127.0.0.1:{lab.port}/{query}")
         page.wait_for_selector("#sessions button")
         return page
 
     yield open_
-    context.close()
+    for page in tabs:
+        page.unroute_all()
+        if page not in free:
+            page.remove_listener("pageerror", note)
+            forgotten(page)
     assert troubles == []
 
 
