@@ -45,9 +45,12 @@ class ThisProcess:
         pass
 
 
-def batch_here(source: Path, out: Path, settings: ReconstructSettings = QUICK) -> pa.Table:
+def batch_here(
+    source: Path, out: Path, settings: ReconstructSettings = QUICK, static_only: bool = False
+) -> pa.Table:
     """A batch without workers."""
-    return follow(plan_of(source), out, settings, ThisProcess())
+    plan = plan_of(source)
+    return follow(plan.from_standing() if static_only else plan, out, settings, ThisProcess())
 
 
 @contextmanager

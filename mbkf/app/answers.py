@@ -10,6 +10,8 @@ from mbkf.app.runs import Runs, RunState
 from mbkf.app.workspace import Workspace
 from mbkf.io.session import TrialKind, plain_session
 from mbkf.io.session_change import session_version
+from mbkf.study.batch.person import record_of
+from mbkf.study.scaling.report import scaled_from, used_trials
 from mbkf.study.survey.problems import plain_problem
 from mbkf.study.survey.session import SurveyedSession
 from mbkf.study.survey.trial import SurveyedTrial
@@ -39,6 +41,7 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
     """
     found = workspace.survey(name)
     state = runs.state(name)
+    scaled = record_of(workspace.place(name))
     return {
         "id": name,
         "notes": plain_session(found.notes),
@@ -48,6 +51,8 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
         "trials": [*(_trial(found, one, state) for one in found.trials), *recording_rows(workspace, name)],
         "kinds": [kind.value for kind in TrialKind],
         "run": run_state(state),
+        "scaled_from": used_trials(scaled),
+        "scaled_why": scaled_from(scaled),
     }
 
 

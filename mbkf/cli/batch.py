@@ -1,6 +1,7 @@
 """Reconstruct many trials: a folder for each, tables over all.
 
-Scales every person once, reconstructs every trial and writes tables of all of them.
+Scales every person once, reconstructs every trial and writes tables of all of them. A person is scaled from standing
+and from other trials that help: a walk, a deep flexion, a movement of the arms (--static-only: from standing alone).
 
 Examples:
   mbkf batch study --out results
@@ -29,7 +30,15 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import add_lag_option, add_out, add_spreads_option, asked_spreads, count, lag_seconds
+from mbkf.cli.options import (
+    add_lag_option,
+    add_out,
+    add_spreads_option,
+    add_static_only,
+    asked_spreads,
+    count,
+    lag_seconds,
+)
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -56,6 +65,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     later.add_argument("--causal", action="store_true", help="use no later frames")
     add_lag_option(later)
     add_spreads_option(parser)
+    add_static_only(parser)
     add_out(parser, "DIR", "folder to write", required=True)
 
 
@@ -82,6 +92,7 @@ def run(args: argparse.Namespace) -> int:
             dask=args.dask,
             shard=shard_of(args.shard),
             settings=settings,
+            static_only=args.static_only,
             progress=report,
         )
     return _print(table, args.out)

@@ -133,6 +133,15 @@ def add_spreads_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def add_static_only(parser: argparse._ActionsContainer) -> None:
+    """Adds ``--static-only``, for commands that scale persons from sessions."""
+    parser.add_argument(
+        "--static-only",
+        action="store_true",
+        help="scale from the standing trial alone, not from those of the session's other trials that help",
+    )
+
+
 def asked_spreads(args: argparse.Namespace) -> tuple[str, ...]:
     """The value of ``--spreads`` as :attr:`ReconstructSettings.spreads` takes it."""
     from mbkf.filters.spread import ASKED

@@ -1,9 +1,12 @@
 """Fit the body to a person, with the person's mass.
 
-Fits scale factors and marker positions to a standing trial, moving trials or both.
+Fits scale factors and marker positions to a standing trial, moving trials or both. Of a session's folder it takes
+standing and those of the other trials that help: a walk, a deep flexion (squat, sit-to-stand), a movement of the arms.
 
 Examples:
+  mbkf scale P01/monday --mass 85.07 --out subject.toml        (a session's folder; it chooses the trials)
   mbkf scale static.trc --mass 85.07 --out subject.toml
+  mbkf scale static.trc --trial walk.trc --trial squat.trc --mass 85.07 --out subject.toml
   mbkf scale static.c3d --trial walk.c3d --mass 60 --height 1.72 --out subject.toml
   mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
   mbkf scale static.c3d --trial walk.c3d --mass auto --out subject.toml  (weighed by the plates)
@@ -15,15 +18,26 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options, body_mass
+from mbkf.cli.options import (
+    CAPTURE_FILES,
+    add_axes_options,
+    add_out,
+    add_static_only,
+    axes_options,
+    body_mass,
+)
 from mbkf.cli.tables import table, terminal
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from mbkf.io.records import Capture
     from mbkf.io.subject import Subject
 
 AUTO = "auto"
@@ -35,10 +49,20 @@ MOST_MARKERS = 8
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("static", metavar="STATIC", nargs="?", help=f"standing trial ({CAPTURE_FILES})")
     parser.add_argument(
-        "--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated"
+        "static",
+        metavar="STATIC|FOLDER",
+        nargs="?",
+        help=f"standing trial ({CAPTURE_FILES}), or a session's folder",
     )
+    parser.add_argument(
+        "--trial",
+        metavar="TRIAL",
+        action="append",
+        default=[],
+        help="moving trial; may be repeated; beside a folder in place of the trials that would be chosen",
+    )
+    add_static_only(parser)
     parser.add_argument(
         "--protocol",
         metavar="NAME|FILE",
@@ -66,41 +90,75 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Scales and writes the subject, and prints the quality of the fit."""
-    from mbkf.cli.progress import stages
     from mbkf.errors import FileFormatError
     from mbkf.io.atomic import check_folder
-    from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
-    from mbkf.trial.inertia.estimate import with_inertia
-    from mbkf.trial.scale import scale
-    from mbkf.trial.weighing import PROVISIONAL_KG, weighed
+    from mbkf.study.scaling.report import bends_deeply
+    from mbkf.trial.hip_centres import hip_note
 
     out = Path(args.out)
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
     check_folder(out.parent)
-    static = None if args.static is None else read_capture(args.static, **axes_options(args))
-    trials = [read_capture(path, **axes_options(args)) for path in args.trial]
-    captures = trials if static is None else [static, *trials]
-    with stages() as report:
-        subject = scale(
-            static,
-            trials,
-            mass_kg=PROVISIONAL_KG if args.mass == AUTO else args.mass,
-            height_m=args.height,
-            protocol=args.protocol,
-            body=args.body,
-            progress=report,
-        )
-    if args.mass == AUTO:
-        subject = weighed(subject, captures)
-    if args.inertia:
-        subject = with_inertia(subject, captures)
+    folder = args.static is not None and Path(args.static).is_dir()
+    subject = _of_folder(args) if folder else _of_captures(args, args.static, _stated(args))
     write_subject(subject, out)
     warn_of_fit(subject)
-    _print(subject.report, subject.protocol, str(out))
+    advice = "" if args.trial or bends_deeply(subject.report) else hip_note(subject)
+    _print(subject.report, subject.protocol, str(out), advice)
     warn_of_markers(subject)
     return 0
+
+
+def _stated(args: argparse.Namespace) -> dict[str, Any]:
+    """Facts about the person among the options."""
+    from mbkf.trial.weighing import PROVISIONAL_KG
+
+    mass_kg = PROVISIONAL_KG if args.mass == AUTO else args.mass
+    stated = {"mass_kg": mass_kg, "height_m": args.height, "protocol": args.protocol}
+    return {name: value for name, value in stated.items() if value is not None}
+
+
+def _of_captures(args: argparse.Namespace, standing: str | Path | None, stated: dict[str, Any]) -> Subject:
+    """The person of a standing trial and the moving ones named."""
+    from mbkf.cli.progress import stages
+    from mbkf.io.capture import read_capture
+    from mbkf.trial.scale import scale
+
+    static = None if standing is None else read_capture(standing, **axes_options(args))
+    trials = [read_capture(path, **axes_options(args)) for path in args.trial]
+    with stages() as report:
+        subject = scale(static, trials, **stated, body=args.body, progress=report)
+    return _weighed(args, subject, trials if static is None else [static, *trials])
+
+
+def _of_folder(args: argparse.Namespace) -> Subject:
+    """The person of a session's folder, from the trials named or those that are chosen."""
+    from mbkf.cli.progress import stages
+    from mbkf.io.capture import read_capture
+    from mbkf.study.batch.folder import person_of_folder
+    from mbkf.study.batch.person import captures_used, scaled
+
+    person = replace(person_of_folder(Path(args.static)), **_stated(args))
+    if args.trial:
+        stated = {name: getattr(person, name) for name in ("mass_kg", "height_m", "protocol")}
+        return _of_captures(args, next(iter(person.statics), None), stated)
+    person = replace(person, static_only=args.static_only or person.static_only)
+    read = partial(read_capture, **axes_options(args))
+    with stages() as report:
+        subject = scaled(person, report, body=args.body, read=read)
+    needs_plates = args.inertia or args.mass == AUTO
+    return _weighed(args, subject, captures_used(person, subject, read) if needs_plates else ())
+
+
+def _weighed(args: argparse.Namespace, subject: Subject, captures: Sequence[Capture]) -> Subject:
+    """The person with mass and inertia by the plates of the captures, as far as they are asked for."""
+    from mbkf.trial.inertia.estimate import with_inertia
+    from mbkf.trial.weighing import weighed
+
+    if args.mass == AUTO:
+        subject = weighed(subject, captures)
+    return with_inertia(subject, captures) if args.inertia else subject
 
 
 def mass_option(text: str) -> float | str:
@@ -133,7 +191,8 @@ def warn_of_markers(subject: Subject) -> None:
         print(f"warning: {use['warning']}", file=sys.stderr)
 
 
-def _print(report: dict[str, Any], protocol: str, out: str) -> None:
+def _print(report: dict[str, Any], protocol: str, out: str, advice: str) -> None:
+    from mbkf.study.scaling.report import scaled_from
     from mbkf.trial.preparation.coverage import listed
 
     console = terminal()
@@ -164,8 +223,12 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         console.print(line, soft_wrap=True)
     if "inertia" in report:
         _print_inertia(console, report["inertia"])
+    for line in scaled_from(report):
+        console.print(line, soft_wrap=True)
     for found in report.get("axes", ()):
         console.print(f"note: {found['capture']}: {found['note']}", soft_wrap=True)
+    if advice:
+        console.print(f"note: {advice}", soft_wrap=True)
     console.print(
         f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
         f"{report['marker_rms_mm']:.1f} mm RMS",

@@ -6,6 +6,7 @@
     sex = "female"
     age = 34
     protocol = "plug_in_gait"
+    scaling = "session"
 
     [trial.walk3]
     kind = "walk"
@@ -40,6 +41,9 @@ MASS_KG, HEIGHT_M, AGE = (0.5, 500.0), (0.3, 2.8), (0.0, 130.0)
 SEXES = ("female", "male", "other")
 SIDES = ("right", "left")
 
+FROM_SESSION, FROM_STATIC = "session", "static"
+"""Captures that a body is scaled from: the standing trial and others of the session, or the standing one alone."""
+
 
 class TrialKind(StrEnum):
     """Task of a trial."""
@@ -65,10 +69,15 @@ HEIGHT = fields.number("height_m", "body height", HEIGHT_M, "m")
 _AGE = fields.number("age", "age", AGE, "years")
 _SEX = fields.word("sex", "for reports", SEXES)
 PROTOCOL = fields.text("protocol", "marker set: its name, or a file beside this one")
+_SCALING = fields.word(
+    "scaling",
+    "captures for the body: standing and the trials that help, or standing alone; by default session",
+    (FROM_SESSION, FROM_STATIC),
+)
 _TRIAL = fields.part(
     "trial", "statements on a trial, which is named by its file without suffix", "[trial.NAME]"
 )
-SESSION = fields.record("session", _NAME, MASS, HEIGHT, _AGE, _SEX, PROTOCOL, _TRIAL)
+SESSION = fields.record("session", _NAME, MASS, HEIGHT, _AGE, _SEX, PROTOCOL, _SCALING, _TRIAL)
 """Entries of a session file."""
 
 _KIND = fields.word("kind", "its task; by default the one that its markers show", tuple(TrialKind))
@@ -126,6 +135,7 @@ class SessionNotes:
         sex: One of :data:`SEXES`; empty where not known.
         protocol: Marker protocol; None for the one that the names belong to.
         trials: Statements on trials, by name.
+        scaling: :data:`FROM_SESSION` or :data:`FROM_STATIC`; empty where not stated.
     """
 
     name: str = ""
@@ -135,6 +145,7 @@ class SessionNotes:
     sex: str = ""
     protocol: str | None = None
     trials: Mapping[str, TrialNotes] = field(default_factory=dict)
+    scaling: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "trials", MappingProxyType(dict(self.trials)))
@@ -173,6 +184,7 @@ def _session(read: Entries) -> SessionNotes:
         sex=read.get(_SEX) or "",
         protocol=read.get(PROTOCOL),
         trials={name: _trial(entries) for name, entries in read.tables(_TRIAL, TRIAL).items()},
+        scaling=read.get(_SCALING) or "",
     )
 
 
@@ -180,7 +192,7 @@ def plain_session(notes: SessionNotes) -> dict[str, object]:
     """A session as plain data, as :func:`session_of` takes it; empty entries are left out."""
     person = {
         "name": notes.name, "sex": notes.sex, "protocol": notes.protocol, "mass_kg": notes.mass_kg,
-        "height_m": notes.height_m, "age": notes.age,
+        "height_m": notes.height_m, "age": notes.age, "scaling": notes.scaling,
     }  # fmt: skip
     trials = {name: _plain_trial(trial) for name, trial in notes.trials.items() if trial != TrialNotes()}
     found: dict[str, object] = {key: value for key, value in person.items() if value not in (None, "")}

@@ -10,6 +10,7 @@ from mbkf.app.runs import RunState
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError
 from mbkf.io.session import SessionNotes
+from mbkf.study.batch.person import RECORD
 from mbkf.study.batch.progress import Progress
 from tests.studies import study
 
@@ -45,6 +46,17 @@ def test_a_session_is_told_whole(workspace):
     assert walk1["under_way"] is None
     assert told["notes"] == {} and told["standing_kg"] == pytest.approx(85.7, abs=0.5)
     assert answers.session(workspace, States({}), "P1")["run"] is None
+
+
+def test_the_trials_of_the_body_are_stated_with_their_reasons(workspace):
+    assert answers.session(workspace, States({}), "P1")["scaled_from"] == []
+    record = workspace.place("P1") / RECORD
+    record.parent.mkdir(parents=True)
+    record.write_text(json.dumps({"scaled_from": [{"trial": "static", "part": "standing", "why": ""}],
+                                  "not_scaled_from": {"walk1": "gaps"}}))  # fmt: skip
+    told = answers.session(workspace, States({}), "P1")
+    assert told["scaled_from"] == ["static"]
+    assert told["scaled_why"] == ["scaled from static (standing)", "not scaled from walk1: gaps"]
 
 
 def test_all_sessions_in_short(workspace):

@@ -52,7 +52,7 @@ def test_its_plan_is_that_of_a_batch_and_results_are_no_captures(workspace):
         workspace.result("P2", "walk1")
     (workspace.root / "P2" / "walk2.c3d").unlink()
     shutil.rmtree(workspace.root / "P1")
-    batch_here(workspace.root, workspace.root / RESULTS)
+    batch_here(workspace.root, workspace.root / RESULTS, static_only=True)
     assert workspace.result("P2", "walk1") == workspace.root / RESULTS / "P2" / "walk1"
     assert workspace.sessions() == ("P2",)
     with pytest.raises(InvalidInput, match="no result of 'other' yet"):

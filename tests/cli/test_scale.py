@@ -12,6 +12,7 @@ from mbkf.cli.scale import AUTO, _print_inertia, mass_option
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
+from tests.bending import squat, standing, walk
 from tests.captures import MASS_KG, made_capture, snapshot
 
 pytestmark = pytest.mark.slow
@@ -129,6 +130,49 @@ def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):
     assert scale("--trial", person.trial_trc, "--mass", "auto", "--out", tmp_path / "s.toml") == 2
     assert "the plates do not give the body mass (no capture has plates)" in capsys.readouterr().err
     assert not (tmp_path / "s.toml").exists()
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory):
+    """A session of standing, a squat, a walk of another person and a capture that is left out, with its mass."""
+    folder = tmp_path_factory.mktemp("P1")
+    for name, capture in (
+        ("static", standing()),
+        ("squat", squat()),
+        ("walk", walk(factor=1.1)),
+        ("bad", walk()),
+    ):
+        write_c3d(capture, folder / f"{name}.c3d")
+    (folder / "session.toml").write_text("mass_kg = 66.0\n[trial.bad]\nexcluded = 'stumbled'\n")
+    return folder
+
+
+def test_a_sessions_folder_takes_the_trials_that_help(session, tmp_path, capsys):
+    assert scale(session, "--out", tmp_path / "s.toml") == 0
+    subject, shown = read_subject(tmp_path / "s.toml"), capsys.readouterr().out
+    assert [one["trial"] for one in subject.report["scaled_from"]] == ["static", "squat"]
+    assert list(subject.report["not_scaled_from"]) == ["walk"] and subject.mass_kg == 66.0
+    assert "scaled from squat (deep flexion: hips bend to 10" in shown and "stumbled" not in shown
+    assert "not scaled from walk: distances between markers" in shown and "hip centres" not in shown
+
+
+def test_standing_alone_states_the_use_of_a_deep_squat(session, tmp_path, capsys):
+    for words in ([session, "--static-only", "--mass", "70"], [session / "static.c3d", "--mass", "70"]):
+        assert scale(*words, "--out", tmp_path / "s.toml") == 0
+        assert "note: hip centres are uncertain by " in capsys.readouterr().out
+        assert read_subject(tmp_path / "s.toml").report["frames"] == 30
+
+
+def test_trials_that_are_named_win(session, tmp_path, capsys):
+    assert scale(session, "--trial", session / "bad.c3d", "--out", tmp_path / "s.toml") == 0
+    subject = read_subject(tmp_path / "s.toml")
+    assert subject.report["frames"] == 60 and subject.mass_kg == 66.0
+    assert "hip centres" not in capsys.readouterr().out
+
+
+def test_a_folder_of_sessions_names_them(session, tmp_path, capsys):
+    assert scale(session.parent, "--out", tmp_path / "s.toml") == 2
+    assert f"no captures lie in this folder; its sessions are {session.name}" in capsys.readouterr().err
 
 
 def test_segments_are_told_with_their_standard_deviations(capsys):

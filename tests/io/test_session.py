@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError
 from mbkf.io.session import (
+    FROM_SESSION,
+    FROM_STATIC,
     SESSION_FILE,
     SEXES,
     SIDES,
@@ -44,6 +46,7 @@ SESSIONS = st.builds(
     st.sampled_from(("", *SEXES)),
     st.none() | TEXTS.filter(bool),
     st.dictionaries(TEXTS, TRIALS, max_size=3),
+    st.sampled_from(("", FROM_SESSION, FROM_STATIC)),
 )
 
 

@@ -17,21 +17,20 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from mbkf.errors import FileFormatError, suggestion
+from mbkf.errors import FileFormatError, InvalidInput, suggestion
 from mbkf.io.capture import CAPTURES, FORCES, folder_suffixes
 from mbkf.io.plain_data import plain_text
 from mbkf.io.results_folder import MOTION_FILE
-from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
+from mbkf.io.session import FROM_STATIC, SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.io.toml_lines import line_of
 from mbkf.study.batch.plan import (
-    MOST_LOOKED_AT,
-    MOST_MOVING,
     Files,
     Person,
     Plan,
     Trial,
     folder_name,
     planned,
+    scaling_candidates,
 )
 
 SUBJECT_FILE = "subject.toml"
@@ -179,6 +178,40 @@ def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
 
 def _trials(root: Path, place: Path, captures: Sequence[Path], notes: SessionNotes) -> list[Trial]:
     """The trials of one session."""
+    person, moving = _person(root, place, captures, notes)
+    return [
+        Trial(person, path, forces, folder_name(path.stem), notes.trial(path.stem).events)
+        for path, forces in moving
+    ]
+
+
+def person_of_folder(folder: Path) -> Person:
+    """The person of one session, to be scaled from its captures; an earlier ``subject.toml`` does not count.
+
+    Args:
+        folder: The session's folder.
+
+    Raises:
+        InvalidInput: No captures lie in the folder itself.
+        FileFormatError: Its session file is damaged.
+    """
+    place = folder.absolute()
+    captures = captures_in(place)
+    if not captures:
+        below = [path.relative_to(place).as_posix() for path in session_folders(place)]
+        hint = (
+            f"its sessions are {', '.join(below)}; name one of them" if below else "name a session's folder"
+        )
+        raise InvalidInput(f"{folder}: no captures lie in this folder; {hint}")
+    notes = stated_of(place, place)
+    strange_trials(notes, captures, place / SESSION_FILE)
+    return replace(_person(place, place, captures, notes)[0], subject=None)
+
+
+def _person(
+    root: Path, place: Path, captures: Sequence[Path], notes: SessionNotes
+) -> tuple[Person, list[Files]]:
+    """The person of one session, and the moving trials that are not left out."""
     files = sorted(place.iterdir())
     kept = [path for path in captures if not notes.trial(path.stem).excluded]
     statics = tuple(path for path in kept if is_static(path, notes))
@@ -187,16 +220,14 @@ def _trials(root: Path, place: Path, captures: Sequence[Path], notes: SessionNot
     person = Person(
         *person_and_session(root, place),
         statics,
-        tuple(moving[: MOST_MOVING if statics else MOST_LOOKED_AT]),
+        scaling_candidates(statics, moving),
         notes.mass_kg,
         notes.height_m,
         notes.protocol,
         subject if subject.is_file() else None,
+        notes.scaling == FROM_STATIC,
     )
-    return [
-        Trial(person, path, forces, folder_name(path.stem), notes.trial(path.stem).events)
-        for path, forces in moving
-    ]
+    return person, moving
 
 
 def person_and_session(root: Path, place: Path) -> tuple[str, str]:
@@ -231,6 +262,7 @@ def stated_of(root: Path, place: Path) -> SessionNotes:
                 mass_kg=found.mass_kg if nearer.mass_kg is None else nearer.mass_kg,
                 height_m=found.height_m if nearer.height_m is None else nearer.height_m,
                 protocol=nearer.protocol or found.protocol,
+                scaling=nearer.scaling or found.scaling,
                 trials=nearer.trials if folder == place else {},
             )
         elif folder == place:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.study.batch.plan import MOST_MOVING, Files, Person, Plan, Trial, planned
+from mbkf.study.batch.plan import Files, Person, Plan, Trial, planned, scaling_candidates
 
 Key = tuple[str, str]
 """Name of a person, and of a session."""
@@ -63,8 +63,8 @@ class Listing:
             name: Its name.
         """
         person = self._persons[key]
-        self._trials.append((key, Trial(person, files.path, files.forces, name)))
-        self._persons[key] = replace(person, moving=(*person.moving, files)[:MOST_MOVING])
+        self._trials.append((key, Trial(Person(*key), files.path, files.forces, name)))
+        self._persons[key] = replace(person, moving=(*person.moving, files))
 
     def lose(self, key: Key, name: str, path: Path, error: FileFormatError) -> None:
         """Adds a trial that cannot be done.
@@ -88,8 +88,12 @@ class Listing:
             InvalidInput: The list names no trial.
         """
         trials = []
+        persons = {
+            key: replace(one, moving=scaling_candidates(one.statics, tuple(dict.fromkeys(one.moving))))
+            for key, one in self._persons.items()
+        }
         for key, trial in self._trials:
             fault = trial.fault or self._faults.get(key, "")
-            person = trial.person if trial.fault else self._persons[key]
+            person = trial.person if trial.fault else persons[key]
             trials.append(replace(trial, person=person, fault=fault))
         return planned(trials, str(self.file), self.notes)

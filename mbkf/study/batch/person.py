@@ -1,23 +1,27 @@
-"""One person of a batch scaled: from a standing trial, or from the moving ones, and weighed where no mass is stated."""
+"""One person of a batch scaled: by standing and the trials that help, else by the moving ones; weighed if need be."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from mbkf.conventions import StageCallback
+from mbkf.conventions import JsonTable, StageCallback
 from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.atomic import check_file, remove_file
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, write_subject
 from mbkf.io.written import SETTINGS
-from mbkf.study.batch.inputs import fingerprint, is_made_from, write_record
+from mbkf.study.batch.inputs import fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import body_of_points, is_nameless, named
-from mbkf.study.batch.plan import MOST_MOVING, Files, Person
+from mbkf.study.batch.plan import MOST_MOVING, Files, Person, trial_names
 from mbkf.study.batch.progress import ignored
+from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY, used_trials
+from mbkf.study.scaling.session import SessionTrial, scale_from_session
 from mbkf.trial.protocol.standing import stands_still
 from mbkf.trial.scale import scale
 from mbkf.trial.weighing import PROVISIONAL_KG, weighed
@@ -42,7 +46,7 @@ def subject_of(person: Person, out: Path, progress: StageCallback = ignored) -> 
         return person.subject
     place = out / person.place
     used = [Files(path) for path in person.statics[:1]]
-    used += person.moving if not used or person.mass_kg is None else ()
+    used += () if used and person.static_only and person.mass_kg is not None else person.moving
     if not used:
         raise FileFormatError(place, "the person has no trial to scale from")
     made_from = fingerprint([file for pair in used for file in pair if file is not None], _stated(person))
@@ -52,49 +56,69 @@ def subject_of(person: Person, out: Path, progress: StageCallback = ignored) -> 
     remove_file(place / RECORD)
     subject = scaled(person, progress)
     place.mkdir(parents=True, exist_ok=True)
-    write_subject(subject, place / SUBJECT_FILE)
-    write_record(place / RECORD, made_from)
+    # reasons of other trials stay out of the file, which is an input of all results: one more trial changes them
+    trials = {key: subject.report[key] for key in (SCALED_FROM_KEY, LEFT_OUT_KEY) if key in subject.report}
+    report = {key: value for key, value in subject.report.items() if key != LEFT_OUT_KEY}
+    write_subject(replace(subject, report=report), place / SUBJECT_FILE)
+    write_record(place / RECORD, {**made_from, **trials})
     return place / SUBJECT_FILE
 
 
-def scaled(person: Person, progress: StageCallback = ignored) -> Subject:
-    """The person's body: by the first standing trial, by its name or else by standing still, else by the moving ones.
+def record_of(place: Path) -> JsonTable:
+    """The record of a scaled person's inputs and trials; empty without one that can be read.
 
-    Captures whose points have no names are left out beside one that has names; without such a one, the body is found
-    with the names of the first moving one.
+    Args:
+        place: The person's folder.
+    """
+    try:
+        found: JsonTable = read_record(place / RECORD)
+    except FileFormatError:
+        return {}
+    return found
+
+
+def scaled(
+    person: Person,
+    progress: StageCallback = ignored,
+    *,
+    body: str | None = None,
+    read: Callable[..., Capture] = read_capture,
+) -> Subject:
+    """The person's body: by standing and the trials of the session that help, else by the first moving trials.
+
+    The standing trial is the first one by its name, or else one that stands still. Captures whose points have no names
+    are left out beside one that has names; without such a one, the body is found with the names of the first moving
+    one.
+
+    Args:
+        person: The person.
+        progress: Called with the stage, items done and items in all.
+        body: The reference body, its name or its file; by default that of the marker protocol.
+        read: Reads a capture, as :func:`mbkf.read_capture` does.
 
     Raises:
         MbkfError: No trial can be read, or body or mass cannot be determined from them.
         OSError: A file cannot be read.
     """
-    static = read_capture(person.statics[0]) if person.statics else None
-    if static is not None and is_nameless(static):
-        static = None
-    found = [] if static is not None else _readable(person.moving)
-    trials = [one for one in found if not is_nameless(one)]
-    nameless = static is None and not trials
-    if static is None and (still := next((one for one in trials if stands_still(one.markers)), None)):
-        static, trials = still, []
-    trials = (found if nameless else trials)[:MOST_MOVING]
-    captures = [*([] if static is None else [static]), *trials]
-    file_masses = (one.subject_mass_kg for one in captures if one.subject_mass_kg is not None)
-    stated_kg = next(file_masses, None) if person.mass_kg is None else person.mass_kg
-    mass_kg = PROVISIONAL_KG if stated_kg is None else stated_kg
-    if nameless and trials:
-        subject = body_of_points(trials[0], mass_kg, person.height_m, person.protocol)
+    mass_kg = PROVISIONAL_KG if person.mass_kg is None else person.mass_kg
+    scaling = partial(scale, mass_kg=mass_kg, height_m=person.height_m, protocol=person.protocol, body=body)
+    static, others, moving = _standing(person, read)
+    if static is not None:
+        found = scale_from_session(static, () if person.static_only else others, scaling, progress)
+        subject, captures = found.subject, found.captures
+    elif moving and all(is_nameless(one) for one in moving):
+        captures = moving[:1]
+        subject = body_of_points(captures[0], mass_kg, person.height_m, person.protocol)
     else:
-        subject = scale(
-            static,
-            trials,
-            mass_kg=mass_kg,
-            height_m=person.height_m,
-            protocol=person.protocol,
-            progress=progress,
-        )
-    if stated_kg is not None:
+        captures = tuple(one for one in moving if not is_nameless(one))[:MOST_MOVING]
+        subject = scaling(None, captures, progress=progress)
+    if person.mass_kg is not None:
         return subject
+    stated_kg = next((one.subject_mass_kg for one in captures if one.subject_mass_kg is not None), None)
+    if stated_kg is not None:
+        return replace(subject, mass_kg=stated_kg)
     if not any(capture.plates for capture in captures):
-        captures = _readable(person.moving[:MOST_MOVING])
+        captures = _readable(person.moving[:MOST_MOVING], read)
     try:
         return weighed(subject, [named(one, subject).capture for one in captures])
     except InvalidInput as error:
@@ -103,7 +127,53 @@ def scaled(person: Person, progress: StageCallback = ignored) -> Subject:
         ) from error
 
 
-def _readable(trials: Sequence[Files]) -> list[Capture]:
+def captures_used(
+    person: Person, subject: Subject, read: Callable[..., Capture] = read_capture
+) -> tuple[Capture, ...]:
+    """The captures that a person was scaled from, with their ground reactions; all where these have none.
+
+    Args:
+        person: The person.
+        subject: The scaled person.
+        read: Reads a capture, as :func:`mbkf.read_capture` does.
+
+    Raises:
+        MbkfError: None can be read.
+        OSError: A file cannot be read.
+    """
+    used = used_trials(subject.report)
+    files = {path.stem: Files(path) for path in person.statics[:1]} | trial_names(person.moving)
+    captures = _readable([files[name] for name in used if name in files], read)
+    return captures if any(one.plates for one in captures) else _readable(tuple(files.values()), read)
+
+
+def _standing(
+    person: Person, read: Callable[..., Capture]
+) -> tuple[SessionTrial | None, tuple[SessionTrial, ...], tuple[Capture, ...]]:
+    """The standing trial with the session's others; without one, None and the captures of the moving trials."""
+    names = {files.path.as_posix(): name for name, files in trial_names(person.moving).items()}
+    if person.statics:
+        path = person.statics[0]
+        static = read(path)
+        if not is_nameless(static):
+            others = [SessionTrial(name, partial(read, one)) for one, name in names.items()]
+            return SessionTrial(path.stem, lambda: static), tuple(others), ()
+    found = _readable(person.moving, read)
+    still = next((one for one in found if not is_nameless(one) and stands_still(one.markers)), None)
+    if still is None:
+        return None, (), found
+    trials = [
+        SessionTrial(names.get(Path(one.path).as_posix(), one.path), partial(_given, one)) for one in found
+    ]
+    standing = found.index(still)
+    return trials[standing], (*trials[:standing], *trials[standing + 1 :]), ()
+
+
+def _given(capture: Capture) -> Capture:
+    return capture
+
+
+def _readable(trials: Sequence[Files], read: Callable[..., Capture]) -> tuple[Capture, ...]:
     """Those captures that can be read and hold markers.
 
     Raises:
@@ -112,7 +182,7 @@ def _readable(trials: Sequence[Files]) -> list[Capture]:
     found, why = [], None
     for path, forces in trials:
         try:
-            capture = read_capture(path, forces=forces)
+            capture = read(path, forces=forces)
         except MbkfError as error:
             why = why or error
             continue
@@ -120,8 +190,13 @@ def _readable(trials: Sequence[Files]) -> list[Capture]:
             found.append(capture)
     if not found and why is not None:
         raise why
-    return found
+    return tuple(found)
 
 
 def _stated(person: Person) -> Mapping[str, object]:
-    return {"mass_kg": person.mass_kg, "height_m": person.height_m, "protocol": person.protocol}
+    return {
+        "mass_kg": person.mass_kg,
+        "height_m": person.height_m,
+        "protocol": person.protocol,
+        "static_only": person.static_only,
+    }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -11,13 +12,14 @@ from typing import NamedTuple
 
 from mbkf.errors import InvalidInput
 from mbkf.io.session import FootEvent
+from mbkf.study.scaling.rounds import rounds
 
 FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f]')
 """Characters that some system refuses in a folder's name."""
 
 
 MOST_MOVING = 3
-"""Number of trials used for scaling without a standing trial, or for weighing where that trial has no plates."""
+"""Number of trials used for scaling without a standing trial, or for weighing where no trial used has plates."""
 
 MOST_LOOKED_AT = 12
 """Number of trials searched for a standing one where names do not identify it."""
@@ -30,6 +32,26 @@ class Files(NamedTuple):
     forces: Path | None = None
 
 
+def scaling_candidates(statics: Sequence[Path], moving: Sequence[Files]) -> tuple[Files, ...]:
+    """The trials that may be read to scale a person.
+
+    Args:
+        statics: Standing trials. Beside them the order of the others follows from their names; without any, the first
+            ones are taken.
+        moving: All other trials.
+    """
+    if not statics:
+        return tuple(moving[:MOST_LOOKED_AT])
+    names = trial_names(moving)
+    return tuple(names[name] for one in rounds(tuple(names)) for name in one)
+
+
+def trial_names(trials: Sequence[Files]) -> dict[str, Files]:
+    """Trials by name: that of the file, with its folder where two files are called alike."""
+    counts = Counter(one.path.stem for one in trials)
+    return {one.path.stem if counts[one.path.stem] == 1 else one.path.as_posix(): one for one in trials}
+
+
 @dataclass(frozen=True)
 class Person:
     """A person in one session, who is scaled once.
@@ -38,12 +60,13 @@ class Person:
         name: The person's name or code.
         session: Name of the session; empty for a person with one.
         statics: Standing trials; the first one is used.
-        moving: The first moving trials, :data:`MOST_MOVING` at most; :data:`MOST_LOOKED_AT`, of which some may be
-            standing ones, where no standing trial is known.
+        moving: Moving trials to scale from, of which some are chosen (:func:`scaling_candidates`); where no standing
+            trial is known, some may be standing ones.
         mass_kg: Body mass; None: as stated in the captures, else by their plates.
         height_m: Body height; None: unknown.
         protocol: Marker protocol; None: recognised by the names.
         subject: A subject file to take instead of scaling.
+        static_only: True: scaled from the standing trial alone, where there is one.
     """
 
     name: str
@@ -54,6 +77,7 @@ class Person:
     height_m: float | None = None
     protocol: str | None = None
     subject: Path | None = None
+    static_only: bool = False
 
     @property
     def place(self) -> Path:
@@ -103,6 +127,13 @@ class Plan:
     def persons(self) -> tuple[Person, ...]:
         """Those whose trials can be done, in their order."""
         return tuple(dict.fromkeys(trial.person for trial in self.trials if not trial.fault))
+
+    def from_standing(self) -> Plan:
+        """The same with all persons scaled from their standing trials alone."""
+        return Plan(
+            tuple(replace(one, person=replace(one.person, static_only=True)) for one in self.trials),
+            self.notes,
+        )
 
     def shard(self, number: int, count: int) -> Plan:
         """Every ``count``-th trial, from the ``number``-th (from 1) on.

@@ -37,6 +37,7 @@ def batch(
     dask: str | None = None,
     shard: tuple[int, int] | None = None,
     settings: ReconstructSettings | None = None,
+    static_only: bool = False,
     progress: StageCallback | None = None,
 ) -> pa.Table:
     """Scales every person once and reconstructs every trial; finished and unchanged results are kept.
@@ -50,6 +51,8 @@ def batch(
         dask: Address of a Dask scheduler whose workers do it instead; "local" for a cluster on this computer.
         shard: (I, N): only every N-th trial, from the I-th (from 1) on, for jobs that know nothing of each other.
         settings: The filter and its settings.
+        static_only: Scale from the standing trial alone, where there is one; by default also from those of the
+            session's other trials that help (:mod:`mbkf.study.scaling`).
         progress: Called with the stage ("Scaling", "Trials"), items done and items in all; also with each trial under
             way, as "P1/walk1: Filtering", frames done and frames in all.
 
@@ -65,6 +68,8 @@ def batch(
     if workers is not None and workers < 1:
         raise InvalidInput(f"{workers} workers can do nothing; give one or more")
     target, plan = check_folder(out, TABLES), plan_of(Path(source))
+    if static_only:
+        plan = plan.from_standing()
     for note in plan.notes:
         warnings.warn(note, MbkfWarning, stacklevel=2)
     if shard is not None:

@@ -18,10 +18,12 @@ function person(data, act) {
   const number = (name, step) => element("input", { name, type: "number", step, value: notes[name] ?? "" });
   const sex = element("select", { name: "sex" }, ...["", "female", "male", "other"].map((one) =>
     element("option", { value: one, selected: (notes.sex || "") === one }, word(one || "unknown_sex"))));
+  const scaling = element("select", { name: "scaling" }, ...["", "static"].map((one) =>
+    element("option", { value: one, selected: (notes.scaling === "static") === (one === "static") }, word(one ? "by_static" : "by_session"))));
   form.append(
     field(word("name"), element("input", { name: "name", type: "text", value: notes.name || "" })),
     field(word("mass"), number("mass_kg", "0.1")), field(word("height"), number("height_m", "0.01")),
-    field(word("sex"), sex), field(word("age"), number("age", "1")));
+    field(word("sex"), sex), field(word("age"), number("age", "1")), field(word("scaled_by"), scaling));
   if (data.standing_kg) {
     const kg = data.standing_kg.toFixed(1);
     const take = element("button", { type: "button", onclick: () => act.person(data, { mass_kg: Number(kg) }) }, word("take"));
@@ -67,6 +69,7 @@ function run(data, act) {
     const said = { finished: () => word("finished", duration(state.seconds)), cancelled: () => word("cancelled"), failed: () => word("failed_run", state.reason) };
     row.append(element("span", {}, said[state.state]()));
   }
+  if (!busy && data.scaled_from.length) row.append(element("span", { className: "scaled-from", title: data.scaled_why.join("\n") }, `${word("scaled_by")}: ${data.scaled_from.join(", ")}`));
   return element("section", {}, row);
 }
 

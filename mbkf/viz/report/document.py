@@ -13,6 +13,7 @@ from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import LABELS_FILE
 from mbkf.io.session import FootEvent
+from mbkf.study.scaling.report import scaled_from
 from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.progression import LABORATORY
 from mbkf.trial.results.summary import progression_summary
@@ -110,6 +111,7 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
         text = f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time"
         run.append(("computing time", f"{text}; smoothing not counted" if r.smoothed else text))
     factors = [(name.replace("_", " "), f"{value:.3f}") for name, value in r.subject.scale_factors.items()]
+    scaled = "".join(paragraph(line[0].upper() + line[1:] + ".") for line in scaled_from(r.subject.report))
     chosen = r.settings.get(r.filter, {})
     others = {k: v for k, v in r.settings.items() if k not in ("kinematic", "dynamic", "torque", "filter")}
     return section(
@@ -118,7 +120,7 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
         table(("this run", ""), run, "small"),
         folded(f"Settings of the {r.filter} filter", table(("setting", "value"), _flat(chosen), "small")),
         folded("Other settings", table(("setting", "value"), _flat(others), "small")),
-        folded("Subject", table(("scale factor", "value"), factors, "small")),
+        folded("Subject", table(("scale factor", "value"), factors, "small") + scaled),
         paragraph(
             f"{ANGLES_READ[r.angles_read]}; pelvis: {_pelvis_frame(r)}; world axes: x forward, y left, z up."
         ),

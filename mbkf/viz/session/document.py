@@ -7,6 +7,7 @@ from html import escape
 
 from mbkf.io.norms import Norms
 from mbkf.model.human import reference_body
+from mbkf.study.scaling.report import used_trials
 from mbkf.study.session.comparison import Comparison, by_curve, compare, measure_pairs
 from mbkf.study.session.cycles import Key
 from mbkf.study.session.records import MovementGroup, Session
@@ -195,5 +196,11 @@ def _numbers(session: Session, terms: Terms) -> str:
     shown = [one for row in joint_rows(body, (*names.legs, *names.upper), "angle", terms) for one in row]
     signs = table((terms.say("angles"), "+"), [(one.title, one.positive) for one in shown], "small")
     filters = "; ".join(dict.fromkeys(trial.filter for trial in session.trials))
-    texts = terms.say("cycles_text"), terms.say("interval_text"), terms.say("made_with", __version__, filters)
+    used = used_trials(session.subject.report)
+    texts = [terms.say("scaled_from", ", ".join(used))] if used else []
+    texts += [
+        terms.say("cycles_text"),
+        terms.say("interval_text"),
+        terms.say("made_with", __version__, filters),
+    ]
     return "".join(paragraph(text) for text in texts) + folded(terms.say("signs"), signs)

@@ -8,7 +8,13 @@ import pytest
 
 from mbkf.errors import InvalidInput
 from mbkf.io.session import EventKind, FootEvent
-from mbkf.study.batch.folder import forces_beside, is_static, plan_of_folder, session_folders
+from mbkf.study.batch.folder import (
+    forces_beside,
+    is_static,
+    person_of_folder,
+    plan_of_folder,
+    session_folders,
+)
 
 
 def made(folder, *names, **texts):
@@ -199,3 +205,21 @@ def test_hidden_folders_and_those_that_vanish_meanwhile_are_left_out(tmp_path, m
 
     monkeypatch.setattr(os, "walk", vanishing)
     assert session_folders(tmp_path) == [tmp_path / "P1"]
+
+
+def test_a_session_may_be_scaled_from_standing_alone(tmp_path):
+    made(tmp_path, "P1/static.c3d", "P1/walk1.c3d", "P2/walk1.c3d", "P2/static.c3d")
+    made(tmp_path, session_toml="scaling = 'static'\n", P2__session_toml="scaling = 'session'\n")
+    assert [one.static_only for one in plan_of_folder(tmp_path).persons] == [True, False]
+
+
+def test_the_person_of_one_session_is_found_without_moving_trials_and_not_taken_from_before(tmp_path):
+    made(tmp_path, "P1/Static.c3d", "P1/subject.toml", P1__session_toml="height_m = 1.7\n")
+    person = person_of_folder(tmp_path / "P1")
+    assert (person.name, person.height_m, person.subject, person.moving) == ("P1", 1.7, None, ())
+    assert [path.name for path in person.statics] == ["Static.c3d"]
+    with pytest.raises(InvalidInput, match="its sessions are P1; name one of them"):
+        person_of_folder(tmp_path)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InvalidInput, match="name a session's folder"):
+        person_of_folder(tmp_path / "empty")

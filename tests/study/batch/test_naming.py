@@ -38,7 +38,7 @@ def test_a_batch_names_them_and_tells_beside_the_result_whatever_the_trial_is_ca
     """The same walk with and without names: the same motion."""
     folder = study(tmp_path / "study", trials=1)
     write_c3d(read_capture(walk_folder() / "raw.c3d"), folder / "P1" / "summary.c3d")
-    table = batch_here(folder, tmp_path / "out")
+    table = batch_here(folder, tmp_path / "out", static_only=True)
     assert table["status"].to_pylist() == ["done", "done"]
     raw, walk = (tmp_path / "out" / "P1" / name for name in ("summary", "walk1"))
     found, other = read_reconstruction(raw), read_reconstruction(walk)
@@ -56,7 +56,7 @@ def test_a_trial_that_cannot_be_labelled_is_told_and_the_others_are_done(tmp_pat
     raw = read_capture(walk_folder() / "raw.c3d")
     few = replace(raw, markers=raw.markers.select(raw.markers.names[:4]))
     write_c3d(few, folder / "P1" / "few.c3d")
-    table = batch_here(folder, tmp_path / "out").to_pylist()
+    table = batch_here(folder, tmp_path / "out", static_only=True).to_pylist()
     assert {one["trial"]: one["status"] for one in table} == {"few": "failed", "walk1": "done"}
 
 
@@ -66,7 +66,7 @@ def test_a_person_without_any_name_is_found_from_the_points(tmp_path, subject):
     raw = read_capture(walk_folder() / "raw.c3d")
     assert is_nameless(raw)
     write_c3d(raw, folder / "raw.c3d")
-    table = batch_here(folder.parent, tmp_path / "out")
+    table = batch_here(folder.parent, tmp_path / "out", static_only=True)
     assert table["status"].to_pylist() == ["done"]
     found = read_reconstruction(tmp_path / "out" / "P1" / "raw")
     assert found.subject.mass_kg == pytest.approx(subject.mass_kg, rel=0.05), "weighed by the plates"

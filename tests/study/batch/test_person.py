@@ -1,6 +1,8 @@
 """A person of a batch: scaled once from the same, weighed where no mass is stated, taken where a file is given."""
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -8,15 +10,16 @@ from mbkf.errors import FileFormatError, InvalidInput, ProtectedFile
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
-from mbkf.study.batch.person import RECORD, SUBJECT_FILE, scaled, subject_of
+from mbkf.study.batch.person import RECORD, SUBJECT_FILE, captures_used, scaled, subject_of
 from mbkf.study.batch.plan import Files, Person
+from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY
 from tests.studies import walk_folder
 
 
 @pytest.fixture
 def person():
     static, trial = (walk_folder() / name for name in ("static.c3d", "trial.c3d"))
-    return Person("P", "", (static,), (Files(trial),), mass_kg=70.0)
+    return Person("P", "", (static,), (Files(trial),), mass_kg=70.0, static_only=True)
 
 
 def test_a_person_is_scaled_once_from_the_same(person, tmp_path):
@@ -73,6 +76,23 @@ def test_where_no_name_tells_the_trial_that_stands_still_is_the_standing_one(per
     found = scaled(replace(person, statics=(), moving=looked))
     assert found.scale_factors == named.scale_factors and found.report["frames"] == named.report["frames"]
     assert scaled(replace(person, statics=())).scale_factors != named.scale_factors
+
+
+def test_trials_that_help_are_taken_and_each_further_trial_leaves_the_file_as_it_is(person, tmp_path):
+    """The walk is chosen, also with its copy beside it, whose reason stands in the record alone."""
+    (tmp_path / "film.c3d").write_bytes(b"no capture")
+    person = replace(person, static_only=False)
+    file = subject_of(person, tmp_path)
+    before = file.read_bytes()
+    assert [one["trial"] for one in read_subject(file).report[SCALED_FROM_KEY]] == ["static", "trial"]
+    assert (
+        subject_of(replace(person, moving=(Files(tmp_path / "film.c3d"), *person.moving)), tmp_path) == file
+    )
+    record = json.loads((tmp_path / "P" / RECORD).read_text())
+    assert file.read_bytes() == before and list(record[LEFT_OUT_KEY]) == ["film"]
+    assert record[SCALED_FROM_KEY] == read_subject(file).report[SCALED_FROM_KEY]
+    captures = captures_used(person, read_subject(file))
+    assert [Path(one.path).name for one in captures] == ["static.c3d", "trial.c3d"]
 
 
 def test_a_file_of_the_person_is_taken_as_it_is(person, tmp_path):

@@ -7,7 +7,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.errors import InvalidInput
-from mbkf.study.batch.plan import Person, Plan, Trial, folder_name, planned
+from mbkf.study.batch.plan import (
+    MOST_LOOKED_AT,
+    Files,
+    Person,
+    Plan,
+    Trial,
+    folder_name,
+    planned,
+    scaling_candidates,
+    trial_names,
+)
+from mbkf.study.scaling.rounds import MOST_TRIALS
 
 
 def trials(count, persons=3):
@@ -38,6 +49,25 @@ def test_persons_are_those_of_the_trials_once_each_and_in_order():
     assert [(p.name, p.session) for p in plan.persons] == [
         ("P0", ""), ("P1", "monday"), ("P2", ""), ("P0", "monday"), ("P1", ""), ("P2", "monday"),
     ]  # fmt: skip
+
+
+def test_trials_to_scale_from_do_not_depend_on_their_order_beside_a_standing_one():
+    files = [Files(Path(f"{name}{k}.c3d")) for name in ("walk", "squat") for k in range(10)]
+    found = scaling_candidates((Path("static.c3d"),), files)
+    assert found == scaling_candidates((Path("static.c3d"),), files[::-1])
+    assert [one.path.stem for one in found[:3]] == ["squat0", "walk0", "squat1"] and len(found) == MOST_TRIALS
+    assert scaling_candidates((), files) == tuple(files[:MOST_LOOKED_AT])
+
+
+def test_trials_called_alike_are_named_with_their_folders():
+    files = [Files(Path(name)) for name in ("a/walk.c3d", "b/walk.c3d", "b/squat.c3d")]
+    assert list(trial_names(files)) == ["a/walk.c3d", "b/walk.c3d", "squat"]
+
+
+def test_a_plan_from_standing_has_the_same_trials_of_persons_scaled_from_standing():
+    plan = planned(trials(4), "here")
+    assert all(person.static_only for person in plan.from_standing().persons)
+    assert [one.place for one in plan.from_standing().trials] == [one.place for one in plan.trials]
 
 
 def test_places_are_person_session_and_trial():

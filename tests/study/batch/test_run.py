@@ -23,7 +23,14 @@ def done(tmp_path_factory):
     (source / "P3").mkdir()
     (source / "P3" / "walk.c3d").write_bytes(b"nothing")
     told = []
-    table = batch(source, place / "out", workers=2, settings=QUICK, progress=lambda *one: told.append(one))
+    table = batch(
+        source,
+        place / "out",
+        workers=2,
+        settings=QUICK,
+        static_only=True,
+        progress=lambda *one: told.append(one),
+    )
     return source, place / "out", table, told
 
 
@@ -59,7 +66,7 @@ def test_progress_is_told(done):
 def test_a_second_run_does_nothing_again(done):
     source, out, table, _ = done
     before = {name: data for name, data in snapshot(out).items() if "/" in name}
-    again = rows(batch(source, out, workers=1, settings=QUICK))
+    again = rows(batch(source, out, workers=1, settings=QUICK, static_only=True))
     assert {row["status"] for row in again.values()} == {"unchanged", "failed"}
     assert {name: data for name, data in snapshot(out).items() if "/" in name} == before
     for name, row in rows(table).items():
@@ -71,13 +78,15 @@ def test_a_second_run_does_nothing_again(done):
 @pytest.mark.usefixtures("here")
 def test_shards_make_the_whole_and_numbers_do_not_depend_on_the_workers(done, tmp_path):
     source, _, table, _ = done
-    parts = [batch(source, tmp_path, workers=1, shard=(k, 2), settings=QUICK) for k in (1, 2)]
+    parts = [
+        batch(source, tmp_path, workers=1, shard=(k, 2), settings=QUICK, static_only=True) for k in (1, 2)
+    ]
     assert sum(len(part) for part in parts) == len(table)
     assert {path.name for path in tmp_path.glob("summary*.csv")} == {
         "summary-1-of-2.csv",
         "summary-2-of-2.csv",
     }
-    whole = rows(batch(source, tmp_path, workers=1, settings=QUICK))
+    whole = rows(batch(source, tmp_path, workers=1, settings=QUICK, static_only=True))
     for name, row in rows(table).items():
         for key, value in row.items():
             if key in (*TIMES, "status", "reason"):
@@ -98,9 +107,11 @@ def test_what_was_interrupted_is_gone_on_with(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        batch(source, tmp_path / "out", workers=1, settings=QUICK, progress=stop)
+        batch(source, tmp_path / "out", workers=1, settings=QUICK, static_only=True, progress=stop)
     assert not [path for path in (tmp_path / "out").rglob("*") if path.name.startswith(".")]
-    statuses = batch(source, tmp_path / "out", workers=1, settings=QUICK)["status"].to_pylist()
+    statuses = batch(source, tmp_path / "out", workers=1, settings=QUICK, static_only=True)[
+        "status"
+    ].to_pylist()
     assert set(statuses) <= {"done", "unchanged"} and "unchanged" in statuses
 
 

@@ -36,6 +36,15 @@ def test_languages_differ():
         session_page(session(), language="xx")
 
 
+def test_the_trials_of_the_body_are_named():
+    one = session()
+    subject = replace(
+        one.subject, report={"scaled_from": [{"trial": name, "part": "", "why": ""} for name in "ab"]}
+    )
+    assert "The body is scaled from a, b." in session_page(replace(one, subject=subject))
+    assert "The body is scaled from" not in session_page(replace(one, subject=replace(subject, report={})))
+
+
 def test_names_are_text():
     evil = '"><img src=x onerror=alert(1)>'
     found = session_of([replace(walks()[0], trial=evil)], evil)

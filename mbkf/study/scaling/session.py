@@ -1,0 +1,170 @@
+"""A person scaled from a session: standing, and those of the other trials that show the body well.
+
+The standing trial is scaled first on a few frames. Its body judges the other trials
+(:mod:`mbkf.study.scaling.excitation`), and the chosen ones are scaled with it together
+(:mod:`mbkf.study.scaling.choice`). Where they do not fit one body, the standing trial alone counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from mbkf.conventions import StageCallback
+from mbkf.errors import MbkfError
+from mbkf.io.records import Capture
+from mbkf.io.subject import Subject
+from mbkf.numerics.threads import single_threaded
+from mbkf.scaling.records import ScalingSettings
+from mbkf.scaling.verdict import DOUBTS_KEY
+from mbkf.study.scaling.choice import Choice, choose
+from mbkf.study.scaling.excitation import Excitation, StandingBody
+from mbkf.study.scaling.report import as_report
+from mbkf.study.scaling.rounds import rounds
+from mbkf.trial.axes.captures import checked_for_subject
+
+STANDING_FRAMES = 5
+"""Frames of the standing trial for the body that judges the others: its factors differ by 0.01 at most from those of
+all frames."""
+
+MOST_FRAMES = 60
+"""Frames of all trials together, which bounds the time; with twice as many, a person's factors differed by 0.002."""
+
+Scaling = Callable[..., Subject]
+""":func:`mbkf.trial.scale.scale` with all arguments but captures, ``settings`` and ``progress``."""
+
+
+@dataclass(frozen=True)
+class SessionTrial:
+    """A trial of a session.
+
+    Attributes:
+        name: Its name.
+        read: Reads it; raises an error of mbkf where that fails.
+    """
+
+    name: str
+    read: Callable[[], Capture]
+
+
+@dataclass(frozen=True)
+class SessionScaling:
+    """A person scaled from a session.
+
+    Attributes:
+        subject: The person; the report names the trials used and left out.
+        captures: The standing trial and the chosen ones.
+    """
+
+    subject: Subject
+    captures: tuple[Capture, ...]
+
+
+def scale_from_session(
+    static: SessionTrial,
+    trials: Sequence[SessionTrial],
+    scaling: Scaling,
+    progress: StageCallback | None = None,
+) -> SessionScaling:
+    """Scales a person from a standing trial and the trials of the session that help.
+
+    Args:
+        static: The standing trial.
+        trials: The session's other trials, each with a name of its own. They are looked at in rounds
+            (:mod:`mbkf.study.scaling.rounds`) until a walk and a deep flexion are found.
+        scaling: Scales the person from captures.
+        progress: Called with the stage, items done and items in all.
+
+    Raises:
+        MbkfError: The standing trial cannot be read or scaled.
+    """
+    standing = static.read()
+    looked_at = chosen_trials(standing, trials, scaling, progress)
+    choice, subject = looked_at.choice, None
+    captures = {name: looked_at.captures[name] for name in choice.names}
+    if captures:
+        settings = ScalingSettings()
+        count = min(settings.frames_per_trial, MOST_FRAMES // (1 + len(captures)))
+        settings = replace(settings, frames_per_trial=count)
+        try:
+            subject = scaling(standing, list(captures.values()), settings=settings, progress=progress)
+            why = new_doubts(subject, looked_at.standing)
+        except MbkfError as error:
+            why = str(error)
+        if why:
+            why = f"together with standing it fits no likely body: {why}"
+            choice = Choice((), {**choice.left_out, **dict.fromkeys(captures, why)})
+            subject, captures = None, {}
+    subject = subject or scaling(standing, [], progress=progress)
+    report = {**subject.report, **as_report(static.name, choice)}
+    return SessionScaling(replace(subject, report=report), (standing, *captures.values()))
+
+
+@dataclass(frozen=True)
+class LookedAt:
+    """Trials of a session that were looked at.
+
+    Attributes:
+        choice: Those that help, and the reasons of the others.
+        captures: Captures by name, without plates.
+        standing: The person scaled from a few frames of standing; None where no trial was compared with it.
+    """
+
+    choice: Choice
+    captures: Mapping[str, Capture] = field(default_factory=dict)
+    standing: Subject | None = None
+
+
+def chosen_trials(
+    standing: Capture, trials: Sequence[SessionTrial], scaling: Scaling, progress: StageCallback | None = None
+) -> LookedAt:
+    """The trials of a session that help scaling.
+
+    Args:
+        standing: The standing trial.
+        trials: The others.
+        scaling: Scales the person from captures.
+        progress: Called with the stage, items done and items in all.
+    """
+    captures: dict[str, Capture] = {}
+    if not trials:
+        return LookedAt(Choice())
+    try:
+        quick = scaling(standing, [], settings=ScalingSettings(frames_per_trial=STANDING_FRAMES))
+        body = StandingBody(quick, checked_for_subject(standing, quick).markers)
+    except MbkfError as error:
+        why = f"it cannot be compared with standing ({error})"
+        return LookedAt(Choice((), {trial.name: why for trial in trials}))
+    report = progress or (lambda *_: None)
+    looked, refused = dict[str, Excitation](), dict[str, str]()
+    choice = Choice()
+    by_name = {trial.name: trial for trial in trials}
+    in_rounds = rounds(tuple(by_name))
+    count = sum(len(one) for one in in_rounds)
+    for one in in_rounds:
+        for name in one:
+            report("Choosing trials", len(looked) + len(refused), count)
+            try:
+                with single_threaded():
+                    capture = replace(by_name[name].read(), plates=())
+                    looked[name] = body.excitation(checked_for_subject(capture, quick).markers)
+                captures[name] = capture
+            except (MbkfError, OSError) as error:
+                refused[name] = str(error)
+        choice = choose(looked, refused)
+        if choice.complete:
+            break
+    report("Choosing trials", count, count)
+    return LookedAt(choice, captures, quick)
+
+
+def new_doubts(subject: Subject, standing: Subject | None) -> str:
+    """Doubts about a body that its standing trial alone does not raise; "" without any.
+
+    Args:
+        subject: The person scaled from the session.
+        standing: The person scaled from standing.
+    """
+    found = subject.report.get(DOUBTS_KEY)
+    known = standing is not None and DOUBTS_KEY in standing.report
+    return "" if known or not isinstance(found, list) else "; ".join(str(doubt) for doubt in found)

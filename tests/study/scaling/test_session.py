@@ -1,0 +1,108 @@
+"""A session's body: from standing and the trials that help, from standing alone where they do not fit one body."""
+
+from dataclasses import replace
+from functools import partial
+
+import pytest
+
+from mbkf.errors import FileFormatError, NotConverged, NotObservable
+from mbkf.scaling.verdict import DOUBTS_KEY
+from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY
+from mbkf.study.scaling.session import (
+    MOST_FRAMES,
+    STANDING_FRAMES,
+    SessionTrial,
+    new_doubts,
+    scale_from_session,
+)
+from mbkf.trial.scale import scale
+from tests.bending import MASS_KG, arms_lifted, squat, stander, standing, walk
+
+STATIC = SessionTrial("static", standing)
+
+
+class Scaling:
+    """Notes the captures and frames of each scaling, which answers with the standing person, or what it is told to."""
+
+    def __init__(self, *answers):
+        self.calls, self.answers = [], list(answers)
+
+    def __call__(self, static, trials, settings=None, progress=None):
+        frames = 40 if settings is None else settings.frames_per_trial
+        self.calls.append((len(trials), frames))
+        answer = self.answers.pop(0) if len(trials) and self.answers else stander()
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+
+def damaged():
+    raise FileFormatError("film.c3d", "is no capture")
+
+
+TRIALS = (
+    SessionTrial("walk1", walk),
+    SessionTrial("other", partial(squat, factor=1.1)),
+    SessionTrial("squat", squat),
+    SessionTrial("arms", arms_lifted),
+    SessionTrial("film", damaged),
+)
+
+
+def test_the_trials_that_help_are_scaled_together_with_standing():
+    scaling, stages = Scaling(), []
+    found = scale_from_session(STATIC, TRIALS, scaling, lambda *stage: stages.append(stage))
+    report = found.subject.report
+    assert [(one["trial"], one["part"]) for one in report[SCALED_FROM_KEY]] == [
+        ("static", "standing"), ("walk1", "walk"), ("squat", "deep flexion"), ("arms", "trunk and arms"),
+    ]  # fmt: skip
+    assert (
+        "is no capture" in report[LEFT_OUT_KEY]["film"] and "another person" in report[LEFT_OUT_KEY]["other"]
+    )
+    assert scaling.calls == [(0, STANDING_FRAMES), (3, MOST_FRAMES // 4)] and len(found.captures) == 4
+    assert stages[0] == ("Choosing trials", 0, 5) and stages[-1] == ("Choosing trials", 5, 5)
+
+
+def test_the_choice_does_not_depend_on_the_order_of_the_trials():
+    one, other = (scale_from_session(STATIC, trials, Scaling()).subject for trials in (TRIALS, TRIALS[::-1]))
+    assert one.report == other.report
+
+
+def test_a_second_round_of_names_is_looked_at_only_where_the_first_is_not_enough():
+    again = SessionTrial("walk2", damaged)
+    assert "walk2" not in scale_from_session(STATIC, (*TRIALS, again), Scaling()).subject.report[LEFT_OUT_KEY]
+    report = scale_from_session(STATIC, (TRIALS[0], again), Scaling()).subject.report
+    assert "is no capture" in report[LEFT_OUT_KEY]["walk2"]
+
+
+def test_standing_alone_is_scaled_as_ever():
+    scaling = Scaling()
+    found = scale_from_session(STATIC, (), scaling)
+    assert scaling.calls == [(0, 40)] and found.captures == (standing(),)
+    assert found.subject.report[SCALED_FROM_KEY] == [{"trial": "static", "part": "standing", "why": ""}]
+    assert LEFT_OUT_KEY not in found.subject.report
+
+
+def test_trials_that_do_not_fit_one_likely_body_with_standing_are_left_out():
+    doubtful = replace(stander(), report={**stander().report, DOUBTS_KEY: ["proportions are unusual"]})
+    assert new_doubts(doubtful, stander()) == "proportions are unusual"
+    assert new_doubts(doubtful, doubtful) == new_doubts(stander(), stander()) == ""
+    for answer, why in ((doubtful, "proportions are unusual"), (NotConverged("no fit"), "no fit")):
+        scaling = Scaling(answer)
+        found = scale_from_session(STATIC, TRIALS[:1], scaling)
+        assert scaling.calls[1:] == [(1, MOST_FRAMES // 2), (0, 40)] and len(found.captures) == 1
+        assert why in found.subject.report[LEFT_OUT_KEY]["walk1"]
+        assert [one["trial"] for one in found.subject.report[SCALED_FROM_KEY]] == ["static"]
+
+
+def test_a_standing_trial_that_cannot_be_scaled_is_an_error():
+    def refuse(static, trials, settings=None, progress=None):
+        raise NotObservable("two markers")
+
+    with pytest.raises(NotObservable, match="two markers"):
+        scale_from_session(STATIC, TRIALS, refuse)
+
+
+def test_real_scaling_takes_them():
+    found = scale_from_session(STATIC, TRIALS[:3], partial(scale, mass_kg=MASS_KG)).subject
+    assert found.report["frames"] == 3 * (MOST_FRAMES // 3) and found.report["marker_rms_mm"] < 2.0
