@@ -1,28 +1,61 @@
-"""Persons made from bodies of OpenSim, whose truth is exact: errors, and intervals that hold it."""
+"""Persons made from bodies of OpenSim, whose truth is exact: errors, and intervals that hold it.
+
+The shared adult and child, and eight persons of our own under two models of skin, which OpenSim makes (extra `peers`).
+Settings of scaling and filters may be chosen on the shared persons and on half of our own; the others show what is
+reached.
+"""
 
 from __future__ import annotations
 
-from benchmarks.checks import Check, Context
-from benchmarks.dynamic.methods import in_parallel
-from benchmarks.foreign.followed import followed, jobs
-from benchmarks.foreign.rows import CHOSEN_ON, bounded_rows, calibration_rows, shown_rows, static_rows
+from benchmarks.checks import Check, Context, information
+from benchmarks.dynamic.methods import Mapper, in_parallel
+from benchmarks.foreign.errors import Judged
+from benchmarks.foreign.medians import median_rows, read_baseline
+from benchmarks.foreign.rows import (
+    CHOSEN_ON,
+    SHOWN_ON,
+    bounded_rows,
+    calibration_rows,
+    shown_rows,
+    static_rows,
+)
 from benchmarks.foreign.score import score
-from benchmarks.foreign.truth import FOLDER, foreigners
+from benchmarks.foreign.sets import PersonSet, made_persons, own_sets, shared_set
+from mbkf.errors import MissingDependency
+
+SESSION, WALK, STATIC = "session", "walk", "static"
 
 
 def run(context: Context) -> list[Check]:
-    """Rows of the shared adult and child, scaled from standing, with a walk, and with a walk and a squat."""
-    persons = foreigners(context.require_data() / FOLDER)
-    names = " and ".join(person.name for person in persons)
-    rows: list[Check] = []
+    """Rows of the shared persons and, unless quick, of persons of our own, scaled from a session and from standing."""
+    data = context.require_data()
+    sets, rows = [shared_set(data)], []
+    if not context.quick:
+        try:
+            sets += own_sets(made_persons(data, context.out / "persons", context.seed))
+        except MissingDependency as missing:
+            rows.append(information(f"persons of our own are left out: {missing}", float("nan")))
+    everyone: list[Judged] = []
     with in_parallel() as mapper:
-        for scaling in ("session", "walk", "static"):
-            found = score([one for held in mapper(followed, jobs(persons, scaling)) for one in held])
-            label = f"{names}, {scaling}"
-            if scaling == "session":
-                rows += [*bounded_rows(label, found, CHOSEN_ON), *calibration_rows(label, found)]
-            elif scaling == "static":
-                rows += static_rows(label, found)
-            else:
-                rows += shown_rows(label, found)
-    return rows
+        for one in sets:
+            found = one.found(SESSION, mapper)
+            everyone += found
+            rows += _session_rows(one, found)
+            rows += _other_rows(one, mapper)
+    return [*rows, *calibration_rows("all persons, session", score(everyone))]
+
+
+def _session_rows(one: PersonSet, found: list[Judged]) -> list[Check]:
+    label, scores = f"{one.name}, {SESSION}", score(found)
+    medians = median_rows(label, found, read_baseline())
+    if one.own and not one.shown:
+        return [*shown_rows(label, scores), *medians]
+    return [*bounded_rows(label, scores, SHOWN_ON if one.shown else CHOSEN_ON), *medians]
+
+
+def _other_rows(one: PersonSet, mapper: Mapper) -> list[Check]:
+    static = score(one.found(STATIC, mapper))
+    if one.own:
+        return shown_rows(f"{one.name}, {STATIC}", static)
+    walk = score(one.found(WALK, mapper))
+    return [*static_rows(f"{one.name}, {STATIC}", static), *shown_rows(f"{one.name}, {WALK}", walk)]

@@ -1,4 +1,4 @@
-"""Scores of chosen persons, motions, scalings and filters, as tables."""
+"""Scores of chosen persons, motions, scalings and filters, as tables; makes persons of our own, and the baseline."""
 
 from __future__ import annotations
 
@@ -12,9 +12,13 @@ from rich.console import Console
 
 from benchmarks.__main__ import DATA_VARIABLE
 from benchmarks.dynamic.methods import in_parallel
+from benchmarks.foreign import SESSION
 from benchmarks.foreign.errors import Judged
 from benchmarks.foreign.followed import FILTERS, SCALINGS, SMOOTHED, Job, followed, jobs
+from benchmarks.foreign.making import make
+from benchmarks.foreign.medians import medians, write_baseline
 from benchmarks.foreign.score import score
+from benchmarks.foreign.sets import own_sets, shared_set
 from benchmarks.foreign.tables import group_table, offset_table, score_table
 from benchmarks.foreign.truth import FOLDER, foreigners
 from mbkf.errors import InvalidInput, MbkfError
@@ -33,7 +37,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     args = _parser().parse_args(arguments)
     try:
-        _show(args)
+        if args.make is not None:
+            make(_data(args), args.make, args.seed, args.persons)
+        elif args.update_baseline is not None:
+            _update(args)
+        else:
+            _show(args)
     except (MbkfError, OSError) as error:
         print(f"benchmarks.foreign: error: {error}", file=sys.stderr)
         return 2
@@ -53,17 +62,35 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--motions", nargs="+", default=[], metavar="NAME", help="these motions (default: all)"
     )
+    parser.add_argument(
+        "--make", type=Path, metavar="DIR", help="make persons of our own here (extra `peers`)"
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is made at random")
+    parser.add_argument(
+        "--update-baseline",
+        type=Path,
+        metavar="DIR",
+        help="write the medians of the shared persons and of those made in this folder as the new baseline",
+    )
     parser.add_argument("--scaling", nargs="+", default=list(SCALINGS), choices=list(SCALINGS))
     parser.add_argument("--filter", nargs="+", default=[SMOOTHED], choices=list(FILTERS))
     return parser
 
 
+def _data(args: argparse.Namespace) -> Path:
+    if args.data is None:
+        raise InvalidInput(f"the reference captures are needed; give --data DIR or set {DATA_VARIABLE}")
+    return Path(args.data)
+
+
+def _update(args: argparse.Namespace) -> None:
+    sets = [shared_set(_data(args)), *own_sets(args.update_baseline)]
+    with in_parallel() as mapper:
+        write_baseline({f"{one.name}, {SESSION}": medians(one.found(SESSION, mapper)) for one in sets})
+
+
 def _show(args: argparse.Namespace) -> None:
-    if args.made is None and args.data is None:
-        raise InvalidInput(
-            f"the persons are needed; give --data DIR, set {DATA_VARIABLE}, or give --made DIR"
-        )
-    persons = foreigners(args.made or args.data / FOLDER, args.persons)
+    persons = foreigners(args.made or _data(args) / FOLDER, args.persons)
     found: dict[str, list[Judged]] = {}
     work: list[tuple[str, Job]] = [
         (f"{scaling}, {name}", job)
