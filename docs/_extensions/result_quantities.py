@@ -73,17 +73,16 @@ def attribute_rows() -> Iterator[str]:
 
 
 def _beside(one: Quantity) -> bool:
-    """True for a spread or an offset that stands in the row of its array."""
-    total = QUANTITIES.get(one.spread_of or one.offset_of)
+    """True for a spread or a part of one that stands in the row of its array."""
+    total = QUANTITIES.get(one.beside)
     return total is not None and total.axes == one.axes
 
 
 def _row(one: Quantity) -> str:
-    names = [f"`{one.key}`"]
-    named = one
-    while spread := _spread_of(named):
-        names.append(f"`{spread.key}`")
-        named = spread
+    named = [one]
+    for each in named:
+        named += _beside_it(each)
+    names = [f"`{each.key}`" for each in named]
     if one.key != one.name:
         names.append(f"(in Python `{one.name}`)")
     shape = ", ".join(AXES[axis].symbol for axis in one.axes)
@@ -96,10 +95,9 @@ def _row(one: Quantity) -> str:
     return f"| {' '.join(names)} | {f'${shape}$' if shape else ''} | {unit} | {meaning} |"
 
 
-def _spread_of(one: Quantity) -> Quantity | None:
-    """The spread of an array, or the offset of a spread, that stands in its row."""
-    beside = (other for other in QUANTITIES.values() if one.name in (other.spread_of, other.offset_of))
-    return next((other for other in beside if other.axes == one.axes), None)
+def _beside_it(one: Quantity) -> list[Quantity]:
+    """The spread of an array, or the parts of a spread, that stand in its row."""
+    return [other for other in QUANTITIES.values() if other.beside == one.name and other.axes == one.axes]
 
 
 def _worded(meaning: str) -> str:

@@ -1,8 +1,9 @@
 """What a covariance says about the numbers people read: dofs, clinical angles, torques, height of the feet.
 
 Taken frame by frame, so that long trials need not keep a covariance matrix per frame. Each number has two parts,
-independent of each other: what varies within a trial (noise, skin), by the filter's covariance, and the offset that
-repeats in the same posture, caused by errors of the scaled body (:mod:`mbkf.filters.body_errors`).
+independent of each other: that of the filter (noise, skin), by its covariance, and the offset that repeats in the same
+posture, caused by errors of the scaled body (:mod:`mbkf.filters.body_errors`). The change of the offset with the
+posture needs the whole trial (:mod:`mbkf.filters.offset_change`).
 """
 
 from __future__ import annotations

@@ -48,7 +48,8 @@ def track(
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads), len(recording)
+    recorder = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads, whole_trial=True)
+    frames = len(recording)
     rows = blank(recorder.dtype, frames)
     rows["number"] = np.arange(frames)
     size = 2 * filter.model.nv
@@ -77,6 +78,7 @@ def track(
             "and are unit and axes right (--unit, --up)?"
         )
     keep(later.finish())
+    recorder.finish(rows)
     return track_of(rows, smoothed=smoothing is not None, covariance=covariance)
 
 

@@ -24,7 +24,7 @@ from mbkf.io.dimensions import (
     WRENCH,
     Unit,
 )
-from mbkf.io.quantities import LATER, Column, Plot, flag, offset, quantity, spread
+from mbkf.io.quantities import LATER, Column, Plot, change, flag, offset, quantity, spread
 
 CONTACT_CODES = {-1: "unmeasured", 0: "air", 1: "own_plate", 2: "shared_plate"}
 """Support of a foot: something without a plate, air, a plate of its own, one plate under both feet."""
@@ -106,6 +106,7 @@ class TrackEstimates(Estimates):
     )
     wrench_sd: Array = spread("wrench")
     wrench_offset: Array = offset("wrench_sd")
+    wrench_change: Array = change("wrench_sd")
     support: Array = quantity(
         "time part wrench",
         WRENCH,
@@ -117,10 +118,13 @@ class TrackEstimates(Estimates):
         "time coordinate", ANGLE, "of the clinical coordinates, the root's in the world's axes"
     )
     angle_offset: Array = offset("angle_sd")
+    angle_change: Array = change("angle_sd")
     rate_sd: Array = quantity("time coordinate", RATE, "of the rates of the clinical coordinates")
     rate_offset: Array = offset("rate_sd")
+    rate_change: Array = change("rate_sd")
     torque_sd: Array = quantity("time dof", FORCE, "of the generalised forces; NaN where not known")
     torque_offset: Array = offset("torque_sd")
+    torque_change: Array = change("torque_sd")
     ball_covariance: Array = quantity(
         "time ball xyz xyz",
         Unit("rad^2"),

@@ -81,6 +81,7 @@ class Quantity:
         required: Known in every record; others are None, in older files or where nothing computes them.
         spread_of: Array that this one holds standard deviations of.
         offset_of: Standard deviations of which this one holds the part that repeats in the same posture.
+        change_of: Standard deviations of which this one holds the change of that part within the trial.
         column: Place in an OpenSim table.
         plot: Curve in viewers.
         section: Label of the section of the documentation that explains it.
@@ -97,6 +98,7 @@ class Quantity:
     required: bool = True
     spread_of: str = ""
     offset_of: str = ""
+    change_of: str = ""
     column: Column | None = None
     plot: Plot | None = None
     section: str = ""
@@ -105,6 +107,11 @@ class Quantity:
     def is_text(self) -> bool:
         """True for names and remarks, False for numbers."""
         return self.dtype is str
+
+    @property
+    def beside(self) -> str:
+        """The array that a standard deviation belongs to, or the standard deviations that a part belongs to."""
+        return self.spread_of or self.offset_of or self.change_of
 
 
 class Attribute(NamedTuple):
@@ -204,6 +211,21 @@ def offset(of: str, default: T = _ABSENT) -> T:
     return field(default=default, metadata={_QUANTITY: declared})
 
 
+def change(of: str, default: T = _ABSENT) -> T:
+    """The field of the change of that part with the posture, about its trial mean; 0 where a record lacks it."""
+    meaning = f"change within the trial of the part of {of} that repeats in the same posture, about its mean"
+    declared = Quantity(
+        (),
+        Unit(""),
+        meaning,
+        dtype=np.float32,
+        required=False,
+        change_of=of,
+        section="what-an-interval-means",
+    )
+    return field(default=default, metadata={_QUANTITY: declared})
+
+
 def texts(meaning: str, default: T = _REQUIRED, *, axis: str = "", key: str = "") -> T:
     """The field of a list of names or remarks.
 
@@ -249,7 +271,7 @@ def quantities(record: type) -> Mapping[str, Quantity]:
             declared: Quantity = held.metadata[_QUANTITY]
             found[held.name] = replace(declared, name=held.name, key=declared.key or held.name)
     for name, one in found.items():  # a spread stands after its array
-        total = found.get(one.spread_of or one.offset_of)
+        total = found.get(one.beside)
         if total is not None:
             axes, unit = one.axes or total.axes, one.unit if one.unit.text else total.unit
             found[name] = replace(one, axes=axes, unit=unit)
@@ -269,7 +291,8 @@ def attributes(record: type) -> tuple[Attribute, ...]:
 def check(record: object) -> None:
     """Makes every declared array of a new record a read-only one of its type, and lists tuples.
 
-    Offsets that are missing become 0, other arrays that older files lack NaN, missing names of an axis numbers from 1.
+    Offsets and changes that are missing become 0, other arrays that older files lack NaN, missing names of an axis
+    numbers from 1.
 
     Raises:
         ShapeError: The sizes of two arrays, or of an array and the names of its axis, differ.
@@ -284,8 +307,8 @@ def check(record: object) -> None:
             object.__setattr__(record, name, tuple(value))
             if one.axes and (one.required or value):
                 sizes[one.axes[0]] = len(value)
-        elif one.offset_of and value is None:
-            total = getattr(record, one.offset_of)
+        elif (one.offset_of or one.change_of) and value is None:
+            total = getattr(record, one.beside)
             zero = None if total is None else np.where(np.isnan(total), np.nan, 0.0)
             object.__setattr__(record, name, zero)
     for name, one in declared.items():

@@ -51,8 +51,8 @@ def write_record(file: h5py.File, record: object) -> None:
         value = getattr(record, one.name)
         if not one.is_text and value is not None:
             write_array(file, one, value)
-            if one.spread_of or one.offset_of:
-                spreads.setdefault(one.spread_of or one.offset_of, []).append(one.key)
+            if one.beside:
+                spreads.setdefault(one.beside, []).append(one.key)
     for key, beside in spreads.items():
         _describe(file[key], ancillary_variables=" ".join(beside))
 

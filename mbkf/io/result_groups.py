@@ -26,7 +26,7 @@ from mbkf.io.dimensions import (
 )
 from mbkf.io.estimates import Estimates
 from mbkf.io.findings import Finding
-from mbkf.io.quantities import Column, attribute, flag, offset, quantity, spread, texts
+from mbkf.io.quantities import Column, attribute, change, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
 
 SOURCE_CODES = {one.value: one.name.lower() for one in Source}
@@ -74,9 +74,11 @@ class Motion:
     )
     angles_sd: Array = spread("angles")
     angles_sd_offset: Array = offset("angles_sd")
+    angles_sd_change: Array = change("angles_sd")
     angle_rates: Array = quantity("time coordinate", RATE, "rates of angles")
     angle_rates_sd: Array = spread("angle_rates")
     angle_rates_sd_offset: Array = offset("angle_rates_sd")
+    angle_rates_sd_change: Array = change("angle_rates_sd")
     angles_lab: Array | None = quantity(
         "time coordinate",
         ANGLE,
@@ -132,6 +134,7 @@ class Moments:
     )
     moments_sd: Array = spread("moments")
     moments_sd_offset: Array = offset("moments_sd")
+    moments_sd_change: Array = change("moments_sd")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,6 +148,7 @@ class Reactions:
     )
     foot_wrench_sd: Array | None = spread("foot_wrench", None)
     foot_wrench_sd_offset: Array | None = offset("foot_wrench_sd")
+    foot_wrench_sd_change: Array | None = change("foot_wrench_sd")
     foot_cop_m: Array = quantity("time foot xyz", METRE, "centre of pressure, NaN where not loaded")
     foot_free_moment_nm: Array = quantity(
         "time foot",

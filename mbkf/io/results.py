@@ -1,7 +1,8 @@
 """The result of a reconstruction: motion, torques and reactions, each with its standard deviation.
 
-A standard deviation has two independent parts: what varies within a trial (noise, skin), and the offset that repeats
-whenever the posture is the same, because the person's body is not known exactly.
+A standard deviation joins two independent errors: that of the filter (noise, skin), and the offset that repeats
+whenever the posture is the same, because the person's body is not known exactly. Where the posture changes, the offset
+changes. That change belongs to the part that varies within the trial.
 """
 
 from __future__ import annotations
@@ -30,8 +31,14 @@ from mbkf.io.result_groups import (
 
 Part = Provenance | Measurements | Estimates | Motion | Torques | Moments | Reactions | SupportLoads | Quality
 
-SdPart = Literal["total", "offset", "varying"]
-"""Part of a standard deviation: the total, the offset that repeats, or the part that varies within the trial."""
+SdPart = Literal["total", "offset", "change", "varying"]
+"""Part of a standard deviation.
+
+"total": of the error. "offset": of its part that repeats in the same posture. "change": of the change of the offset
+with the posture, about its mean over the trial. "varying": of the error less its mean over the trial. With the filter's
+variance F, total² = F + offset² and varying² = F + change². The squares of offset and varying part do not add up to the
+total's, since both hold the change.
+"""
 
 LAG_KEY = "lag_ms"
 """The fixed lag among the settings of a result."""
@@ -150,6 +157,8 @@ class Reconstruction(
     def power_sd(self, name: str, part: SdPart = "total") -> Array:
         """(T,) its standard deviation or a part of it, as :meth:`angle_sd`; moment and rate err independently.
 
+        The offset of a power changes with moment and rate: all of it counts as change, and the total as varying.
+
         Of m ω with independent errors: √(m² σ_ω² + ω² σ_m² + σ_m² σ_ω²) (L. A. Goodman, J. Am. Stat. Assoc. 55 (1960)
         708-713).
         """
@@ -158,15 +167,9 @@ class Reconstruction(
         def spread(m_sd: Array, rate_sd: Array) -> Array:
             return np.sqrt((m * rate_sd) ** 2 + (rate * m_sd) ** 2 + (m_sd * rate_sd) ** 2)
 
-        total = spread(self.moment_sd(name), self.angle_rate_sd(name))
-        if part == "total":
-            return np.asarray(total)
-        offset = spread(self.moment_sd(name, "offset"), self.angle_rate_sd(name, "offset"))
-        if part == "offset":
-            return np.asarray(offset)
-        if part not in get_args(SdPart):
-            raise UnknownName("part of a standard deviation", part, get_args(SdPart))
-        return varying_sd(total, offset)
+        same: dict[SdPart, SdPart] = {"change": "offset", "varying": "total"}
+        known = same.get(part, part)
+        return np.asarray(spread(self.moment_sd(name, known), self.angle_rate_sd(name, known)))
 
     torque = moment
     torque_sd = moment_sd
@@ -185,9 +188,11 @@ class Reconstruction(
         if part not in get_args(SdPart):
             raise UnknownName("part of a standard deviation", part, get_args(SdPart))
         at = self._coordinate(name)
-        total, offset = getattr(self, array)[:, at], getattr(self, f"{array}_offset")[:, at]
-        found = {"total": total, "offset": offset}
-        return found[part] if part in found else varying_sd(total, offset)
+        total, offset, change = (
+            getattr(self, name)[:, at] for name in (array, f"{array}_offset", f"{array}_change")
+        )
+        found = {"total": total, "offset": offset, "change": change}
+        return found[part] if part in found else varying_sd(total, offset, change)
 
     def _coordinate(self, name: str) -> int:
         if name not in self.coordinate_names:
@@ -195,9 +200,15 @@ class Reconstruction(
         return self.coordinate_names.index(name)
 
 
-def varying_sd(total: Array, offset: Array) -> Array:
-    """Part of standard deviations that varies within the trial, independent of the offset: √(total² − offset²)."""
-    return np.asarray(np.sqrt(np.maximum(total**2 - offset**2, 0.0)))
+def varying_sd(total: Array, offset: Array, change: Array) -> Array:
+    """Standard deviations of errors less their mean over the trial: √(total² − offset² + change²).
+
+    Args:
+        total: Of the errors.
+        offset: Of their part that repeats in the same posture.
+        change: Of the change of that part with the posture, about its mean over the trial.
+    """
+    return np.asarray(np.sqrt(np.maximum(total**2 - offset**2, 0.0) + change**2))
 
 
 QUANTITIES = quantities(Reconstruction)

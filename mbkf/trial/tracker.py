@@ -37,7 +37,8 @@ class Estimate:
     """A frame's estimate; what is not asked for is not computed.
 
     Standard deviations (``…_sd``) are totals. ``…_sd_offset`` is the part that repeats whenever the posture is the
-    same, because the body is not known exactly; the rest, √(sd² − offset²), varies from frame to frame.
+    same, because the body is not known exactly; the rest, √(sd² − offset²), is the filter's. A single frame knows no
+    mean over the trial, so that the change of the offset with the posture is in the offset alone.
 
     Attributes:
         number: Number of the frame, counted from 0 at the first one pushed.

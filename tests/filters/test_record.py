@@ -5,6 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
+from mbkf.filters import offset_change
 from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.record import (
     FIELDS,
@@ -106,6 +107,39 @@ def test_spreads_are_totals_with_the_offset_beside_them(name, body):
             total, alone + offset, rtol=1e-9, atol=1e-12 * np.nanmax(total, initial=0.0)
         )
         assert not rows[1][beside].any()
+
+
+def test_a_trial_holds_changes_of_offsets_about_its_own_mean_and_totals_as_they_were(body, monkeypatch):
+    """Roots that were not kept are worked out from the records; frames without an estimate stay unknown."""
+    tracking, found = estimates("dynamic")
+    held = round(OFFSETS_HELD_S / DT)
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], body, whole_trial=True)
+    rows = blank(recorder.dtype, len(found) + 1)
+    rows["number"] = np.arange(len(rows))
+
+    def filled():
+        for t, one in enumerate(found):
+            recorder.step(rows[t : t + 1], one, 0.001)
+            recorder.spread(rows[t : t + 1], recorder.motion(rows[t : t + 1], one))
+
+    monkeypatch.setattr(offset_change, "KEPT_BYTES", 0)
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], body, whole_trial=True)
+    filled()
+    so_far = rows.copy()
+    recorder.finish(rows)
+    instants = [found[t] for t in range(0, len(found), held)]
+    roots = [body.at(one.q, one.v, one.a, one.wrench, one.contact) for one in instants]
+    torque = np.array([one.torque for one in roots])
+    expected = np.linalg.norm(torque - torque.mean(axis=0), axis=2)
+    for t in range(len(found)):
+        np.testing.assert_allclose(rows["torque_change"][t], expected[t // held], rtol=1e-4, atol=1e-4)
+    np.testing.assert_array_equal(rows["torque_change"][-2], so_far["torque_change"][-2])
+    assert (so_far["torque_change"][0] == 0.0).all() and (rows["angle_change"][0] > 0.0).any()
+    for name in rows.dtype.names:
+        if not name.endswith("_change"):
+            np.testing.assert_array_equal(rows[name], so_far[name])
+        elif rows[name].ndim > 1:
+            assert np.isnan(rows[name][-1]).all()
 
 
 def test_errors_by_the_body_are_held_for_a_while_and_found_when_asked(body, monkeypatch):

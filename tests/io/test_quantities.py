@@ -12,6 +12,7 @@ from mbkf.io.quantities import (
     LATER,
     attribute,
     attributes,
+    change,
     check,
     flag,
     offset,
@@ -30,6 +31,7 @@ class Record:
     angle: Array = quantity("time dof", ANGLE, "angle")
     angle_sd: Array = spread("angle")
     angle_sd_offset: Array = offset("angle_sd")
+    angle_sd_change: Array = change("angle_sd")
     seen: Array = flag("time", "seen")
     place_m: Array | None = quantity("plate xyz", METRE, "place", None, key="place")
     state: Array | None = quantity("time", ONE, "state", None, codes={0: "off", 1: "on"})
@@ -60,9 +62,9 @@ def test_a_declaration_is_read_from_its_field():
     assert [(one.name, one.read) for one in attributes(Record)] == [("title", str)]
 
 
-def test_a_spread_has_axes_and_unit_of_its_array_and_an_offset_those_of_the_spread():
+def test_a_spread_has_axes_and_unit_of_its_array_and_its_parts_those_of_the_spread():
     declared = quantities(Record)
-    for name in ("angle_sd", "angle_sd_offset"):
+    for name in ("angle_sd", "angle_sd_offset", "angle_sd_change"):
         assert (declared[name].axes, declared[name].unit) == (("time", "dof"), ANGLE)
 
 
@@ -73,9 +75,10 @@ def test_arrays_are_read_only_and_of_their_type():
     assert r.dof_names == ("a", "b", "c")
 
 
-def test_a_missing_offset_is_0_where_the_spread_is_known():
+def test_a_missing_part_is_0_where_the_spread_is_known():
     r = made(angle_sd=np.where(np.eye(2, 3) > 0, np.nan, 1.0))
-    np.testing.assert_array_equal(r.angle_sd_offset, np.where(np.isnan(r.angle_sd), np.nan, 0.0))
+    for part in (r.angle_sd_offset, r.angle_sd_change):
+        np.testing.assert_array_equal(part, np.where(np.isnan(r.angle_sd), np.nan, 0.0))
 
 
 def test_what_older_files_lack_is_unknown():

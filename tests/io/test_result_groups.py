@@ -27,7 +27,7 @@ def test_axes_are_known_and_meanings_are_phrases():
         assert set(one.axes) <= set(AXES), name
         assert one.meaning and one.meaning[-1] not in ".,;", name
         assert one.is_text or one.unit.text, name
-        assert not (one.spread_of or one.offset_of) or (one.spread_of or one.offset_of) in QUANTITIES, name
+        assert not one.beside or one.beside in QUANTITIES, name
 
 
 def test_the_axes_of_a_trial_are_labelled_by_its_own_names():

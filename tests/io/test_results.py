@@ -1,10 +1,12 @@
 """The result record: checked shapes, read-only arrays, access by name."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
 from mbkf.errors import ShapeError, UnknownName
-from mbkf.io.results import ARRAYS, QUANTITIES, varying_sd
+from mbkf.io.results import ARRAYS, QUANTITIES, SdPart, varying_sd
 from tests.io.reconstructions import made_up, made_up_whole
 
 
@@ -86,20 +88,23 @@ def test_present_leaves_out_hidden_and_missing_samples():
     ("read", "array"),
     [("angle_sd", "angles_sd"), ("angle_rate_sd", "angle_rates_sd"), ("moment_sd", "moments_sd")],
 )
-def test_a_standard_deviation_has_two_parts(read, array):
-    """The offset as it is told, and what varies: both squared are the total squared."""
+def test_what_varies_holds_the_filter_and_the_change_of_the_offset(read, array):
+    """Without a change of the offset, as older files are, its square and the offset's are the total's."""
     total = np.abs(getattr(made_up(), array))
-    r = made_up(**{array: total, f"{array}_offset": 0.6 * total})
-    whole, offset, varying = (getattr(r, read)("pelvis_tx", part) for part in ("total", "offset", "varying"))
-    np.testing.assert_array_equal(whole, total[:, 1])
-    np.testing.assert_allclose(varying, 0.8 * whole, rtol=1e-12)
-    np.testing.assert_allclose(offset, 0.6 * whole, rtol=1e-12)
+    for change in (0.0, 0.6):
+        told = {array: total, f"{array}_offset": 0.6 * total, f"{array}_change": change * total}
+        r = made_up(**told)
+        parts = {part: getattr(r, read)("pelvis_tx", part) for part in get_args(SdPart)}
+        np.testing.assert_array_equal(parts["total"], total[:, 1])
+        np.testing.assert_allclose(parts["varying"] ** 2, (0.64 + change**2) * total[:, 1] ** 2, rtol=1e-6)
+        np.testing.assert_allclose(parts["offset"], 0.6 * total[:, 1], rtol=1e-12)
+        np.testing.assert_allclose(parts["change"], change * total[:, 1], rtol=1e-6)
     with pytest.raises(UnknownName, match="did you mean offset"):
         getattr(r, read)("pelvis_tx", "ofset")
 
 
 def test_power_errs_as_a_product_of_independent_errors_does():
-    """Moment and rate drawn about what is told: the product's scatter, and its two parts."""
+    """Moment and rate drawn about what is told: the product's scatter. All of its offset changes within a trial."""
     rng, name, draws = np.random.default_rng(3), "hip_flexion_r", 20000
     sd = {"angle_rates_sd": np.full((12, 3), 0.3), "moments_sd": np.full((12, 3), 2.0)}
     r = made_up(**sd, **{f"{array}_offset": 0.6 * total for array, total in sd.items()})
@@ -110,8 +115,8 @@ def test_power_errs_as_a_product_of_independent_errors_does():
             rate + share * 0.3 * rng.normal(size=(draws, 12))
         )
         np.testing.assert_allclose(r.power_sd(name, part), found.std(axis=0), rtol=0.04)
-    whole, offset, varying = (r.power_sd(name, part) for part in ("total", "offset", "varying"))
-    np.testing.assert_allclose(whole**2, offset**2 + varying**2, rtol=1e-12)
+    for part, same in (("varying", "total"), ("change", "offset")):
+        np.testing.assert_array_equal(r.power_sd(name, part), r.power_sd(name, same))
     with pytest.raises(UnknownName, match="did you mean offset"):
         r.power_sd(name, "ofset")
 
@@ -126,4 +131,5 @@ def test_offsets_that_are_not_told_are_zero_where_the_total_is_known():
 
 
 def test_rounding_never_makes_what_varies_imaginary():
-    np.testing.assert_array_equal(varying_sd(np.array([5.0, 1.0]), np.array([4.0, 1.0 + 1e-12])), [3.0, 0.0])
+    total, offset = np.array([5.0, 1.0]), np.array([4.0, 1.0 + 1e-12])
+    np.testing.assert_array_equal(varying_sd(total, offset, np.zeros(2)), [3.0, 0.0])

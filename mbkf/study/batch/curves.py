@@ -105,7 +105,7 @@ def _curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
     unknown = np.full(len(r.times_s), np.nan)
     for k, axis in enumerate(AXES):
         sd = unknown if r.foot_wrench_sd is None else r.foot_wrench_sd[:, side, k]
-        yield SideCurve("reaction", f"force_{axis}", "N", r.foot_wrench[:, side, k], sd, unknown)
+        yield SideCurve("reaction", f"force_{axis}", "N", r.foot_wrench[:, side, k], sd, unknown, unknown)
 
 
 def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]) -> pa.Table:

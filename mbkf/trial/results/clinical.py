@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.filters.record import Track
 from mbkf.io.result_groups import Moments, Motion, Torques
 from mbkf.model.angle_reading import AngleReading
@@ -46,9 +46,9 @@ def clinical_motion(
     angles_lab = angles = clinical.angles(track.q)
     if not in_laboratory:
         angles = clinical.angles(seen)
-    known = np.isfinite(track.q).all(axis=1)
+    known = np.asarray(np.isfinite(track.q).all(axis=1))
     shape = angles.shape
-    rates, moments, moments_sd, moments_offset = (np.full(shape, np.nan) for _ in range(4))
+    rates = np.full(shape, np.nan)
     q, v, theta = track.q[known], track.v[known], angles[known]
     if not in_laboratory:
         v = v.copy()
@@ -58,17 +58,19 @@ def clinical_motion(
     renewed = _renewed(clinical, in_laboratory)
     angles_sd, rates_sd = track.angle_sd.copy(), track.rate_sd.copy()
     angles_offset, rates_offset = track.angle_offset.copy(), track.rate_offset.copy()
+    angles_change, rates_change = track.angle_change.copy(), track.rate_change.copy()
     rows = np.ix_(np.flatnonzero(known), renewed)
     if len(renewed):
         angles_sd[rows] = clinical.ball_spread(q, theta, track.ball_covariance[known])[:, renewed]
         angles_offset[rows] = clinical.ball_spread(q, theta, track.ball_offset[known])[:, renewed]
         rates_sd[rows], rates_offset[rows] = rate_spreads[..., renewed]
+        for changes, before, after in (
+            (angles_change, track.angle_offset, angles_offset),
+            (rates_change, track.rate_offset, rates_offset),
+        ):
+            changes[rows] = _in_other_axes(changes[rows], before[rows], after[rows])
     own = ClinicalAngles(model)
     own_angles = theta if reading is None or not reading.joints else own.angles(seen)[known]
-    moments[known] = own.moments(q, torques.tau[known], own_angles)
-    moments_sd[known] = own.moments_sd(q, torques.sd_tau[known], own_angles)
-    tau_offset = np.where(np.isnan(torques.sd_tau), np.nan, torques.sd_tau_offset)
-    moments_offset[known] = own.moments_sd(q, tau_offset[known], own_angles)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
     zero = 0.0 if zero_q is None else _of_joints(clinical, zero_q)
@@ -79,9 +81,11 @@ def clinical_motion(
         angles=angles - zero,
         angles_sd=angles_sd,
         angles_sd_offset=angles_offset,
+        angles_sd_change=angles_change,
         angle_rates=rates,
         angle_rates_sd=rates_sd,
         angle_rates_sd_offset=rates_offset,
+        angle_rates_sd_change=rates_change,
         angles_lab=angles_lab - zero,
         singular=singular,
         heading_rad=frame.heading_rad,
@@ -89,7 +93,27 @@ def clinical_motion(
         angles_read=clinical.reading.name,
         angles_zero=AXES if zero_q is None else STATIC,
     )
-    return motion, Moments(moments=moments, moments_sd=moments_sd, moments_sd_offset=moments_offset)
+    return motion, _moments(own, track, torques, known, own_angles)
+
+
+def _moments(own: ClinicalAngles, track: Track, torques: Torques, known: BoolArray, angles: Array) -> Moments:
+    """Moments conjugate to the coordinates, with their spreads.
+
+    Args:
+        own: The coordinates, read in the body's own axes.
+        track: The tracked trial.
+        torques: The generalised forces.
+        known: (T,) frames with an estimate, K of them.
+        angles: (K, A) their coordinates.
+    """
+    q, unknown = track.q[known], np.isnan(torques.sd_tau)
+    offset, change = (np.where(unknown, np.nan, sd) for sd in (torques.sd_tau_offset, track.torque_change))
+    moments, *spreads = (np.full((len(known), len(own.names)), np.nan) for _ in range(4))
+    moments[known] = own.moments(q, torques.tau[known], angles)
+    for spread, tau_sd in zip(spreads, (torques.sd_tau, offset, change), strict=True):
+        spread[known] = own.moments_sd(q, tau_sd[known], angles)
+    total, offset, change = spreads
+    return Moments(moments=moments, moments_sd=total, moments_sd_offset=offset, moments_sd_change=change)
 
 
 def _of_joints(clinical: ClinicalAngles, q: Array) -> Array:
@@ -104,6 +128,20 @@ def _renewed(clinical: ClinicalAngles, in_laboratory: bool) -> Array:
     if clinical.reading.joints:
         return clinical.ball_columns.ravel()
     return clinical.root_angles[:0] if in_laboratory else clinical.root_angles
+
+
+def _in_other_axes(change: Array, offset: Array, other_offset: Array) -> Array:
+    """(T, 3 n) change of the offset of n joints in other axes: the same share of each joint's offset.
+
+    Args:
+        change: (T, 3 n) change in the body's own axes.
+        offset: (T, 3 n) offset there.
+        other_offset: (T, 3 n) offset in the other axes.
+    """
+    joints = (len(change), -1, 3)
+    changed, whole = (np.square(one).reshape(joints).sum(axis=2) for one in (change, offset))
+    share = np.sqrt(changed / np.where(whole > 0.0, whole, 1.0))
+    return np.asarray((other_offset.reshape(joints) * share[:, :, None]).reshape(change.shape))
 
 
 def _rates(

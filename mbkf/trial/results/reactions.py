@@ -123,6 +123,7 @@ def _estimated_loads(
         foot_wrench=track.wrench,
         foot_wrench_sd=track.wrench_sd,
         foot_wrench_sd_offset=track.wrench_offset,
+        foot_wrench_sd_change=track.wrench_change,
         foot_cop_m=pressure,
         foot_free_moment_nm=free,
         foot_source=foot_sources(contact, track.wrench),

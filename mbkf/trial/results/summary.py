@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import get_args
-
 import numpy as np
 
 from mbkf.conventions import Array
@@ -138,9 +136,9 @@ def _torques(r: Reconstruction) -> list[dict[str, float | None]]:
         if j.proximal != "world" and j.main in r.coordinate_names
     }
     peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
+    parts: tuple[SdPart, ...] = ("total", "offset", "varying")
     spreads = [
-        {joint: _mean(r.moment_sd(name, part)[r.tracked]) for joint, name in main.items()}
-        for part in get_args(SdPart)
+        {joint: _mean(r.moment_sd(name, part)[r.tracked]) for joint, name in main.items()} for part in parts
     ]
     per_kg = {joint: None if peak is None else peak / r.subject.mass_kg for joint, peak in peaks.items()}
     return [per_kg, *spreads]

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
-from mbkf.io.results import Reconstruction
+from mbkf.io.results import Reconstruction, varying_sd
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
 from mbkf.numerics.runs import spread_indices
@@ -127,8 +127,8 @@ def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
 
 def _scaled(r: Reconstruction, values: Reader, spreads: Reader, name: str, factor: float) -> Curve:
     """A coordinate's curve with its spread in the unit shown."""
-    offset = [spreads(name, "offset")] if offsets_known(r) else []
-    return Curve(*(factor * one for one in (values(name), spreads(name), *offset)))
+    parts = [spreads(name, part) for part in ("offset", "varying")] if offsets_known(r) else []
+    return Curve(*(factor * one for one in (values(name), spreads(name), *parts)))
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
@@ -140,10 +140,12 @@ def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
         unit: The unit shown.
     """
     sd = np.full_like(r.foot_wrench, np.nan) if r.foot_wrench_sd is None else r.foot_wrench_sd
-    offset = r.foot_wrench_sd_offset if offsets_known(r) else None
+    offset, change = r.foot_wrench_sd_offset, r.foot_wrench_sd_change
+    parts = []
+    if offsets_known(r) and offset is not None and change is not None:
+        parts = [offset, varying_sd(sd, offset, change)]
     feet = {
-        side: Curve(r.foot_wrench[:, k, :3], sd[:, k, :3], None if offset is None else offset[:, k, :3])
-        for k, side in enumerate(SIDES)
+        side: Curve(*(one[:, k, :3] for one in (r.foot_wrench, sd, *parts))) for k, side in enumerate(SIDES)
     }
     return force_cells(facing(r), feet, factor, unit)
 
@@ -297,14 +299,14 @@ def _ranges(r: Reconstruction) -> str:
     if not rows:
         return ""
     heads = ("", "least angle °", "greatest angle °", "least torque N m/kg", "greatest torque N m/kg")
-    shift = "; in brackets, its part that shifts the whole curve" if offsets_known(r) else ""
+    shift = "; in brackets, its part that repeats in the same posture" if offsets_known(r) else ""
     return f"<h3>Ranges (± 2 standard deviations{shift})</h3>" + table(heads, rows)
 
 
 def _extremes(curve: Curve | None, digits: int) -> tuple[str, str]:
     if curve is None or not np.isfinite(curve.values).any():
         return "–", "–"
-    values, sd, offset = curve
+    values, sd, offset, _ = curve
     found = []
     for at in (int(np.nanargmin(values)), int(np.nanargmax(values))):
         band = "" if not np.isfinite(sd[at]) else f" ± {number(2 * sd[at], digits)}"

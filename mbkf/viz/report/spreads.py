@@ -1,4 +1,4 @@
-"""The two parts of a curve's standard deviation in the report: variation within the trial, and shift of the curve."""
+"""Bands of the report's curves: the error's variation within the trial, and the whole error."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.results import Reconstruction, varying_sd
+from mbkf.io.results import Reconstruction
 from mbkf.trial.gait.cycles import Cycle, over_cycle
 
 SHIFTS = (
-    "A standard deviation has two parts. The whole curve may be shifted, because the person's body is not known "
-    "exactly: the shift is the same in every cycle, for the same posture. And the curve varies within the trial, "
-    "because markers and skin do. Compare cycles of one session by the variation; compare sessions, persons or norms "
-    "by both parts together."
+    "The person's body is not known exactly. The error from that repeats whenever the posture is the same. Its mean "
+    "over the trial shifts the whole curve. Its change with the posture and the errors of markers and skin vary within "
+    "the trial: the dark band holds them. Compare frames and cycles of this trial by the dark band. Compare sessions, "
+    "persons, norms and movements in other postures by the light band."
 )
 NO_SHIFTS = (
     "Bands show the variation within the trial only. The shift of whole curves is not known, because the subject file "
@@ -29,21 +29,18 @@ class Curve(NamedTuple):
     Attributes:
         values: (T,) values.
         sd: (T,) standard deviations.
-        offset: (T,) the part of them that shifts the whole curve; None where it is not known.
+        offset: (T,) the part of them that repeats in the same posture; None where it is not known.
+        inner_sd: (T,) standard deviations of the errors less their mean over the trial; None as the offset.
     """
 
     values: Array
     sd: Array
     offset: Array | None = None
-
-    @property
-    def inner_sd(self) -> Array | None:
-        """(T,) the part that varies within the trial; None where the offset is not known."""
-        return None if self.offset is None else varying_sd(self.sd, self.offset)
+    inner_sd: Array | None = None
 
 
 def offsets_known(r: Reconstruction) -> bool:
-    """True if the results state the shift of whole curves: the subject file has a covariance."""
+    """True if the results state errors by the body: the subject file has a covariance."""
     return r.angles_sd_offset is not None and bool(np.nan_to_num(r.angles_sd_offset).any())
 
 
@@ -58,7 +55,7 @@ def band_key(both: bool) -> list[tuple[str, str]]:
         return [("swatch band", "± 2 standard deviations")]
     return [
         ("swatch inner", "variation within the trial"),
-        ("swatch outer", "with the possible shift of the whole curve (each ± 2 standard deviations)"),
+        ("swatch outer", "whole error, with the shift of the curve (each ± 2 standard deviations)"),
     ]
 
 

@@ -210,11 +210,12 @@ def test_a_reading_changes_angles_their_rates_and_spreads_and_no_moment(spread_c
 
 
 @pytest.mark.parametrize("turned", [False, True])
-def test_offsets_go_the_way_of_their_totals(spread_case, turned):
+def test_parts_go_the_way_of_their_totals(spread_case, turned):
     """A fixed share of every spread is the same share in every frame and reading."""
     model, track, tau, sd_tau, _ = spread_case
     told = {f"{name}_offset": 0.6 * getattr(track, f"{name}_sd") for name in ("angle", "rate")}
-    told["sd_v_offset"] = 0.6 * track.sd_v
+    told |= {f"{name}_change": 0.3 * getattr(track, f"{name}_sd") for name in ("angle", "rate")}
+    told |= {"sd_v_offset": 0.6 * track.sd_v, "torque_change": 0.3 * sd_tau}
     track = replace(track, **told, ball_offset=0.36 * track.ball_covariance, torque_offset=0.6 * sd_tau)
     hip = JointAxes(*Rotation.from_rotvec([[0.1, 0.2, -0.1], [-0.1, 0.3, 0.2]]).as_matrix())
     how = (STEADY, AngleReading("made up", {"hip_r": hip})) if turned else ()
@@ -223,3 +224,4 @@ def test_offsets_go_the_way_of_their_totals(spread_case, turned):
         total, offset = getattr(found, f"{name}_sd"), getattr(found, f"{name}_sd_offset")
         np.testing.assert_allclose(offset, 0.6 * total, rtol=1e-12)
         assert np.isnan(offset[2]).all() and (offset[KNOWN] > 0.0).all()
+        np.testing.assert_allclose(getattr(found, f"{name}_sd_change"), 0.3 * total, rtol=1e-5)
