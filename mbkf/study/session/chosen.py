@@ -70,4 +70,4 @@ def _mean(side: SideCycles, key: Key, counts: BoolArray) -> Mean | None:
     curves = side.curves[key]
     names = [side.cycles[k].trial for k in np.flatnonzero(counts)]
     own = np.sqrt(np.maximum(curves.sd[counts] ** 2 - np.nan_to_num(curves.shift_sd[counts]) ** 2, 0.0))
-    return mean_of(curves.values[counts], names, curves.shift_sd[counts], own)
+    return mean_of(curves.values[counts], names, curves.shift_sd[counts], own, curves.change_sd[counts])

@@ -11,9 +11,11 @@ from mbkf.conventions import Array
 from mbkf.io.session import TrialKind
 from mbkf.io.subject import Subject
 from mbkf.study.session.chosen import Chosen, chosen_curves
-from mbkf.study.session.cycles import Key
+from mbkf.study.session.cycles import ANGLE, Key, SideCycles
 from mbkf.study.session.means import Difference, Mean, difference_of, mean_of
 from mbkf.study.session.records import Measure, MovementGroup, Session
+from mbkf.trial.gait.curves import ROOT
+from mbkf.trial.gait.cycles import POINTS
 
 
 @dataclass(frozen=True)
@@ -88,15 +90,43 @@ def _compare(before: MovementGroup, after: MovementGroup, same: bool) -> Compari
     curves = []
     for side in range(2):
         first, second = before.sides[side], after.sides[side]
+        moved = postures_apart(first, second)
         for key in second.curves:
             if key not in first.curves:
                 continue
             old, new = chosen_curves(first, key), chosen_curves(second, key)
             if old.mean is None or new.mean is None or old.estimated != new.estimated:
                 continue
-            apart = difference_of(new.mean, old.mean, same)
+            apart = difference_of(new.mean, old.mean, same, moved)
             curves.append(CurvePair(key, side, second.curves[key].unit, old, new, apart))
     return Comparison(after.kind, tuple(curves), measure_pairs(before.measures, after.measures), same)
+
+
+def postures_apart(first: SideCycles, second: SideCycles) -> Array:
+    """(101,) squared distance of two mean postures over their mean squared distance from the mean of each, both added.
+
+    A posture is all angles of joints that both have. 0 where they are the same.
+
+    Args:
+        first: The cycles of a side.
+        second: Those of another session.
+    """
+    keys = [
+        key
+        for key, curves in second.curves.items()
+        if key.quantity == ANGLE and curves.unit == "deg" and not key.name.startswith(ROOT)
+    ]
+    known = [
+        (chosen_curves(first, key).mean, chosen_curves(second, key).mean)
+        for key in keys
+        if key in first.curves
+    ]
+    apart, range_squared = np.zeros(POINTS), 0.0
+    for one, other in known:
+        if one is not None and other is not None:
+            apart += (one.mean - other.mean) ** 2
+            range_squared += float(one.mean.var() + other.mean.var())
+    return np.asarray(apart / range_squared) if range_squared > 0.0 else apart
 
 
 def measure_pairs(before: tuple[Measure, ...], after: tuple[Measure, ...]) -> tuple[MeasurePair, ...]:

@@ -47,7 +47,8 @@ class Curves:
         unit: deg, m, N m/kg, W/kg, or % of body weight.
         values: (C, 101) over each cycle.
         sd: (C, 101) standard deviations.
-        shift_sd: (C, 101) the part of these that shifts all cycles alike.
+        shift_sd: (C, 101) the part of these that repeats in the same posture, and so shifts all cycles alike.
+        change_sd: (C, 101) the change of that part with the posture, about its mean over the trial.
         midline: Whether it belongs to the trunk, whose loads depend on both feet.
     """
 
@@ -55,6 +56,7 @@ class Curves:
     values: Array
     sd: Array
     shift_sd: Array
+    change_sd: Array
     midline: bool = False
 
 
@@ -114,11 +116,16 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
     for curve in [*side_curves(r, side), *_reactions(r, side)]:
         factor, unit = _shown(curve, r.subject.mass_kg)
         sign = -1.0 if curve.name in mirrored and curve.quantity != POWER else 1.0
-        value, sd, shift = (
+        value, sd, shift, change = (
             np.array([over_cycle(r.times_s, k * each, c) for c in kept])
-            for k, each in ((sign * factor, curve.value), (factor, curve.sd), (factor, curve.offset_sd))
+            for k, each in (
+                (sign * factor, curve.value),
+                (factor, curve.sd),
+                (factor, curve.offset_sd),
+                (factor, curve.change_sd),
+            )
         )
-        curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift, curve.name in whole)
+        curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift, change, curve.name in whole)
     curves |= _whole_joints(curves, reference_body(r.subject), side)
     return SideCycles(side, cycles, curves)
 
@@ -140,6 +147,7 @@ def _whole_joints(curves: Mapping[Key, Curves], body: BodyDescription, side: int
                 np.sum([one.values for one in parts], axis=0),
                 np.sqrt(np.sum([one.sd**2 for one in parts], axis=0)),
                 np.sqrt(np.sum([one.shift_sd**2 for one in parts], axis=0)),
+                np.sqrt(np.sum([one.change_sd**2 for one in parts], axis=0)),
                 parts[0].midline,
             )
     return found
@@ -164,6 +172,7 @@ def together(parts: list[SideCycles], side: int) -> SideCycles:
             np.concatenate([one.values for one in each]),
             np.concatenate([one.sd for one in each]),
             np.concatenate([one.shift_sd for one in each]),
+            np.concatenate([one.change_sd for one in each]),
             each[0].midline,
         )
 
@@ -212,11 +221,11 @@ def _reactions(r: Reconstruction, side: int) -> Iterator[SideCurve]:
     unknown = np.full((r.frames, 3), np.nan)
     spreads = [
         unknown if sd is None else np.sqrt(np.einsum("tij,tj->ti", axes**2, sd[:, side, :3] ** 2))
-        for sd in (r.foot_wrench_sd, r.foot_wrench_sd_offset)
+        for sd in (r.foot_wrench_sd, r.foot_wrench_sd_offset, r.foot_wrench_sd_change)
     ]
     force = np.einsum("tij,tj->ti", axes, r.foot_wrench[:, side, :3])
     for k, name in enumerate(FORCES):
-        yield SideCurve(REACTION, name, "N", force[:, k], spreads[0][:, k], spreads[1][:, k])
+        yield SideCurve(REACTION, name, "N", force[:, k], *(sd[:, k] for sd in spreads))
 
 
 PERCENT = np.linspace(0.0, 100.0, POINTS)

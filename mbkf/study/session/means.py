@@ -8,7 +8,12 @@ trial i, N in all, k trials, mean squares between (MSB) and within trials (MSW),
     var(mean) = sigma_b^2 sum (n_i / N)^2 + MSW / N.
 
 The shift that errors of the scaled body cause in every cycle alike does not fall with the number of cycles; its
-variance is added. Degrees of freedom are Welch and Satterthwaite's (B. L. Welch, Biometrika 34, 1947, 28-35).
+variance is added. Between two means of the same scaled body it drops out as far as the postures are the same: what is
+left is taken to change in proportion to the posture. With s² the mean variance of the shift's change within both
+trials, and d² the squared distance of both postures at a point over the postures' mean squared distance from their
+means, both added over the two, d² s² remains.
+
+Degrees of freedom are Welch and Satterthwaite's (B. L. Welch, Biometrika 34, 1947, 28-35).
 """
 
 from __future__ import annotations
@@ -35,6 +40,7 @@ class Mean:
         variance: (P,) of the mean, by how cycles and trials differ.
         freedom: (P,) degrees of freedom of that variance.
         shift_variance: (P,) of the shift that all cycles share.
+        change_variance: (P,) of the change of that shift with the posture, about its mean over the trial.
         count: How many cycles.
     """
 
@@ -43,6 +49,7 @@ class Mean:
     variance: Array
     freedom: Array
     shift_variance: Array
+    change_variance: Array
     count: int
 
 
@@ -69,7 +76,9 @@ class Difference:
         return self.difference + self.half_width
 
 
-def mean_of(values: Array, trials: Sequence[str], shift_sd: Array, own_sd: Array) -> Mean:
+def mean_of(
+    values: Array, trials: Sequence[str], shift_sd: Array, own_sd: Array, change_sd: Array | None = None
+) -> Mean:
     """The mean of cycles.
 
     Args:
@@ -78,27 +87,35 @@ def mean_of(values: Array, trials: Sequence[str], shift_sd: Array, own_sd: Array
         shift_sd: (C, P) standard deviations of the shift that all cycles share; NaN counts as 0.
         own_sd: (C, P) stated standard deviations of a cycle by itself, which stand in for the spread between cycles
             where there is one only; NaN where that is not known, and then no interval is.
+        change_sd: (C, P) standard deviations of the change of that shift with the posture; None and NaN count as 0.
     """
     count = len(values)
     mean = values.mean(axis=0)
     shift = np.nan_to_num(shift_sd).mean(axis=0) ** 2
+    change = np.zeros_like(mean) if change_sd is None else np.nan_to_num(change_sd).mean(axis=0) ** 2
     if count == 1:
-        return Mean(mean, np.full_like(mean, np.nan), own_sd[0] ** 2, np.full_like(mean, np.inf), shift, 1)
+        unknown, infinite = np.full_like(mean, np.nan), np.full_like(mean, np.inf)
+        return Mean(mean, unknown, own_sd[0] ** 2, infinite, shift, change, 1)
     variance, freedom = _variance_of_mean(values, trials)
-    return Mean(mean, values.std(axis=0, ddof=1), variance, freedom, shift, count)
+    return Mean(mean, values.std(axis=0, ddof=1), variance, freedom, shift, change, count)
 
 
-def difference_of(after: Mean, before: Mean, same_body: bool) -> Difference:
+def difference_of(after: Mean, before: Mean, same_body: bool, apart: Array | float = 0.0) -> Difference:
     """After less before, with its interval.
 
     Args:
         after: One mean.
         before: The other.
-        same_body: Whether both were reconstructed with the same scaled person, so that shifts cancel.
+        same_body: Whether both were reconstructed with the same scaled person: shifts cancel in the same posture.
+        apart: (P,) squared distance d² of both postures, as above; it counts for the same person.
     """
     parts = [(after.variance, after.freedom), (before.variance, before.freedom)]
-    if not same_body:
-        infinite = np.full_like(after.mean, np.inf)
+    infinite = np.full_like(after.mean, np.inf)
+    if same_body:
+        parts += [
+            (apart * one.change_variance.mean() * np.ones_like(one.mean), infinite) for one in (after, before)
+        ]
+    else:
         parts += [(after.shift_variance, infinite), (before.shift_variance, infinite)]
     variance = np.sum([part for part, _ in parts], axis=0)
     return Difference(after.mean - before.mean, _quantile(_freedom(parts)) * np.sqrt(variance))

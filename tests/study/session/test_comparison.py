@@ -4,9 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.study.session.comparison import by_curve, compare, is_same_body, measure_mean, measure_pairs
+from mbkf.study.session.comparison import (
+    by_curve,
+    compare,
+    is_same_body,
+    measure_mean,
+    measure_pairs,
+    postures_apart,
+)
 from mbkf.study.session.cycles import Key
 from mbkf.study.session.gather import session_of
+from mbkf.study.session.means import difference_of
 from tests.study.session.sessions import estimated, session, walks
 
 KNEE = Key("angle", "knee_angle")
@@ -40,6 +48,37 @@ def test_shifts_count_for_another_body_alone():
     assert (other.half_width**2 > 1.96**2 * added).all()
     without = by_curve(compare(session(), session())[0])[(KNEE, 0)].difference
     np.testing.assert_allclose(same.half_width, without.half_width)
+
+
+def test_the_shift_of_the_same_body_drops_out_in_the_same_posture_alone():
+    """Of a knee that is bent more, by the share that this is of the postures' range."""
+
+    def changing(results, by_rad):
+        bent = [
+            r.angles + by_rad * np.array([name == "knee_angle_r" for name in r.coordinate_names])
+            for r in results
+        ]
+        return [
+            replace(r, angles=angles, angles_sd_change=0.01 * np.ones_like(angles))
+            for r, angles in zip(results, bent, strict=True)
+        ]
+
+    before = session_of(changing(walks(), 0.0), "a")
+    still, moved = (session_of(changing(walks(), by), "b") for by in (0.0, 0.2))
+    sides = [one.gaits[0].sides[0] for one in (before, still, moved)]
+    assert not postures_apart(sides[0], sides[1]).any()
+    means = [
+        np.mean(curves.values, axis=0)
+        for key, curves in sides[0].curves.items()
+        if key.quantity == "angle" and curves.unit == "deg" and not key.name.startswith("pelvis")
+    ]
+    share = np.rad2deg(0.2) ** 2 / (2.0 * sum(mean.var() for mean in means))
+    np.testing.assert_allclose(postures_apart(sides[0], sides[2]), share, rtol=1e-9)
+    pair = by_curve(compare(before, moved)[0])[(KNEE, 0)]
+    np.testing.assert_allclose(pair.after.mean.change_variance, np.rad2deg(0.01) ** 2, rtol=1e-5)
+    expected = difference_of(pair.after.mean, pair.before.mean, True, share).half_width
+    np.testing.assert_allclose(pair.difference.half_width, expected)
+    assert not np.isclose(expected, difference_of(pair.after.mean, pair.before.mean, True).half_width).any()
 
 
 def test_measured_loads_are_not_compared_with_estimated_ones():

@@ -19,7 +19,7 @@ def plain(values, trials):
 def half_width_of(mean):
     """Half of the interval of a mean: that of its difference to an exact nought."""
     nothing = np.zeros_like(mean.mean)
-    exact = Mean(nothing, nothing, nothing, nothing + np.inf, nothing, 1)
+    exact = Mean(nothing, nothing, nothing, nothing + np.inf, nothing, nothing, 1)
     return difference_of(mean, exact, same_body=False).half_width
 
 
@@ -82,6 +82,16 @@ def test_shifts_do_not_fall_with_the_number_of_cycles_and_cancel_for_the_same_bo
     same = difference_of(one, other, same_body=True)
     np.testing.assert_allclose(same.half_width, 1.96 * np.sqrt(2.0 / 400.0), rtol=0.15)
     np.testing.assert_allclose(same.high - same.low, 2.0 * same.half_width)
+
+
+def test_what_postures_apart_leave_of_the_same_bodys_shift_counts():
+    """In proportion to the squared distance, by the mean over the curve of both trials' changes."""
+    nothing, change = np.zeros((1, P)), np.array([[1.0, 2.0, 3.0, 4.0, 5.0]])
+    one, other = (mean_of(nothing, ["a"], nothing, nothing, share * change) for share in (1.0, 2.0))
+    apart = np.array([0.0, 0.5, 1.0, 2.0, 4.0])
+    found = difference_of(one, other, True, apart)
+    np.testing.assert_allclose((found.half_width / 1.96) ** 2, apart * 11.0 * 5.0, rtol=1e-4)
+    np.testing.assert_array_equal(difference_of(one, other, False, apart).half_width, np.zeros(P))
 
 
 def test_welch_of_two_samples():
