@@ -24,7 +24,9 @@ def reference_model():
 
 
 def random_scale(rng, spread=0.1):
-    return rng.uniform(1 - spread, 1 + spread, 17)
+    """(18,) scale factors; pelvis and torso share their vertical one."""
+    found = rng.uniform(1 - spread, 1 + spread, 17)
+    return np.append(found, found[2])
 
 
 def random_model(rng, spread=0.1):

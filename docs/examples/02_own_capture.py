@@ -12,7 +12,7 @@ import mbkf
 # Make files as a laboratory stores them: static.c3d, trial.c3d (with force plates), truth.h5 and others.
 run([executable, "-m", "mbkf", "synth", "--motion", "squat", "--seconds", "1", "--out", "lab"], check=True)
 
-# Scale: 17 factors and the marker positions on this person, from a standing trial.
+# Scale: 18 factors and the marker positions on this person, from a standing trial.
 static = mbkf.read_capture("lab/static.c3d")
 subject = mbkf.scale(static, mass_kg=static.subject_mass_kg)
 mbkf.write_subject(subject, "subject.toml")

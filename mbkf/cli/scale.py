@@ -39,9 +39,12 @@ if TYPE_CHECKING:
 
     from mbkf.io.records import Capture
     from mbkf.io.subject import Subject
+    from mbkf.scaling.records import ScalingSettings
 
 AUTO = "auto"
 """The mass as the captures' plates weigh it."""
+
+SCALINGS = ("own", "thesis")
 
 MOST_MARKERS = 8
 """Markers that the table shows."""
@@ -78,6 +81,13 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="body mass, or auto: as the captures' plates weigh it (default: as the capture states)",
     )
     parser.add_argument("--height", metavar="M", type=float, help="body height, if known")
+    parser.add_argument(
+        "--scaling",
+        choices=SCALINGS,
+        default=SCALINGS[0],
+        help="factors of the body: its own, or the thesis's, whose pelvis and torso share a vertical one "
+        "(default: %(default)s)",
+    )
     parser.add_argument(
         "--inertia",
         action="store_true",
@@ -128,7 +138,7 @@ def _of_captures(args: argparse.Namespace, standing: str | Path | None, stated: 
     static = None if standing is None else read_capture(standing, **axes_options(args))
     trials = [read_capture(path, **axes_options(args)) for path in args.trial]
     with stages() as report:
-        subject = scale(static, trials, **stated, body=args.body, progress=report)
+        subject = scale(static, trials, **stated, body=args.body, settings=_settings(args), progress=report)
     return _weighed(args, subject, trials if static is None else [static, *trials])
 
 
@@ -146,9 +156,15 @@ def _of_folder(args: argparse.Namespace) -> Subject:
     person = replace(person, static_only=args.static_only or person.static_only)
     read = partial(read_capture, **axes_options(args))
     with stages() as report:
-        subject = scaled(person, report, body=args.body, read=read)
+        subject = scaled(person, report, body=args.body, settings=_settings(args), read=read)
     needs_plates = args.inertia or args.mass == AUTO
     return _weighed(args, subject, captures_used(person, subject, read) if needs_plates else ())
+
+
+def _settings(args: argparse.Namespace) -> ScalingSettings:
+    from mbkf.scaling.records import ScalingSettings
+
+    return ScalingSettings(thesis_factors=args.scaling == "thesis")
 
 
 def _weighed(args: argparse.Namespace, subject: Subject, captures: Sequence[Capture]) -> Subject:

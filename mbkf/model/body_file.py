@@ -51,8 +51,8 @@ _SEGMENT_KEYS = (
 _ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title")
 KNOWN = {
     "": (
-        "name", "reference_mass_kg", "reference_height_m", "scale_factors", "roles", "segment", "landmark", "sole",
-        "clinical_joint", "shape", "bearing", "skin",
+        "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
+        "landmark", "sole", "clinical_joint", "shape", "bearing", "skin",
     ),
     "segment": _SEGMENT_KEYS,
     "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
@@ -144,6 +144,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         reference_mass_kg=float(table["reference_mass_kg"]),
         reference_height_m=float(table["reference_height_m"]),
         scale_factors=factors,
+        split_factors=_split_factors(table, factors, path),
         segments=segments,
         landmarks=_landmarks(table.get("landmark", []), segments, path),
         roles=_roles(table, segments, path),
@@ -153,6 +154,14 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         skin=_skin(table.get("skin", []), segments, path),
         text=kept,
     )
+
+
+def _split_factors(table: dict[str, Any], factors: tuple[str, ...], path: Path) -> dict[str, str]:
+    found = dict(table.get("split_factors", {}))
+    for name in (*found, *found.values()):
+        if name not in factors:
+            raise UnknownName("scale factor", name, factors, f"{path}, split_factors")
+    return found
 
 
 def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Segment:

@@ -5,7 +5,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
@@ -174,6 +177,7 @@ class BodyDescription:
         reference_mass_kg: Mass of the reference person; the segments' masses sum to it.
         reference_height_m: Height of the reference person.
         scale_factors: Names of the independent scale factors.
+        split_factors: By name of a factor, the one that it was part of, whose value it has where it is not stated.
         segments: The segments, depth-first.
         landmarks: Landmarks by name.
         roles: Roles of segments in the algorithms.
@@ -188,6 +192,7 @@ class BodyDescription:
     reference_mass_kg: float
     reference_height_m: float
     scale_factors: tuple[str, ...]
+    split_factors: dict[str, str]
     segments: tuple[Segment, ...]
     landmarks: dict[str, Landmark]
     roles: Roles
@@ -212,6 +217,15 @@ class BodyDescription:
             if segment.name == name:
                 return segment
         raise UnknownName("segment", name, [s.name for s in self.segments])
+
+    def scale(self, factors: Mapping[str, float]) -> Array:
+        """(K,) scale factors from named ones: a split factor has the value of its origin, another one 1 by default.
+
+        Args:
+            factors: Scale factors by name.
+        """
+        origin = {name: self.split_factors.get(name, name) for name in self.scale_factors}
+        return np.array([factors.get(name, factors.get(origin[name], 1.0)) for name in self.scale_factors])
 
     def landmark(self, name: str) -> Landmark:
         """The landmark of that name (``right_``/``left_`` prefix for paired ones).

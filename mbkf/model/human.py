@@ -17,6 +17,7 @@ from numpy.lib.stride_tricks import as_strided
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
+from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.subject import STANDING_KEY, Subject
 from mbkf.kernel.loading import library
@@ -106,11 +107,10 @@ class HumanModel(Body):
             UnknownName: The body, a factor or a segment is unknown.
         """
         description = body if isinstance(body, BodyDescription) else load_body(body)
-        scale = np.ones(len(description.scale_factors))
-        for name, value in (factors or {}).items():
+        for name in factors or {}:
             if name not in description.scale_factors:
                 raise UnknownName("scale factor", name, description.scale_factors)
-            scale[description.scale_factors.index(name)] = value
+        scale = description.scale(factors or {})
         whole_kg = description.reference_mass_kg if mass_kg is None else mass_kg
         return cls(description, scale, whole_kg, inertia)
 
@@ -338,13 +338,36 @@ def scale_of(subject: Subject, body: BodyDescription) -> Array:
     for name in factors:
         if name not in body.scale_factors:
             raise UnknownName("scale factor", name, body.scale_factors)
-    missing = [name for name in body.scale_factors if name not in factors]
+    stated = {*factors, *(name for name, origin in body.split_factors.items() if origin in factors)}
+    missing = [name for name in body.scale_factors if name not in stated]
     if factors and missing:
         raise InvalidInput(
             f"the subject lacks the scale factor {', '.join(missing)} of the body '{body.name}'; restore its line in "
             "[scale_factors], or scale the person again"
         )
-    return np.array([factors.get(name, 1.0) for name in body.scale_factors])
+    return body.scale(factors)
+
+
+def covariance_of(subject: Subject, body: BodyDescription) -> BodyCovariance | None:
+    """The covariance that scaling left, of all of the body's factors: one that was part of another errs as that one.
+
+    Args:
+        subject: The person.
+        body: Its reference body.
+    """
+    known = subject.covariance
+    if known is None or known.factors == body.scale_factors:
+        return known
+    origin = [body.split_factors.get(name, name) for name in body.scale_factors]
+    wanted = [
+        name if name in known.factors else other
+        for name, other in zip(body.scale_factors, origin, strict=True)
+    ]
+    if not set(wanted) <= set(known.factors):
+        return known
+    rows = [known.factors.index(name) for name in wanted]
+    root = known.root[[*rows, *range(len(known.factors), len(known.root))]]
+    return BodyCovariance.of(body.scale_factors, known.markers, root @ root.T, known.flexions)
 
 
 def _frames_in(data: pin.Data) -> Array:

@@ -20,7 +20,7 @@ from mbkf.errors import NotConverged
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.human import reference_body, scale_of
+from mbkf.model.human import covariance_of, reference_body, scale_of
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.covariance import corrected_covariance
@@ -88,7 +88,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
     shares = problem.usual_shares(state.poses)
-    before = subject.covariance
+    before = covariance_of(subject, problem.body)
     if before is not None:
         before = _corrected(before, problem, state)
     found = {

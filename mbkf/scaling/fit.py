@@ -29,6 +29,9 @@ MAX_ITERATIONS = 60
 MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
 MIN_SESSION_SD_M = 0.005
+SAME_FACTOR_SD = 1e-5
+"""Spread of a split factor about its origin in scaling by the thesis's factors."""
+
 MAX_RMS_M = 0.05
 """Greatest RMS distance of the markers, unless their noise explains more."""
 
@@ -205,7 +208,12 @@ def factor_covariance(body: BodyDescription, stature_sd: float, settings: Scalin
     other = np.array([mirrored(name) for name in names])
     alike = np.eye(len(names)) + ((names[:, None] == other) & (names != other))
     one_side = settings.side_sd**2 * np.diag((names != other).astype(np.float64))
-    return np.asarray(stature_sd**2 + settings.proportion_sd**2 * alike + one_side)
+    covariance = np.asarray(stature_sd**2 + settings.proportion_sd**2 * alike + one_side)
+    if settings.thesis_factors:
+        origin = [body.scale_factors.index(body.split_factors.get(name, name)) for name in body.scale_factors]
+        split = np.diag([SAME_FACTOR_SD**2 if name in body.split_factors else 0.0 for name in names])
+        covariance = covariance[np.ix_(origin, origin)] + split
+    return covariance
 
 
 def _weights(frames: ScalingFrames, static_trials: int, settings: ScalingSettings) -> FrameWeights:

@@ -57,7 +57,7 @@ def synthesise_subject(
         stature = height_m / description.reference_height_m
     shared: dict[str, float] = {}
     factors = {}
-    for name in description.scale_factors:
+    for name in (name for name in description.scale_factors if name not in description.split_factors):
         both = name.removeprefix("right_").removeprefix("left_")
         if both not in shared:
             shared[both] = rng.normal(0.0, SPREAD)

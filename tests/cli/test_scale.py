@@ -34,7 +34,7 @@ def test_the_made_body_is_found(source, person, reference, tmp_path, capsys):
     assert scale(*words, "--mass", "71.5", "--out", tmp_path / "s.toml") == 0
     subject = read_subject(tmp_path / "s.toml")
     assert (subject.protocol, subject.body, subject.mass_kg) == ("reference36", "human18", 71.5)
-    assert list(subject.scale_factors.values()) == pytest.approx([1.0] * 17, abs=0.05)
+    assert list(subject.scale_factors.values()) == pytest.approx([1.0] * 18, abs=0.05)
     assert {m.name for m in subject.markers} == set(reference)
     moved = [np.linalg.norm(m.position_m - reference[m.name].position_m) for m in subject.markers]
     assert max(moved) < 0.03

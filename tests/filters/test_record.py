@@ -83,7 +83,7 @@ def test_a_frame_without_an_estimate_stays_blank():
 def body():
     """Errors by 2 % of every factor and 5 mm of every marker's place."""
     sensor = inputs().sensor
-    sd = np.concatenate([np.full(17, 0.02), np.full(3 * len(sensor.segments), 0.005)])
+    sd = np.concatenate([np.full(18, 0.02), np.full(3 * len(sensor.segments), 0.005)])
     return BodyErrors(sensor, inputs().noise_m, np.diag(sd))
 
 

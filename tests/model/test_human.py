@@ -1,6 +1,7 @@
 """The body: Table 4.2 and its scaling laws, mirror symmetry, and the mechanics against first principles."""
 
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -11,7 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, data_folder
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
-from mbkf.model.human import HumanModel
+from mbkf.io.body_covariance import BodyCovariance
+from mbkf.io.subject import Subject
+from mbkf.model.human import HumanModel, covariance_of
 from mbkf.model.sides import mirrored
 from tests.motions import (
     assert_near,
@@ -38,7 +41,7 @@ TABLE_4_2 = {  # mass kg, com m, inertia 1e-2 kg m²; shank's y and z of the com
 }
 
 TABLE_4_1 = {  # numbers of the factors on x, y, z, from 1
-    "pelvis": (1, 2, 3), "torso": (1, 4, 3), "neck": (5, 5, 5), "head": (5, 5, 5),
+    "pelvis": (1, 2, 18), "torso": (1, 4, 3), "neck": (5, 5, 5), "head": (5, 5, 5),
     "right_upper_arm": (6, 6, 6), "right_forearm": (7, 7, 7), "right_hand": (7, 7, 7),
     "left_upper_arm": (8, 8, 8), "left_forearm": (9, 9, 9), "left_hand": (9, 9, 9),
     "right_thigh": (10, 10, 10), "right_shank": (11, 11, 11), "right_foot": (12, 13, None),
@@ -47,7 +50,7 @@ TABLE_4_1 = {  # numbers of the factors on x, y, z, from 1
 }  # fmt: skip
 
 MIRROR = np.array([1.0, -1.0, 1.0])
-FACTORS = st.lists(st.floats(0.5, 1.6), min_size=17, max_size=17)
+FACTORS = st.lists(st.floats(0.5, 1.6), min_size=18, max_size=18)
 RNG_SEEDS = pytest.mark.parametrize("seed", [1, 2, 3])
 
 
@@ -145,7 +148,7 @@ def test_scaling_laws(values, mass):
     """Masses by k_m, centres of mass by k, inertias by k_m k² (thesis eqs. 4.2–4.4), joint places by the parent's k."""
     description, scale = reference_model().description, np.array(values)
     model, k_m = HumanModel(description, scale, mass), mass / 81.52
-    length = {"pelvis": 3, "torso": 3} | {
+    length = {"pelvis": 18, "torso": 3} | {
         n: t[0] for n, t in TABLE_4_1.items() if n not in ("pelvis", "torso")
     }
     for segment in description.segments:
@@ -354,7 +357,7 @@ def test_impossible_factors_are_refused(factor):
 
 
 def test_wrong_shapes_and_names_are_refused():
-    with pytest.raises(ShapeError, match=r"\(17,\)"):
+    with pytest.raises(ShapeError, match=r"\(18,\)"):
         HumanModel(reference_model().description, np.ones(16), 70.0)
     with pytest.raises(UnknownName, match="did you mean right_thigh"):
         HumanModel.scaled({"right_tigh": 1.1})
@@ -381,3 +384,17 @@ def test_frames_are_the_placements():
     np.testing.assert_array_equal(jacobian, model.placements_and_jacobian(q)[2])
     for joint in range(len(R)):
         assert_near(np.r_[place, 1.0] @ frames[4 * joint : 4 * joint + 4], R[joint] @ place + p[joint], 1e-14)
+
+
+def test_a_split_factor_is_its_origin_where_it_is_not_stated():
+    """Subjects of before the pelvis had a vertical factor of its own keep their body, and the spread of its size."""
+    body, rng = reference_model().description, np.random.default_rng(0)
+    ((split, origin),) = body.split_factors.items()
+    older = tuple(name for name in body.scale_factors if name != split)
+    factors = dict(zip(older, rng.uniform(0.9, 1.1, len(older)), strict=True))
+    known = BodyCovariance(older, (), np.tril(rng.normal(size=(len(older),) * 2)))
+    subject = Subject(body.name, 70.0, factors, (), "", covariance=known)
+    assert dict(zip(body.scale_factors, HumanModel.of(subject).scale, strict=True))[split] == factors[origin]
+    place = [older.index(body.split_factors.get(name, name)) for name in body.scale_factors]
+    found = covariance_of(subject, body)
+    np.testing.assert_allclose(found.covariance, known.covariance[np.ix_(place, place)], atol=1e-12)

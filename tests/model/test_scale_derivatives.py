@@ -21,7 +21,7 @@ def test_origin_derivatives_are_differences_of_scaled_bodies():
         return HumanModel(model.description, scale, model.mass_kg).placements(q)[1]
 
     slopes = [
-        (origins(model.scale + h * one) - origins(model.scale - h * one)) / (2 * h) for one in np.eye(17)
+        (origins(model.scale + h * one) - origins(model.scale - h * one)) / (2 * h) for one in np.eye(18)
     ]
     found = origin_derivatives(model, model.placements(q)[0])
     joints = [joint.joint_id for joint in model.joints.values()]

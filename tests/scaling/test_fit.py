@@ -24,14 +24,17 @@ NAMES = tuple(m.name for m in PROTOCOL.markers)
 class Person:
     """Known factors; anatomical markers exactly in place and technical ones up to 3 cm off, or all as expected."""
 
-    def __init__(self, seed, spread=0.08, drawn_from_prior=False):
+    def __init__(self, seed, spread=0.08, drawn_from_prior=False, pelvis=1.0):
         rng, prior = np.random.default_rng(seed), ScalingSettings()
         self.factors = rng.uniform(0.95, 1.08) * rng.uniform(1 - spread / 2, 1 + spread / 2, 17)
+        self.factors = np.append(
+            self.factors, pelvis * self.factors[2]
+        )  # pelvis and torso share their vertical one
         technical = np.array([[m.kind == "technical"] for m in PROTOCOL.markers])
         self.offsets_m = technical * rng.uniform(-0.03, 0.03, (len(NAMES), 3))
         if drawn_from_prior:
             spread = factor_covariance(BODY, 0.3 * prior.stature_sd, prior)
-            self.factors = 1.0 + np.linalg.cholesky(spread) @ rng.normal(size=17)
+            self.factors = 1.0 + np.linalg.cholesky(spread) @ rng.normal(size=18)
             self.offsets_m = np.array([[m.placement_sd_m] for m in PROTOCOL.markers]) * rng.normal(
                 size=(len(NAMES), 3)
             )
@@ -277,7 +280,7 @@ def test_a_static_trial_that_lies_is_refused(turn):
 def test_keypoints_are_scaled_from_standing_and_carry_their_noise():
     """Feet stay flat and lengths true under 20 mm of noise, and what stays of the noise is told to the filters."""
     protocol, rng = load_protocol("halpe26"), np.random.default_rng(4)
-    model = HumanModel(BODY, np.full(17, 0.97), 70.0)
+    model = HumanModel(BODY, np.full(18, 0.97), 70.0)
     places = [0.97 * m.position_m for m in protocol.markers]
     sensor = MarkerSensor(model, [m.segment for m in protocol.markers], np.array(places))
     names = tuple(m.name for m in protocol.markers)
@@ -331,3 +334,17 @@ def test_a_fit_that_is_cut_short_is_told(person, monkeypatch):
     found = scale_subject([person.standing()], [person.moving()], PROTOCOL, mass_kg=72.0)
     assert not found.report["converged"]
     assert found.report[DOUBTS_KEY][0] == "the fit did not converge"
+
+
+def test_the_thesis_scales_pelvis_and_torso_by_one_vertical_factor():
+    """Its seventeen factors; with the body's own, a pelvis that is taller than the torso is found as such."""
+    one = Person(5, pelvis=1.08)
+    trial = one.moving(20)
+    found = {
+        thesis: scale_subject(
+            [], [trial], PROTOCOL, mass_kg=72.0, settings=ScalingSettings(thesis_factors=thesis)
+        ).scale_factors
+        for thesis in (False, True)
+    }
+    assert found[True]["pelvis_height"] == pytest.approx(found[True]["trunk_height"], abs=1e-4)
+    assert 1.02 < found[False]["pelvis_height"] / found[False]["trunk_height"] < 1.09

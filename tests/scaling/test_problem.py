@@ -38,7 +38,7 @@ def problem(flexions):
     measured[:, 4] = np.nan
     prior = ScalingPrior(
         factors=random_scale(rng),
-        factor_covariance=random_covariance(rng, 17),
+        factor_covariance=random_covariance(rng, 18),
         offsets_m=rng.uniform(-0.02, 0.02, (len(MARKERS), 3)),
         offset_precision=np.linalg.inv(0.01 * random_covariance(rng, 3 * len(MARKERS))),
     )
@@ -103,7 +103,7 @@ def residuals(problem, state):
 
 
 def shared_size(state):
-    return 17 + 3 * len(MARKERS) * (1 + len(state.slides_m))
+    return 18 + 3 * len(MARKERS) * (1 + len(state.slides_m))
 
 
 def numeric_jacobian(problem, state, h=1e-6):
@@ -165,7 +165,7 @@ def test_the_arrow_is_the_gauss_newton_matrix(problem, state, jacobian):
 def test_missing_markers_say_nothing(problem, state):
     errors = problem.errors_m(state)
     np.testing.assert_array_equal(np.isnan(errors), np.isnan(problem.measured_m))
-    columns = 17 + 3 * 4 + np.arange(3)  # the marker never seen
+    columns = 18 + 3 * 4 + np.arange(3)  # the marker never seen
     assert (problem.linearise(state).border[:, :, columns] == 0).all()
 
 
@@ -187,7 +187,7 @@ def test_at_the_expected_state_only_the_markers_cost(problem, state):
 
 def test_with_unit_factors_and_no_offsets_markers_are_the_protocols():
     sensor, names = protocol_sensor(MODEL)
-    prior = ScalingPrior(np.ones(17), np.eye(17), np.zeros((len(names), 3)), np.ones(len(names)))
+    prior = ScalingPrior(np.ones(18), np.eye(18), np.zeros((len(names), 3)), np.ones(len(names)))
     markers = load_protocol("reference36").markers
     problem = ScalingProblem(BODY, markers, np.full((1, len(names), 3), np.nan), ONE_FRAME, prior)
     own = problem.sensor(problem.start(np.zeros((0, 67))))
@@ -196,6 +196,6 @@ def test_with_unit_factors_and_no_offsets_markers_are_the_protocols():
 
 
 def test_factors_stay_inside_their_bounds(problem, state):
-    far = np.concatenate([np.where(np.arange(17) % 2, 5.0, -5.0), np.zeros(shared_size(state) - 17)])
+    far = np.concatenate([np.where(np.arange(18) % 2, 5.0, -5.0), np.zeros(shared_size(state) - 18)])
     factors = problem.move(state, np.zeros((FRAMES, MODEL.nv)), far).factors
     assert set(factors) == set(FACTOR_BOUNDS)

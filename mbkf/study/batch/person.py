@@ -16,6 +16,7 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, write_subject
 from mbkf.io.written import SETTINGS
+from mbkf.scaling.records import ScalingSettings
 from mbkf.study.batch.inputs import fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import body_of_points, is_nameless, named
 from mbkf.study.batch.plan import MOST_MOVING, Files, Person, trial_names
@@ -82,6 +83,7 @@ def scaled(
     progress: StageCallback = ignored,
     *,
     body: str | None = None,
+    settings: ScalingSettings | None = None,
     read: Callable[..., Capture] = read_capture,
 ) -> Subject:
     """The person's body: by standing and the trials of the session that help, else by the first moving trials.
@@ -94,6 +96,7 @@ def scaled(
         person: The person.
         progress: Called with the stage, items done and items in all.
         body: The reference body, its name or its file; by default that of the marker protocol.
+        settings: Weights of the priors.
         read: Reads a capture, as :func:`mbkf.read_capture` does.
 
     Raises:
@@ -101,7 +104,14 @@ def scaled(
         OSError: A file cannot be read.
     """
     mass_kg = PROVISIONAL_KG if person.mass_kg is None else person.mass_kg
-    scaling = partial(scale, mass_kg=mass_kg, height_m=person.height_m, protocol=person.protocol, body=body)
+    scaling = partial(
+        scale,
+        mass_kg=mass_kg,
+        height_m=person.height_m,
+        protocol=person.protocol,
+        body=body,
+        settings=settings,
+    )
     static, others, moving = _standing(person, read)
     if static is not None:
         found = scale_from_session(static, () if person.static_only else others, scaling, progress)

@@ -16,7 +16,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.human import HumanModel
+from mbkf.model.human import HumanModel, covariance_of
 from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.flexed_skin import FlexedSkin, slide_covariance
@@ -93,7 +93,7 @@ def _body_errors(
         names: Their names.
         subject: The person.
     """
-    known = subject.covariance
+    known = covariance_of(subject, sensor.model.description)
     if known is None:
         return None
     session = {marker.name: marker.session_sd_m for marker in subject.markers}

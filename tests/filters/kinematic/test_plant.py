@@ -97,7 +97,7 @@ def test_an_unobservable_dof_gets_no_noise(rng):
 def test_the_plant_knows_no_masses(rng):
     """A kinematic plant: a body ten times heavier moves and doubts alike."""
     body = reference_model().description
-    light, heavy = (HumanModel(body, np.ones(17), mass) for mass in (8.0, 800.0))
+    light, heavy = (HumanModel(body, np.ones(18), mass) for mass in (8.0, 800.0))
     state = random_state(light, rng)
     after = []
     for model in (light, heavy):
