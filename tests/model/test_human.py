@@ -1,7 +1,6 @@
 """The body: Table 4.2 and its scaling laws, mirror symmetry, and the mechanics against first principles."""
 
 import tomllib
-from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
