@@ -23,7 +23,7 @@ USUAL_SWING_DEG, ENOUGH = 55.0, 1.3
 UPPER_GAIN_DEG = 45.0
 """A movement of trunk or arms is added where a joint turns by so much more than in the trials chosen already."""
 
-STEP = 0.05
+STEP = 0.1
 """Trials whose merits differ by less count as equal."""
 
 IMPACTS = (TrialKind.RUN, TrialKind.JUMP)
@@ -84,10 +84,14 @@ def choose(excitations: Mapping[str, Excitation], refused: Mapping[str, str] | N
     gait = best(calm, lambda one: _stride(one) if one.kind == TrialKind.WALK else 0.0)
     gait = gait or best(usable, lambda one: _stride(one) if one.kind == TrialKind.RUN else 0.0)
     others = {name: one for name, one in calm.items() if one.kind != TrialKind.WALK}
-    deep = best(others, _depth) or best(usable, _depth)
+    moved = _upper_over([usable[gait]] if gait else [])
+    deep = best(others, _depth, moved) or best(usable, _depth)
     taken = {name: part for name, part in ((deep, Part.DEEP), (gait, Part.WALK)) if name}
-    gain = _gain_over([usable[name] for name in taken])
-    upper = best({name: one for name, one in others.items() if name not in taken}, gain)
+    moved = _upper_over([usable[name] for name in taken])
+    upper = best(
+        {name: one for name, one in others.items() if name not in taken},
+        lambda one: min(moved(one) / 90.0, 1.0) if moved(one) >= UPPER_GAIN_DEG else 0.0,
+    )
     if upper:
         taken[upper] = Part.UPPER
     order = list(Part)
@@ -101,16 +105,22 @@ def choose(excitations: Mapping[str, Excitation], refused: Mapping[str, str] | N
     return Choice(chosen, {name: left_out[name] for name in sorted(left_out)}, complete)
 
 
-def best(trials: Mapping[str, Excitation], merit: Callable[[Excitation], float]) -> str:
-    """Name of the trial with greatest merit, of equals the first one; "" where all have 0.
+def best(
+    trials: Mapping[str, Excitation],
+    merit: Callable[[Excitation], float],
+    otherwise: Callable[[Excitation], float] = lambda _: 0.0,
+) -> str:
+    """Name of the trial with greatest merit; "" where all have 0.
 
     Args:
         trials: Excitation by name, sorted.
         merit: 0 to about 1 of a trial.
+        otherwise: Decides between those that come within :data:`STEP` of the greatest merit; their names do last.
     """
-    merits = {name: round(one.coverage * merit(one) / STEP) for name, one in trials.items()}
-    found = max(merits, key=merits.__getitem__, default="")
-    return found if merits.get(found) else ""
+    merits = {name: one.coverage * merit(one) for name, one in trials.items()}
+    greatest = max(merits.values(), default=0.0)
+    equals = [name for name, found in merits.items() if found and found >= greatest - STEP]
+    return max(equals, key=lambda name: round(otherwise(trials[name]) / UPPER_GAIN_DEG), default="")
 
 
 def _stride(found: Excitation) -> float:
@@ -124,17 +134,17 @@ def _depth(found: Excitation) -> float:
     return min(depth / ENOUGH, 1.0) if depth >= 1.0 else 0.0
 
 
-def _gain_over(chosen: Sequence[Excitation]) -> Callable[[Excitation], float]:
-    """Merit of a movement of trunk and arms beside those chosen already."""
+def _upper_over(chosen: Sequence[Excitation]) -> Callable[[Excitation], float]:
+    """Greatest excursion of trunk or arms, degrees, beyond that of the trials chosen already."""
 
-    def merit(found: Excitation) -> float:
-        gain = max(
-            (deg - max((one.upper_deg.get(name, 0.0) for one in chosen), default=0.0))
-            for name, deg in {"": 0.0, **found.upper_deg}.items()
+    def further(found: Excitation) -> float:
+        gains = (
+            deg - max((one.upper_deg.get(name, 0.0) for one in chosen), default=0.0)
+            for name, deg in found.upper_deg.items()
         )
-        return min(gain / 90.0, 1.0) if gain >= UPPER_GAIN_DEG else 0.0
+        return max(gains, default=0.0)
 
-    return merit
+    return further
 
 
 def _evidence(part: Part, found: Excitation) -> str:
@@ -150,6 +160,8 @@ def _evidence(part: Part, found: Excitation) -> str:
 
 def _surplus(found: Excitation, taken: Collection[Part]) -> str:
     """Clause about a usable trial that is not needed."""
+    if found.kind == TrialKind.STATIC:
+        return "the person stands still"
     if found.kind in IMPACTS:
         return "impacts shake its markers, and calm trials show as much"
     if found.kind == TrialKind.WALK and Part.WALK in taken:

@@ -24,7 +24,8 @@ def parts(**trials):
 
 
 def test_each_movement_has_one_trial_and_every_other_one_its_reason():
-    found = choose({**KINDS, "walk2": WALK, "squat2": SQUAT}, {"film": "it cannot be read"})
+    stairs = replace(SQUAT, kind=TrialKind.UNKNOWN, hips_deg=45.0, knees_deg=60.0)
+    found = choose({**KINDS, "walk2": WALK, "squat2": SQUAT, "stairs": stairs}, {"film": "it cannot be read"})
     assert [(one.name, one.part) for one in found.chosen] == [
         ("walk", Part.WALK), ("squat", Part.DEEP), ("reach", Part.UPPER),
     ]  # fmt: skip
@@ -33,7 +34,8 @@ def test_each_movement_has_one_trial_and_every_other_one_its_reason():
         "jump": "impacts shake its markers, and calm trials show as much",
         "run": "impacts shake its markers, and calm trials show as much",
         "squat2": "another trial bends as deeply",
-        "still": "hips bend to 2° and knees to 2°; deep flexion takes 70° and 80°",
+        "stairs": "hips bend to 45° and knees to 60°; deep flexion takes 70° and 80°",
+        "still": "the person stands still",
         "walk2": "another walk shows as much",
     }
     assert [one.why for one in found.chosen] == [
@@ -59,12 +61,13 @@ def test_arms_count_by_what_they_add():
     lifted = replace(SQUAT, upper_deg={"right_upper_arm": 110.0})
     assert parts(squat=lifted, reach=REACH) == {"squat": Part.DEEP}
     assert parts(squat=SQUAT, reach=REACH) == {"squat": Part.DEEP, "reach": Part.UPPER}
+    assert parts(chair=SQUAT, squat=replace(lifted, coverage=0.95)) == {"squat": Part.DEEP}
 
 
-@pytest.mark.parametrize("better", [{"coverage": 0.9}, {"hips_deg": 100.0, "knees_deg": 95.0}])
+@pytest.mark.parametrize("better", [{"coverage": 1.0}, {"hips_deg": 100.0, "knees_deg": 105.0}])
 def test_the_trial_that_shows_more_is_taken_whatever_its_name(better):
     """The worse one has larger gaps, or bends less deeply."""
-    poor = replace(SQUAT, coverage=0.6, hips_deg=75.0, knees_deg=82.0)
+    poor = replace(SQUAT, coverage=0.8, hips_deg=75.0, knees_deg=82.0)
     assert parts(a=poor, b=replace(poor, **better)) == {"b": Part.DEEP}
 
 
