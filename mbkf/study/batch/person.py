@@ -104,24 +104,17 @@ def scaled(
         OSError: A file cannot be read.
     """
     mass_kg = PROVISIONAL_KG if person.mass_kg is None else person.mass_kg
-    scaling = partial(
-        scale,
-        mass_kg=mass_kg,
-        height_m=person.height_m,
-        protocol=person.protocol,
-        body=body,
-        settings=settings,
-    )
+    scaling = partial(scale, mass_kg=mass_kg, height_m=person.height_m, protocol=person.protocol, body=body)
     static, others, moving = _standing(person, read)
     if static is not None:
-        found = scale_from_session(static, () if person.static_only else others, scaling, progress)
+        found = scale_from_session(static, () if person.static_only else others, scaling, settings, progress)
         subject, captures = found.subject, found.captures
     elif moving and all(is_nameless(one) for one in moving):
         captures = moving[:1]
         subject = body_of_points(captures[0], mass_kg, person.height_m, person.protocol)
     else:
         captures = tuple(one for one in moving if not is_nameless(one))[:MOST_MOVING]
-        subject = scaling(None, captures, progress=progress)
+        subject = scaling(None, captures, settings=settings, progress=progress)
     if person.mass_kg is not None:
         return subject
     stated_kg = next((one.subject_mass_kg for one in captures if one.subject_mass_kg is not None), None)

@@ -64,6 +64,7 @@ def scale_from_session(
     static: SessionTrial,
     trials: Sequence[SessionTrial],
     scaling: Scaling,
+    settings: ScalingSettings | None = None,
     progress: StageCallback | None = None,
 ) -> SessionScaling:
     """Scales a person from a standing trial and the trials of the session that help.
@@ -73,21 +74,21 @@ def scale_from_session(
         trials: The session's other trials, each with a name of its own. They are looked at in rounds
             (:mod:`mbkf.study.scaling.rounds`) until a walk and a deep flexion are found.
         scaling: Scales the person from captures.
+        settings: Weights of the priors; of several trials fewer frames are taken than they say.
         progress: Called with the stage, items done and items in all.
 
     Raises:
         MbkfError: The standing trial cannot be read or scaled.
     """
-    standing = static.read()
-    looked_at = chosen_trials(standing, trials, scaling, progress)
+    standing, settings = static.read(), settings or ScalingSettings()
+    looked_at = chosen_trials(standing, trials, scaling, settings, progress)
     choice, subject = looked_at.choice, None
     captures = {name: looked_at.captures[name] for name in choice.names}
     if captures:
-        settings = ScalingSettings()
         count = min(settings.frames_per_trial, MOST_FRAMES // (1 + len(captures)))
-        settings = replace(settings, frames_per_trial=count)
+        fewer = replace(settings, frames_per_trial=count)
         try:
-            subject = scaling(standing, list(captures.values()), settings=settings, progress=progress)
+            subject = scaling(standing, list(captures.values()), settings=fewer, progress=progress)
             why = new_doubts(subject, looked_at.standing)
         except MbkfError as error:
             why = str(error)
@@ -95,7 +96,7 @@ def scale_from_session(
             why = f"together with standing it fits no likely body: {why}"
             choice = Choice((), {**choice.left_out, **dict.fromkeys(captures, why)})
             subject, captures = None, {}
-    subject = subject or scaling(standing, [], progress=progress)
+    subject = subject or scaling(standing, [], settings=settings, progress=progress)
     report = {**subject.report, **as_report(static.name, choice)}
     return SessionScaling(replace(subject, report=report), (standing, *captures.values()))
 
@@ -116,7 +117,11 @@ class LookedAt:
 
 
 def chosen_trials(
-    standing: Capture, trials: Sequence[SessionTrial], scaling: Scaling, progress: StageCallback | None = None
+    standing: Capture,
+    trials: Sequence[SessionTrial],
+    scaling: Scaling,
+    settings: ScalingSettings,
+    progress: StageCallback | None = None,
 ) -> LookedAt:
     """The trials of a session that help scaling.
 
@@ -124,13 +129,14 @@ def chosen_trials(
         standing: The standing trial.
         trials: The others.
         scaling: Scales the person from captures.
+        settings: Weights of the priors.
         progress: Called with the stage, items done and items in all.
     """
     captures: dict[str, Capture] = {}
     if not trials:
         return LookedAt(Choice())
     try:
-        quick = scaling(standing, [], settings=ScalingSettings(frames_per_trial=STANDING_FRAMES))
+        quick = scaling(standing, [], settings=replace(settings, frames_per_trial=STANDING_FRAMES))
         body = StandingBody(quick, checked_for_subject(standing, quick).markers)
     except MbkfError as error:
         why = f"it cannot be compared with standing ({error})"

@@ -6,6 +6,7 @@ from functools import partial
 import pytest
 
 from mbkf.errors import FileFormatError, NotConverged, NotObservable
+from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY
 from mbkf.study.scaling.session import (
@@ -19,17 +20,18 @@ from mbkf.trial.scale import scale
 from tests.bending import MASS_KG, arms_lifted, squat, stander, standing, walk
 
 STATIC = SessionTrial("static", standing)
+THESIS = ScalingSettings(thesis_factors=True)
 
 
 class Scaling:
     """Notes the captures and frames of each scaling, which answers with the standing person, or what it is told to."""
 
     def __init__(self, *answers):
-        self.calls, self.answers = [], list(answers)
+        self.calls, self.settings, self.answers = [], [], list(answers)
 
     def __call__(self, static, trials, settings=None, progress=None):
-        frames = 40 if settings is None else settings.frames_per_trial
-        self.calls.append((len(trials), frames))
+        self.calls.append((len(trials), settings.frames_per_trial))
+        self.settings.append(replace(settings, frames_per_trial=40))
         answer = self.answers.pop(0) if len(trials) and self.answers else stander()
         if isinstance(answer, Exception):
             raise answer
@@ -51,7 +53,7 @@ TRIALS = (
 
 def test_the_trials_that_help_are_scaled_together_with_standing():
     scaling, stages = Scaling(), []
-    found = scale_from_session(STATIC, TRIALS, scaling, lambda *stage: stages.append(stage))
+    found = scale_from_session(STATIC, TRIALS, scaling, THESIS, lambda *stage: stages.append(stage))
     report = found.subject.report
     assert [(one["trial"], one["part"]) for one in report[SCALED_FROM_KEY]] == [
         ("static", "standing"), ("walk1", "walk"), ("squat", "deep flexion"), ("arms", "trunk and arms"),
@@ -60,6 +62,7 @@ def test_the_trials_that_help_are_scaled_together_with_standing():
         "is no capture" in report[LEFT_OUT_KEY]["film"] and "another person" in report[LEFT_OUT_KEY]["other"]
     )
     assert scaling.calls == [(0, STANDING_FRAMES), (3, MOST_FRAMES // 4)] and len(found.captures) == 4
+    assert set(scaling.settings) == {THESIS}
     assert stages[0] == ("Choosing trials", 0, 5) and stages[-1] == ("Choosing trials", 5, 5)
 
 
