@@ -6,13 +6,16 @@ from functools import partial
 import pytest
 
 from mbkf.errors import FileFormatError, NotConverged, NotObservable
+from mbkf.io.capture import read_capture
 from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.verdict import DOUBTS_KEY
+from mbkf.study.scaling.choice import Part
 from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY
 from mbkf.study.scaling.session import (
     MOST_FRAMES,
     STANDING_FRAMES,
     SessionTrial,
+    chosen_trials,
     new_doubts,
     scale_from_session,
 )
@@ -109,3 +112,16 @@ def test_a_standing_trial_that_cannot_be_scaled_is_an_error():
 def test_real_scaling_takes_them():
     found = scale_from_session(STATIC, TRIALS[:3], partial(scale, mass_kg=MASS_KG)).subject
     assert found.report["frames"] == 3 * (MOST_FRAMES // 3) and found.report["marker_rms_mm"] < 2.0
+
+
+@pytest.mark.parametrize("person", ["adult", "child"])
+def test_of_persons_of_exact_truth_walk_and_squat_are_chosen(person, real_data):
+    """The run has impacts; a walk of somebody else with the adult's markers is refused."""
+    folder = real_data / "foreign_truth" / person
+    files = {name: folder / name / "trial.trc" for name in ("walk", "squat", "run")}
+    files["other"] = real_data / "rajagopal_walk_run" / "motion_capture_walk.trc"
+    trials = [SessionTrial(name, partial(read_capture, file)) for name, file in files.items()]
+    static = read_capture(folder / "static.trc")
+    found = chosen_trials(static, trials, partial(scale, mass_kg=MASS_KG), ScalingSettings()).choice
+    assert [(one.name, one.part) for one in found.chosen] == [("walk", Part.WALK), ("squat", Part.DEEP)]
+    assert list(found.left_out) == ["other", "run"] and found.complete
