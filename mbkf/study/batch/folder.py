@@ -220,7 +220,7 @@ def _person(
     person = Person(
         *person_and_session(root, place),
         statics,
-        scaling_candidates(statics, moving),
+        scaling_candidates(moving),
         notes.mass_kg,
         notes.height_m,
         notes.protocol,

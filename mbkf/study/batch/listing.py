@@ -89,7 +89,7 @@ class Listing:
         """
         trials = []
         persons = {
-            key: replace(one, moving=scaling_candidates(one.statics, tuple(dict.fromkeys(one.moving))))
+            key: replace(one, moving=scaling_candidates(tuple(dict.fromkeys(one.moving))))
             for key, one in self._persons.items()
         }
         for key, trial in self._trials:

@@ -19,10 +19,10 @@ from mbkf.io.written import SETTINGS
 from mbkf.scaling.records import ScalingSettings
 from mbkf.study.batch.inputs import fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import body_of_points, is_nameless, named
-from mbkf.study.batch.plan import MOST_MOVING, Files, Person, trial_names
+from mbkf.study.batch.plan import Files, Person, trial_names
 from mbkf.study.batch.progress import ignored
 from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY, used_trials
-from mbkf.study.scaling.session import SessionTrial, scale_from_session
+from mbkf.study.scaling.session import MOST_MOVING, SessionTrial, scale_from_moving, scale_from_session
 from mbkf.trial.protocol.standing import stands_still
 from mbkf.trial.scale import scale
 from mbkf.trial.weighing import PROVISIONAL_KG, weighed
@@ -86,9 +86,10 @@ def scaled(
     settings: ScalingSettings | None = None,
     read: Callable[..., Capture] = read_capture,
 ) -> Subject:
-    """The person's body: by standing and the trials of the session that help, else by the first moving trials.
+    """The person's body: by standing and the trials of the session that help.
 
-    The standing trial is the first one by its name, or else one that stands still. Captures whose points have no names
+    The standing trial is the first one by its name, or else one that stands still; without one, moving trials are taken
+    that help. Captures whose points have no names
     are left out beside one that has names; without such a one, the body is found with the names of the first moving
     one.
 
@@ -113,8 +114,8 @@ def scaled(
         captures = moving[:1]
         subject = body_of_points(captures[0], mass_kg, person.height_m, person.protocol)
     else:
-        captures = tuple(one for one in moving if not is_nameless(one))[:MOST_MOVING]
-        subject = scaling(None, captures, settings=settings, progress=progress)
+        found = scale_from_moving(others, scaling, settings, progress)
+        subject, captures = found.subject, found.captures
     if person.mass_kg is not None:
         return subject
     stated_kg = next((one.subject_mass_kg for one in captures if one.subject_mass_kg is not None), None)
@@ -153,7 +154,7 @@ def captures_used(
 def _standing(
     person: Person, read: Callable[..., Capture]
 ) -> tuple[SessionTrial | None, tuple[SessionTrial, ...], tuple[Capture, ...]]:
-    """The standing trial with the session's others; without one, None and the captures of the moving trials."""
+    """The standing trial, the session's others, and without a standing one the captures of the moving ones."""
     names = {files.path.as_posix(): name for name, files in trial_names(person.moving).items()}
     if person.statics:
         path = person.statics[0]
@@ -162,14 +163,15 @@ def _standing(
             others = [SessionTrial(name, partial(read, one)) for one, name in names.items()]
             return SessionTrial(path.stem, lambda: static), tuple(others), ()
     found = _readable(person.moving, read)
-    still = next((one for one in found if not is_nameless(one) and stands_still(one.markers)), None)
-    if still is None:
-        return None, (), found
     trials = [
-        SessionTrial(names.get(Path(one.path).as_posix(), one.path), partial(_given, one)) for one in found
+        SessionTrial(names.get(Path(one.path).as_posix(), one.path), partial(_given, one))
+        for one in found
+        if not is_nameless(one)
     ]
-    standing = found.index(still)
-    return trials[standing], (*trials[:standing], *trials[standing + 1 :]), ()
+    still = next((n for n, one in enumerate(trials) if stands_still(one.read().markers)), None)
+    if still is None:
+        return None, tuple(trials), found
+    return trials[still], (*trials[:still], *trials[still + 1 :]), ()
 
 
 def _given(capture: Capture) -> Capture:

@@ -18,13 +18,6 @@ FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f]')
 """Characters that some system refuses in a folder's name."""
 
 
-MOST_MOVING = 3
-"""Number of trials used for scaling without a standing trial, or for weighing where no trial used has plates."""
-
-MOST_LOOKED_AT = 12
-"""Number of trials searched for a standing one where names do not identify it."""
-
-
 class Files(NamedTuple):
     """A capture, and the ground reactions beside it (None: those of the capture itself)."""
 
@@ -32,16 +25,12 @@ class Files(NamedTuple):
     forces: Path | None = None
 
 
-def scaling_candidates(statics: Sequence[Path], moving: Sequence[Files]) -> tuple[Files, ...]:
-    """The trials that may be read to scale a person.
+def scaling_candidates(moving: Sequence[Files]) -> tuple[Files, ...]:
+    """The trials that may be read to scale a person, in an order that follows from their names.
 
     Args:
-        statics: Standing trials. Beside them the order of the others follows from their names; without any, the first
-            ones are taken.
-        moving: All other trials.
+        moving: All trials but those known as standing ones.
     """
-    if not statics:
-        return tuple(moving[:MOST_LOOKED_AT])
     names = trial_names(moving)
     return tuple(names[name] for one in rounds(tuple(names)) for name in one)
 

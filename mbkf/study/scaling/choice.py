@@ -35,6 +35,7 @@ class Part(StrEnum):
     WALK = "walk"
     DEEP = "deep flexion"
     UPPER = "trunk and arms"
+    FIRST = "movement"
 
 
 @dataclass(frozen=True)

@@ -19,12 +19,12 @@ def as_report(static: str, choice: Choice) -> dict[str, object]:
     """Plain data for a subject's report.
 
     Args:
-        static: Name of the standing trial.
+        static: Name of the standing trial; empty without one.
         choice: The others.
     """
-    standing = {"trial": static, "part": STANDING, "why": ""}
+    standing = [{"trial": static, "part": STANDING, "why": ""}] if static else []
     chosen = [{"trial": one.name, "part": one.part.value, "why": one.why} for one in choice.chosen]
-    found: dict[str, object] = {SCALED_FROM_KEY: [standing, *chosen]}
+    found: dict[str, object] = {SCALED_FROM_KEY: [*standing, *chosen]}
     if choice.left_out:
         found[LEFT_OUT_KEY] = dict(choice.left_out)
     return found

@@ -8,6 +8,7 @@ The standing trial is scaled first on a few frames. Its body judges the other tr
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from mbkf.conventions import StageCallback
@@ -17,18 +18,21 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.verdict import DOUBTS_KEY
-from mbkf.study.scaling.choice import Choice, choose
+from mbkf.study.scaling.choice import Choice, Chosen, Part, choose
 from mbkf.study.scaling.excitation import Excitation, StandingBody
 from mbkf.study.scaling.report import as_report
 from mbkf.study.scaling.rounds import rounds
 from mbkf.trial.axes.captures import checked_for_subject
 
-STANDING_FRAMES = 5
-"""Frames of the standing trial for the body that judges the others: its factors differ by 0.01 at most from those of
-all frames."""
+STANDING_FRAMES, MOVING_FRAMES = 5, 12
+"""Frames of a standing or moving trial for the body that judges the others: of a standing one factors differ by 0.01 at
+most from those of all frames."""
 
 MOST_FRAMES = 60
 """Frames of all trials together, which bounds the time; with twice as many, a person's factors differed by 0.002."""
+
+MOST_MOVING = 3
+"""Number of trials that are taken where there is no standing one, and no other shows a movement that helps."""
 
 Scaling = Callable[..., Subject]
 """:func:`mbkf.trial.scale.scale` with all arguments but captures, ``settings`` and ``progress``."""
@@ -85,8 +89,7 @@ def scale_from_session(
     choice, subject = looked_at.choice, None
     captures = {name: looked_at.captures[name] for name in choice.names}
     if captures:
-        count = min(settings.frames_per_trial, MOST_FRAMES // (1 + len(captures)))
-        fewer = replace(settings, frames_per_trial=count)
+        fewer = _fewer_frames(settings, 1 + len(captures))
         try:
             subject = scaling(standing, list(captures.values()), settings=fewer, progress=progress)
             why = new_doubts(subject, looked_at.standing)
@@ -101,6 +104,58 @@ def scale_from_session(
     return SessionScaling(replace(subject, report=report), (standing, *captures.values()))
 
 
+def scale_from_moving(
+    trials: Sequence[SessionTrial],
+    scaling: Scaling,
+    settings: ScalingSettings | None = None,
+    progress: StageCallback | None = None,
+) -> SessionScaling:
+    """Scales a person without a standing trial from the trials that help, or else from the first ones.
+
+    The first trial that gives a body takes the place of standing: its body judges the others.
+
+    Args:
+        trials: The session's trials, each with a name of its own.
+        scaling: Scales the person from captures.
+        settings: Weights of the priors; of several trials fewer frames are taken than they say.
+        progress: Called with the stage, items done and items in all.
+
+    Raises:
+        MbkfError: A trial cannot be read, or no trial gives a body.
+    """
+    settings = settings or ScalingSettings()
+    by_name = {trial.name: trial for trial in trials}
+    in_order = [name for one in rounds(tuple(by_name)) for name in one]
+    looked_at = LookedAt(Choice())
+    for name in in_order:
+        try:
+            quick = scaling(
+                None, [by_name[name].read()], settings=replace(settings, frames_per_trial=MOVING_FRAMES)
+            )
+        except MbkfError:
+            continue
+        looked_at = _compared(by_name[name].read(), quick, trials, progress)
+        break
+    choice = looked_at.choice
+    captures, subject = [looked_at.captures[name] for name in choice.names], None
+    if captures:
+        with suppress(MbkfError):
+            subject = scaling(
+                None, captures, settings=_fewer_frames(settings, len(captures)), progress=progress
+            )
+    if subject is None:
+        choice = Choice(tuple(Chosen(name, Part.FIRST, "") for name in in_order[:MOST_MOVING]))
+        captures = [by_name[name].read() for name in choice.names]
+        subject = scaling(None, captures, settings=settings, progress=progress)
+    return SessionScaling(
+        replace(subject, report={**subject.report, **as_report("", choice)}), tuple(captures)
+    )
+
+
+def _fewer_frames(settings: ScalingSettings, trials: int) -> ScalingSettings:
+    return replace(settings, frames_per_trial=min(settings.frames_per_trial, MOST_FRAMES // trials))
+
+
 @dataclass(frozen=True)
 class LookedAt:
     """Trials of a session that were looked at.
@@ -108,7 +163,7 @@ class LookedAt:
     Attributes:
         choice: Those that help, and the reasons of the others.
         captures: Captures by name, without plates.
-        standing: The person scaled from a few frames of standing; None where no trial was compared with it.
+        standing: The person scaled from a few frames of the trial that the others were compared with; None without one.
     """
 
     choice: Choice
@@ -132,17 +187,27 @@ def chosen_trials(
         settings: Weights of the priors.
         progress: Called with the stage, items done and items in all.
     """
-    captures: dict[str, Capture] = {}
     if not trials:
         return LookedAt(Choice())
     try:
         quick = scaling(standing, [], settings=replace(settings, frames_per_trial=STANDING_FRAMES))
-        body = StandingBody(quick, checked_for_subject(standing, quick).markers)
+        return _compared(standing, quick, trials, progress)
     except MbkfError as error:
         why = f"it cannot be compared with standing ({error})"
         return LookedAt(Choice((), {trial.name: why for trial in trials}))
+
+
+def _compared(
+    reference: Capture, quick: Subject, trials: Sequence[SessionTrial], progress: StageCallback | None
+) -> LookedAt:
+    """The trials that help, compared with a trial and the body that a few frames of it give.
+
+    Raises:
+        MbkfError: The axes of the trial contradict the body, or it shows too few markers.
+    """
+    body = StandingBody(quick, checked_for_subject(reference, quick).markers)
     report = progress or (lambda *_: None)
-    looked, refused = dict[str, Excitation](), dict[str, str]()
+    captures, looked, refused = dict[str, Capture](), dict[str, Excitation](), dict[str, str]()
     choice = Choice()
     by_name = {trial.name: trial for trial in trials}
     in_rounds = rounds(tuple(by_name))

@@ -6,7 +6,8 @@ import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.study.batch.listing import Listing
-from mbkf.study.batch.plan import MOST_LOOKED_AT, Files
+from mbkf.study.batch.plan import Files
+from mbkf.study.scaling.rounds import MOST_TRIALS
 
 A, B = ("A", ""), ("B", "monday")
 
@@ -50,10 +51,10 @@ def test_a_contradiction_costs_the_person_and_names_both_lines(listing):
 
 def test_lost_trials_keep_their_order_and_are_no_part_of_scaling(listing):
     listing.lose(A, "x", Path("x.c3d"), FileFormatError("list.csv", "no", 3))
-    add(listing, A, *(f"{n}.c3d" for n in range(MOST_LOOKED_AT + 1)))
+    add(listing, A, *(f"{n}.c3d" for n in range(MOST_TRIALS + 1)))
     lost, *kept = listing.plan().trials
     assert (lost.name, lost.fault) == ("x", "list.csv, line 3: no")
-    assert len(kept) == MOST_LOOKED_AT + 1 and len(kept[0].person.moving) == MOST_LOOKED_AT
+    assert len(kept) == MOST_TRIALS + 1 and len(kept[0].person.moving) == MOST_TRIALS
 
 
 def test_a_lost_person_loses_all_trials(listing):

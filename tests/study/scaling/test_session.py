@@ -13,10 +13,12 @@ from mbkf.study.scaling.choice import Part
 from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY
 from mbkf.study.scaling.session import (
     MOST_FRAMES,
+    MOVING_FRAMES,
     STANDING_FRAMES,
     SessionTrial,
     chosen_trials,
     new_doubts,
+    scale_from_moving,
     scale_from_session,
 )
 from mbkf.trial.scale import scale
@@ -112,6 +114,30 @@ def test_a_standing_trial_that_cannot_be_scaled_is_an_error():
 def test_real_scaling_takes_them():
     found = scale_from_session(STATIC, TRIALS[:3], partial(scale, mass_kg=MASS_KG)).subject
     assert found.report["frames"] == 3 * (MOST_FRAMES // 3) and found.report["marker_rms_mm"] < 2.0
+
+
+def test_without_a_standing_trial_the_first_one_that_gives_a_body_judges_the_others():
+    scaling = Scaling()
+    found = scale_from_moving(TRIALS[:4], scaling, THESIS)
+    report = found.subject.report
+    assert [one["part"] for one in report[SCALED_FROM_KEY]] == ["walk", "deep flexion", "trunk and arms"]
+    assert list(report[LEFT_OUT_KEY]) == ["other"] and set(scaling.settings) == {THESIS}
+    assert scaling.calls == [(1, MOVING_FRAMES), (3, MOST_FRAMES // 3)] and len(found.captures) == 3
+    assert report == scale_from_moving(TRIALS[3::-1], Scaling(), THESIS).subject.report
+
+
+def test_where_no_movement_helps_or_no_body_fits_the_first_moving_trials_are_taken():
+    still = [SessionTrial(f"trial{k}", standing) for k in range(5)]
+    found = scale_from_moving(still, Scaling())
+    assert [(one["trial"], one["part"]) for one in found.subject.report[SCALED_FROM_KEY]] == [
+        ("trial0", "movement"), ("trial1", "movement"), ("trial2", "movement"),
+    ]  # fmt: skip
+    scaling = Scaling(stander(), NotConverged("no fit"))
+    found = scale_from_moving(TRIALS[:1], scaling)
+    assert scaling.calls == [(1, MOVING_FRAMES), (1, 40), (1, 40)]
+    assert [one["part"] for one in found.subject.report[SCALED_FROM_KEY]] == ["movement"]
+    with pytest.raises(NotConverged, match="no fit"):
+        scale_from_moving(TRIALS[:1], Scaling(NotConverged("no"), NotConverged("no fit")))
 
 
 @pytest.mark.parametrize("person", ["adult", "child"])
