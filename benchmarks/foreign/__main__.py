@@ -13,10 +13,13 @@ from rich.console import Console
 from benchmarks.__main__ import DATA_VARIABLE
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.foreign import SESSION
+from benchmarks.foreign.calibration import write_page
 from benchmarks.foreign.errors import Judged
 from benchmarks.foreign.followed import FILTERS, SCALINGS, SMOOTHED, Job, followed, jobs
 from benchmarks.foreign.making import make
+from benchmarks.foreign.making.skin import MODELS
 from benchmarks.foreign.medians import medians, write_baseline
+from benchmarks.foreign.own_body import OwnBody, judged_own
 from benchmarks.foreign.score import score
 from benchmarks.foreign.sets import own_sets, shared_set
 from benchmarks.foreign.tables import group_table, offset_table, score_table
@@ -24,6 +27,9 @@ from benchmarks.foreign.truth import FOLDER, foreigners
 from mbkf.errors import InvalidInput, MbkfError
 
 WIDTH = 150
+
+OWN_SEEDS = range(40, 46)
+"""Synthetic persons of the calibration page; others than those that settings were chosen on."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -41,6 +47,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             make(_data(args), args.make, args.seed, args.persons)
         elif args.update_baseline is not None:
             _update(args)
+        elif args.page is not None:
+            _write_page(args)
         else:
             _show(args)
     except (MbkfError, OSError) as error:
@@ -72,6 +80,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar="DIR",
         help="write the medians of the shared persons and of those made in this folder as the new baseline",
     )
+    parser.add_argument(
+        "--page", type=Path, metavar="DIR", help="write the calibration page here, with the persons of --made"
+    )
     parser.add_argument("--scaling", nargs="+", default=list(SCALINGS), choices=list(SCALINGS))
     parser.add_argument("--filter", nargs="+", default=[SMOOTHED], choices=list(FILTERS))
     return parser
@@ -87,6 +98,18 @@ def _update(args: argparse.Namespace) -> None:
     sets = [shared_set(_data(args)), *own_sets(args.update_baseline)]
     with in_parallel() as mapper:
         write_baseline({f"{one.name}, {SESSION}": medians(one.found(SESSION, mapper)) for one in sets})
+
+
+def _write_page(args: argparse.Namespace) -> None:
+    if args.made is None:
+        raise InvalidInput("the page needs persons of our own; make them with --make DIR and give --made DIR")
+    with in_parallel() as mapper:
+        sets = {"shared adult, child": shared_set(_data(args)).found(SESSION, mapper)}
+        for model, one in zip(MODELS, [held for held in own_sets(args.made) if held.shown], strict=True):
+            sets[f"own, {model} skin"] = one.found(SESSION, mapper)
+        own = mapper(judged_own, [OwnBody(seed) for seed in OWN_SEEDS])
+        sets["made from our body"] = [one for held in own for one in held]
+    write_page(args.page, Path(__file__).parent, sets)
 
 
 def _show(args: argparse.Namespace) -> None:

@@ -11,7 +11,6 @@ import numpy as np
 from benchmarks.checks import Check
 from benchmarks.foreign.errors import Judged, Series
 from benchmarks.references import rms
-from mbkf.io.atomic import replacing_text
 
 FILE = Path(__file__).with_name("baseline.toml")
 
@@ -66,8 +65,7 @@ def write_baseline(held: Mapping[str, Mapping[str, float]], path: Path = FILE) -
     ]
     for name, values in held.items():
         lines += [f'["{name}"]', *(f"{key} = {value:.4f}" for key, value in values.items()), ""]
-    with replacing_text(path) as file:
-        file.write("\n".join(lines))
+    path.write_text("\n".join(lines), encoding="utf-8")
 
 
 def median_rows(

@@ -31,6 +31,7 @@ def test_baseline_is_read_as_written(tmp_path: Path) -> None:
     path = tmp_path / "baseline.toml"
     assert read_baseline(path) == {}
     held = {"adult and child, session": medians(found())}
+    write_baseline({}, path)
     write_baseline(held, path)
     assert read_baseline(path) == held
 
