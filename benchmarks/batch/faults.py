@@ -140,4 +140,6 @@ def _damage(person: Path) -> None:
     cut.write_bytes(cut.read_bytes()[: cut.stat().st_size // 3])
     bare = read_capture(person / f"{BARE}.c3d")
     unseen = replace(bare.markers, positions_m=np.full(bare.markers.positions_m.shape, np.nan))
-    write_c3d(replace(bare, markers=unseen), person / f"{BARE}.c3d")
+    written = person / "unseen.c3d"
+    write_c3d(replace(bare, markers=unseen), written)
+    written.replace(person / f"{BARE}.c3d")  # the library never writes over a file that it has read

@@ -1,9 +1,7 @@
 """Ten thousand trials from a list, each a pause instead of a reconstruction: what handing them out costs.
 
-Run as a file of its own, it is the process that hands out: it prints its time per trial beyond the pauses, ms, and the
-most memory that it had, MB.
-
-    python -m benchmarks.batch.many FOLDER TRIALS
+``main`` runs in a process of its own, which hands out: it prints its time per trial beyond the pauses, ms, and the most
+memory that it had, MB.
 """
 
 from __future__ import annotations
@@ -32,6 +30,10 @@ OVERHEAD_MS, MEMORY_MB = 5.0, 500.0
 PERSONS = 200
 KEYS = 150
 """Numbers in a trial's summary: as many as a walk's has."""
+
+PROGRAM = """import sys; from pathlib import Path; from benchmarks.batch.many import main
+main(Path(sys.argv[1]), int(sys.argv[2]))"""
+"""A process of its own; workers know the tasks by this module's name, not by that of the program."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,7 @@ class Pausing:
 def many_rows(context: Context) -> list[Check]:
     """Time beyond the pauses, and memory."""
     count = QUICK_TRIALS if context.quick else TRIALS
-    words = [sys.executable, "-m", "benchmarks.batch.many", str(context.out / "many"), str(count)]
+    words = [sys.executable, "-c", PROGRAM, str(context.out / "many"), str(count)]
     found = subprocess.run(words, capture_output=True, text=True, check=False)
     if found.returncode:
         raise InvalidInput(f"the batch of {count} trials failed: {found.stderr.strip()[-300:]}")
@@ -120,7 +122,3 @@ def main(folder: Path, count: int) -> None:
         workers.close()
     assert table["status"].to_pylist() == ["done"] * count
     print(1e3 * (seconds / count - PAUSE_S / WORKERS), peak_memory_mb())
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]), int(sys.argv[2]))
