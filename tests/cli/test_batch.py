@@ -1,5 +1,7 @@
 """`mbkf batch` tells what failed, and by its exit code whether anything did."""
 
+import json
+
 import pytest
 
 from mbkf.cli.batch import shard_of
@@ -18,7 +20,9 @@ def test_a_study_is_done_and_failures_are_told(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("mbkf.study.batch.run.LocalWorkers", ThisProcess)
     source, out = study(tmp_path / "study"), tmp_path / "out"
     words = (source, "--out", out, "--workers", "1", "--filter", "kinematic", "--causal", "--spreads", "none")
+    words = (*words, "--static-only")
     assert run(*words) == 0
+    assert json.loads((out / "P1" / "subject.json").read_text())["settings"]["static_only"] is True
     assert capsys.readouterr().out.splitlines()[-1] == f"{out}: 1 trials done, 0 unchanged, 0 failed"
     assert (out / "P1" / "walk1" / "summary.json").is_file() and (out / "summary.csv").is_file()
     (source / "P1" / "bad.c3d").write_bytes(b"nothing")
