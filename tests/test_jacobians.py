@@ -68,6 +68,8 @@ ELSEWHERE = {
     "filters.record.Track.nis_readings_by_kind": "trial/results/test_innovations.py nis_readings_by_kind",
     "model.inertial_regressor.InertialRegressor.own": "model/test_inertial_regressor.py",
     "scaling.problem.ScalingProblem.places_by_factors": "scaling/test_covariance.py places_by_unknowns",
+    "model.joint_centres.centre_levers": "model/test_joint_centres.py",
+    "sensors.scaled_markers.ScaledMarkers.by_centres": "scaling/test_problem.py by_centres",
     "sensors.flexed_skin.FlexedSkin.linearised": "sensors/test_flexed_skin.py",
     "scaling.problem.ScalingProblem.places_by_unknowns": "scaling/test_covariance.py",
     "sensors.gating.ObservedDofs.carried_by": "sensors/test_gating.py",

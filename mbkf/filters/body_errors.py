@@ -39,8 +39,11 @@ LOOK_S = 0.02
 TURN_S = 1e-4
 """Step of the difference quotient by time, s."""
 
-FACTOR_STEP = 1e-4
-"""Step of the difference quotients by scale factors."""
+SIZE_STEP = 1e-4
+"""Step of the difference quotients by scale factors and joint centres, the latter in m."""
+
+KEPT_OF_SIZES = 0.98
+"""Share of the variance of factors and joint centres whose own effect on torques is kept."""
 
 POSTURES, POSTURE_RAD = 12, 0.4
 """Errors by the body are compared in so many postures, joints turned from neutral by such angles (1 sd)."""
@@ -122,7 +125,8 @@ class BodyErrors:
         Args:
             sensor: The markers on the body.
             noise_m: (M,) standard deviation that the filter weighs each marker with, m.
-            root: (K + 3 M (1 + D), r) L of the covariance of scale factors, marker places and displacements by flexion.
+            root: (K + E + 3 M (1 + D), r) L of the covariance of scale factors, displacements of joint centres, marker
+                places and displacements by flexion.
             skin: Shares of these displacements; None where no skin is known (D = 0).
         """
         model = sensor.model
@@ -132,20 +136,23 @@ class BodyErrors:
         posture = np.asarray(model.posture_sd)
         self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
         self._balance, self._origins = NewtonEuler(model), OriginLevers(model)
-        self._varied = [NewtonEuler(one) for one in _varied(model)]
         self._take(root)
         self._take(root @ self._directions())
+        directions, self._along = _principal(self._sizes)
+        self._varied = [NewtonEuler(one) for one in _varied(model, directions)]
 
     def _take(self, root: Array) -> None:
         count, markers = len(self._model.scale), len(self.sensor.joint_ids)
-        moved = root[count:].reshape(-1, markers, 3, root.shape[1])
-        self._factors, self._places, self._slides = root[:count], moved[0], moved[1:]
-        self._levers = self._origins.levers @ self._factors
+        sizes = count + self._origins.centre_levers.shape[2]
+        moved = root[sizes:].reshape(-1, markers, 3, root.shape[1])
+        self._sizes, self._places, self._slides = root[:sizes], moved[0], moved[1:]
+        levers = np.concatenate([self._origins.levers, self._origins.centre_levers], axis=2)
+        self._levers = levers @ self._sizes
 
     def _directions(self) -> Array:
         """(r, n) orthonormal directions of L's columns in which nearly all of every dof's variance lies."""
         model, rng = self._model, np.random.default_rng(0)
-        rows = [self._factors]
+        rows = [self._sizes]
         for _ in range(POSTURES):
             moved = np.where(np.arange(model.nv) < ROOT, 0.0, POSTURE_RAD * rng.normal(size=model.nv))
             rows.append(self.pose_root(model.integrate(model.neutral(), moved)))
@@ -212,7 +219,7 @@ class BodyErrors:
         return BodyErrorRoots(here, velocity, torque + balance.by_wrench @ wrench, wrench)
 
     def _own_torques(self, q: Array, v: Array, a: Array, loads: Array, balance: JointTorques) -> Array:
-        """(nv, r) of the generalised forces by the factors themselves, at a motion that is known.
+        """(nv, r) of the generalised forces by factors and joint centres themselves, at a motion that is known.
 
         Args:
             q: (nq,) configuration.
@@ -221,8 +228,8 @@ class BodyErrors:
             loads: (12,) the feet's wrenches.
             balance: The equations at them.
         """
-        by_factor = np.array([one.tau(q, v, a, loads) - balance.tau for one in self._varied]).T / FACTOR_STEP
-        return np.asarray(by_factor @ self._factors)
+        by_size = np.array([one.tau(q, v, a, loads) - balance.tau for one in self._varied]).T / SIZE_STEP
+        return np.asarray(by_size @ self._along)
 
     def _unread(
         self, balance: JointTorques, residual: Array, loads: Array, contact: tuple[int, int] | None
@@ -246,8 +253,23 @@ class BodyErrors:
         return found
 
 
-def _varied(model: Body) -> Sequence[HumanModel]:
-    """The body with each of its scale factors a little larger."""
-    steps = FACTOR_STEP * np.eye(len(model.scale))
+def _principal(sizes: Array) -> tuple[Array, Array]:
+    """(n, K + E) directions of sizes in which nearly all of their variance lies, and the root (n, r) along them.
+
+    Args:
+        sizes: (K + E, r) root of their covariance.
+    """
+    directions, spreads, along = np.linalg.svd(sizes, full_matrices=False)
+    shares = np.cumsum(spreads**2) / max(float(np.sum(spreads**2)), np.finfo(float).tiny)
+    kept = 1 + int(np.searchsorted(shares, KEPT_OF_SIZES))
+    return directions.T[:kept], spreads[:kept, None] * along[:kept]
+
+
+def _varied(model: Body, directions: Array) -> Sequence[HumanModel]:
+    """The body with factors and joint centres a little further along each direction (n, K + E)."""
     inertia = model.inertia if isinstance(model, HumanModel) else None
-    return [HumanModel(model.description, model.scale + step, model.mass_kg, inertia) for step in steps]
+    count = len(model.scale)
+    return [
+        HumanModel(model.description, model.scale + one[:count], model.mass_kg, inertia, one[count:])
+        for one in SIZE_STEP * directions
+    ]

@@ -26,6 +26,7 @@ class CovarianceTable(TypedDict):
 
     factors: list[str]
     markers: list[str]
+    centres: list[str]
     flexions: int
     root: list[list[float]]
 
@@ -34,30 +35,43 @@ class CovarianceTable(TypedDict):
 class BodyCovariance:
     """Covariance Σ = L Lᵀ of scale factors, of places of markers in their segments, and of displacements by flexion.
 
-    There are K factors, M markers, and D flexions that displace a marker (:mod:`mbkf.sensors.flexed_skin`).
+    There are K factors, E displacements of joint centres (:mod:`mbkf.model.joint_centres`), M markers, and D flexions
+    that displace a marker (:mod:`mbkf.sensors.flexed_skin`), in this order.
 
     Attributes:
         factors: (K,) names of the scale factors.
         markers: (M,) names of the markers.
-        root: (s, s) L, lower triangular, s = K + 3 M (1 + D); rows of factors are pure numbers, the others m.
+        root: (s, s) L, lower triangular, s = K + E + 3 M (1 + D); rows of factors are pure numbers, the others m.
         flexions: D; 0 where scaling learnt nothing of the skin.
+        centres: (E,) names of the displacements of joint centres.
     """
 
     factors: tuple[str, ...]
     markers: tuple[str, ...]
     root: Array
     flexions: int = 0
+    centres: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Raises: ShapeError: the root does not have the size of the names' parameters."""
-        size = len(self.factors) + 3 * len(self.markers) * (1 + self.flexions)
+        size = self.sizes + 3 * len(self.markers) * (1 + self.flexions)
         object.__setattr__(self, "root", read_only(self.root))
         if self.root.shape != (size, size):
             raise ShapeError("root", f"({size}, {size})", self.root.shape)
 
+    @property
+    def sizes(self) -> int:
+        """K + E: number of rows before those of the markers."""
+        return len(self.factors) + len(self.centres)
+
     @classmethod
     def of(
-        cls, factors: tuple[str, ...], markers: tuple[str, ...], covariance: Array, flexions: int = 0
+        cls,
+        factors: tuple[str, ...],
+        markers: tuple[str, ...],
+        covariance: Array,
+        flexions: int = 0,
+        centres: tuple[str, ...] = (),
     ) -> BodyCovariance:
         """From Σ itself, which may be singular.
 
@@ -66,11 +80,12 @@ class BodyCovariance:
             markers: (M,) names of the markers.
             covariance: (s, s) Σ.
             flexions: D.
+            centres: (E,) names of the displacements of joint centres.
         """
         values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T))
         wide = vectors * np.sqrt(np.maximum(values, 0.0))
         lower = np.asarray(np.linalg.qr(wide.T, mode="r")).T
-        return cls(factors, markers, lower * np.where(np.diag(lower) < 0.0, -1.0, 1.0), flexions)
+        return cls(factors, markers, lower * np.where(np.diag(lower) < 0.0, -1.0, 1.0), flexions, centres)
 
     @property
     def covariance(self) -> Array:
@@ -78,7 +93,7 @@ class BodyCovariance:
         return self.root @ self.root.T
 
     def rows(self, markers: Sequence[str], unseen_sd_m: Mapping[str, float], skin: Array) -> Array:
-        """(K + 3 n (1 + D), r) a root of the covariance of factors, places of n markers and their displacements.
+        """(K + E + 3 n (1 + D), r) a root of the covariance of sizes, places of n markers and their displacements.
 
         Args:
             markers: (n,) their names.
@@ -86,7 +101,7 @@ class BodyCovariance:
             skin: (D, 3 n, 3 n) prior covariance of the displacements by each flexion, m², for markers whose own
                 displacements scaling did not learn.
         """
-        count, known = len(self.factors), {name: n for n, name in enumerate(self.markers)}
+        count, known = self.sizes, {name: n for n, name in enumerate(self.markers)}
         unseen = [name for name in markers if name not in known]
         places, width = 3 * len(markers), len(self.root)
         rows = np.zeros((count + places * (1 + len(skin)), width + 3 * len(unseen) + places * len(skin)))
@@ -112,7 +127,9 @@ class BodyCovariance:
         """The table of a subject file: names, and the lower triangle row by row."""
         rows = [[float(f"{x:.{DIGITS}g}") for x in row[: n + 1]] for n, row in enumerate(self.root)]
         names = (list(self.factors), list(self.markers))
-        return CovarianceTable(factors=names[0], markers=names[1], flexions=self.flexions, root=rows)
+        return CovarianceTable(
+            factors=names[0], markers=names[1], centres=list(self.centres), flexions=self.flexions, root=rows
+        )
 
 
 def read_covariance(read: Entries) -> BodyCovariance:
@@ -126,12 +143,13 @@ def read_covariance(read: Entries) -> BodyCovariance:
     root = np.zeros((len(rows), len(rows)))
     for n, row in enumerate(rows):
         root[n, : n + 1] = row
-    found = BodyCovariance(read.need(_FACTORS), read.need(_MARKERS), root, int(read.get(_FLEXIONS) or 0))
+    flexions = int(read.get(_FLEXIONS) or 0)
+    found = BodyCovariance(read.need(_FACTORS), read.need(_MARKERS), root, flexions, read.get(_CENTRES) or ())
     spreads = np.sqrt((root * root).sum(axis=1))
     if spreads.size and spreads.max() > MOST_SPREAD:
         k, names = (
             int(spreads.argmax()),
-            [*found.factors, *np.tile(np.repeat(found.markers, 3), 1 + found.flexions)],
+            [*found.factors, *found.centres, *np.tile(np.repeat(found.markers, 3), 1 + found.flexions)],
         )
         reason = f"the standard deviation of {names[k]} is {spreads[k]:.3g}, more than {MOST_SPREAD:g}"
         raise read.fault(reason, _ROOT.key)
@@ -152,6 +170,7 @@ def _triangle(value: object) -> list[list[float]] | None:
 
 _FACTORS = fields.texts("factors", "names of the scale factors", required=True)
 _MARKERS = fields.texts("markers", "names of the markers", required=True)
+_CENTRES = fields.texts("centres", "names of the displacements of joint centres")
 _FLEXIONS = fields.number("flexions", "number of flexions whose displacements are learnt", (0.0, 8.0))
 _ROOT = fields.Field(
     "root",
@@ -160,5 +179,5 @@ _ROOT = fields.Field(
     _triangle,
     True,
 )
-COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _FLEXIONS, _ROOT)
+COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _CENTRES, _FLEXIONS, _ROOT)
 """Entries of the covariance in a subject file."""

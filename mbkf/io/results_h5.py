@@ -101,11 +101,13 @@ def _write_covariance(file: h5py.File, known: BodyCovariance | None) -> None:
     places = [f"{marker}_{axis}" for marker in known.markers for axis in "xyz"]
     slides = [f"{place}_by_flexion_{d + 1}" for d in range(known.flexions) for place in places]
     for axis, labels in zip(
-        _COVARIANCE.axes, ((*known.factors, *places, *slides), numbered(len(known.root))), strict=True
+        _COVARIANCE.axes,
+        ((*known.factors, *known.centres, *places, *slides), numbered(len(known.root))),
+        strict=True,
     ):
         write_labels(file, AXES[axis].names, labels, AXES[axis].meaning)
     write_array(file, _COVARIANCE, known.root)
-    for name in ("factors", "markers", "flexions"):
+    for name in ("factors", "markers", "flexions", "centres"):
         file[_COVARIANCE.key].attrs[name] = json.dumps(getattr(known, name))
 
 
@@ -115,8 +117,9 @@ def _read_covariance(file: h5py.File) -> BodyCovariance | None:
     factors, markers = (
         tuple(json.loads(file[_COVARIANCE.key].attrs[name])) for name in ("factors", "markers")
     )
+    centres = tuple(json.loads(file[_COVARIANCE.key].attrs.get("centres", "[]")))
     flexions = int(json.loads(file[_COVARIANCE.key].attrs.get("flexions", "0")))
-    return BodyCovariance(factors, markers, array(file, _COVARIANCE.key, np.float64), flexions)
+    return BodyCovariance(factors, markers, array(file, _COVARIANCE.key, np.float64), flexions, centres)
 
 
 def _subject(table: dict[str, Any], covariance: BodyCovariance | None) -> Subject:

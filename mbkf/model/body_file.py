@@ -30,16 +30,13 @@ from mbkf.model.description import (
     Roles,
     Segment,
     SegmentShape,
-    SegmentSkin,
     Sole,
 )
 from mbkf.model.sides import mirrored
+from mbkf.model.spread_tables import joint_centres, segment_skin
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
-
-LARGEST_SKIN_M = 0.1
-"""Bound of the spread of skin in a body file, m."""
 
 REMARKS = ("source", "_printed_m", "_printed_kg_m2", "_correction")
 """Endings of keys that document the source of numbers."""
@@ -52,7 +49,7 @@ _ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title")
 KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
-        "landmark", "sole", "clinical_joint", "shape", "bearing", "skin",
+        "landmark", "sole", "clinical_joint", "shape", "bearing", "joint_centre", "skin",
     ),
     "segment": _SEGMENT_KEYS,
     "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
@@ -65,6 +62,7 @@ KNOWN = {
     "clinical_joint.translation": _ANGLE_KEYS,
     "shape": ("segment", "kind", "numbers", "to"),
     "bearing": ("name", "segment", "position_m", "radius_m", "lever_m"),
+    "joint_centre": ("segment", "sd_mm"),
     "skin": ("segment", "flexions", "common_mm", "own_mm"),
 }  # fmt: skip
 """Entries of a body's file."""
@@ -151,7 +149,8 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         clinical_joints=_clinical(table["clinical_joint"], segments, path),
         shapes=_shapes(table.get("shape", []), segments, path),
         bearings=_bearings(table.get("bearing", []), segments, path),
-        skin=_skin(table.get("skin", []), segments, path),
+        joint_centres=joint_centres(table.get("joint_centre", []), names, path),
+        skin=segment_skin(table.get("skin", []), names, path),
         text=kept,
     )
 
@@ -357,27 +356,4 @@ def _bearings(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path
         if other in names and other != segment:
             place = place * [1.0, -1.0, 1.0]
             found.setdefault(mirrored(name), Bearing(mirrored(name), other, read_only(place), *size))
-    return found
-
-
-def _skin(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path) -> dict[str, SegmentSkin]:
-    """Movement of the skin by segment; that of a right segment is mirrored to the left one, where that exists."""
-    names = {segment.name for segment in segments}
-    found: dict[str, SegmentSkin] = {}
-    for entry in entries:
-        segment = _known(entry["segment"], segments, f"{path}, skin")
-        where = f"{path}, skin of {segment}"
-        flexions = tuple(tuple(_known(joint, segments, where) for joint in one) for one in entry["flexions"])
-        sizes = (1e-3 * float(entry["common_mm"]), 1e-3 * float(entry["own_mm"]))
-        if not all(flexions) or not 0.0 < min(sizes) <= max(sizes) < LARGEST_SKIN_M:
-            raise FileFormatError(
-                path,
-                f"skin of {segment}: each flexion needs the names of its joints' distal segments; common_mm and own_mm "
-                f"are positive and less than {1e3 * LARGEST_SKIN_M:.0f}",
-            )
-        found[segment] = SegmentSkin(segment, flexions, *sizes)
-        other = mirrored(segment)
-        if other in names and other != segment:
-            turned = tuple(tuple(mirrored(joint) for joint in one) for one in flexions)
-            found.setdefault(other, SegmentSkin(other, turned, *sizes))
     return found

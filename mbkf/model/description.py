@@ -168,6 +168,19 @@ class SegmentSkin:
     own_m: float
 
 
+@dataclass(frozen=True)
+class JointCentre:
+    """Spread of a joint's centre about the place that the scale factors give.
+
+    Attributes:
+        segment: The segment after the joint.
+        sd_m: (3,) spread along the axes of the segment before it, m.
+    """
+
+    segment: str
+    sd_m: Array
+
+
 @dataclass(frozen=True, eq=False)
 class BodyDescription:
     """A reference body; equal to itself only, so that results for it can be cached.
@@ -184,6 +197,7 @@ class BodyDescription:
         clinical_joints: The clinical coordinates of every segment's joint, in the order of the segments.
         shapes: Shapes for drawing, by segment; segments without one are drawn as plain limbs.
         bearings: Parts that may bear load besides the feet, by name.
+        joint_centres: Joint centres that differ from the scale factors' by a spread.
         skin: Movement of the skin, by segment; that of other segments does not depend on the posture.
         text: The file it was read from, word for word; "" for the bodies that come with mbkf.
     """
@@ -199,6 +213,7 @@ class BodyDescription:
     clinical_joints: tuple[ClinicalJoint, ...]
     shapes: dict[str, SegmentShape]
     bearings: dict[str, Bearing]
+    joint_centres: tuple[JointCentre, ...]
     skin: dict[str, SegmentSkin]
     text: str = ""
 

@@ -17,7 +17,6 @@ from numpy.lib.stride_tricks import as_strided
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
-from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.subject import STANDING_KEY, Subject
 from mbkf.kernel.loading import library
@@ -41,6 +40,7 @@ class HumanModel(Body):
         scale: Array,
         mass_kg: float,
         inertia: Mapping[str, SegmentInertia] | None = None,
+        centres_m: Array | None = None,
     ) -> None:
         """Scales a reference body to one person.
 
@@ -50,6 +50,8 @@ class HumanModel(Body):
             mass_kg: Body mass.
             inertia: By segment, the person's own mass and centre of mass; the table's where there is none. The whole
                 body keeps its mass.
+            centres_m: (E,) displacements of joint centres from where the scale factors put them
+                (:mod:`mbkf.model.joint_centres`); 0 by default.
 
         Raises:
             ShapeError: The scale factors are not as many as the body has.
@@ -60,6 +62,9 @@ class HumanModel(Body):
         self.inertia, self._unit_kg = _own_inertia(description, inertia or {})
         self.roles: Roles = description.roles
         self.scale = read_only(scale)
+        displaced = np.zeros((len(description.joint_centres), 3)) if centres_m is None else centres_m
+        of_centres = [centre.segment for centre in description.joint_centres]
+        self._displaced = dict(zip(of_centres, np.reshape(displaced, (-1, 3)), strict=True))
         if self.scale.shape != (len(description.scale_factors),):
             raise ShapeError("scale", f"({len(description.scale_factors)},)", self.scale.shape)
         if not (np.isfinite(mass_kg) and mass_kg > 0):
@@ -153,6 +158,7 @@ class HumanModel(Body):
         if segment.parent != "world":
             parent_id = before[segment.parent].joint_id
             origin = self.axis_scale(self.description.segment(segment.parent)) * segment.origin_m
+            origin = origin + self._displaced.get(segment.name, 0.0)
         placement = pin.SE3(np.eye(3), origin)
         first_q, first_v = model.nq, model.nv
         turning = {"x": pin.JointModelRX, "y": pin.JointModelRY, "z": pin.JointModelRZ}
@@ -346,28 +352,6 @@ def scale_of(subject: Subject, body: BodyDescription) -> Array:
             "[scale_factors], or scale the person again"
         )
     return body.scale(factors)
-
-
-def covariance_of(subject: Subject, body: BodyDescription) -> BodyCovariance | None:
-    """The covariance that scaling left, of all of the body's factors: one that was part of another errs as that one.
-
-    Args:
-        subject: The person.
-        body: Its reference body.
-    """
-    known = subject.covariance
-    if known is None or known.factors == body.scale_factors:
-        return known
-    origin = [body.split_factors.get(name, name) for name in body.scale_factors]
-    wanted = [
-        name if name in known.factors else other
-        for name, other in zip(body.scale_factors, origin, strict=True)
-    ]
-    if not set(wanted) <= set(known.factors):
-        return known
-    rows = [known.factors.index(name) for name in wanted]
-    root = known.root[[*rows, *range(len(known.factors), len(known.root))]]
-    return BodyCovariance.of(body.scale_factors, known.markers, root @ root.T, known.flexions)
 
 
 def _frames_in(data: pin.Data) -> Array:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.joint_centres import centre_levers
 
 
 class OriginLevers:
@@ -15,6 +16,7 @@ class OriginLevers:
     Attributes:
         parents: (S,) joint in whose segment each of S joints lies.
         levers: (S, 3, K) derivative of its place in that segment by the scale factors.
+        centre_levers: (S, 3, E) the same by displacements of joint centres (:mod:`mbkf.model.joint_centres`).
     """
 
     def __init__(self, model: Body) -> None:
@@ -25,6 +27,7 @@ class OriginLevers:
             [model.joint(segment.parent).joint_id for segment in segments], dtype=int
         )
         self.levers = np.zeros((len(segments), 3, len(body.scale_factors)))
+        self.centre_levers = centre_levers(model, [segment.name for segment in segments])
         self._before = np.zeros((len(model.supports), len(segments)))
         for k, segment in enumerate(segments):
             parent = body.segment(str(segment.parent))

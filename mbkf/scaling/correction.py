@@ -20,8 +20,9 @@ from mbkf.errors import NotConverged
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.human import covariance_of, reference_body, scale_of
+from mbkf.model.human import reference_body, scale_of
 from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.model.subject_covariance import covariance_of
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.covariance import corrected_covariance
 from mbkf.scaling.evidence import learnt_prior
@@ -103,7 +104,7 @@ def _corrected(before: BodyCovariance, problem: ScalingProblem, state: ScalingSt
     covariance = KNOWN_SKIN**2 * slide_covariance(problem.body, problem.segments)
     if len(problem.prior.slides_m):
         problem = problem.with_prior(replace(problem.prior, slide_precision=np.linalg.inv(covariance[0])))
-    return corrected_covariance(before, problem, problem.linearise(state).schur_complement())
+    return corrected_covariance(before, problem, problem.information(state))
 
 
 def _moved(marker: SubjectMarker, found: dict[str, tuple[Array, Array, Array]]) -> SubjectMarker:

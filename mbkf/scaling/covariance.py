@@ -8,24 +8,41 @@ that of (k, p, c) follows linearly.
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mbkf.conventions import Array
 from mbkf.io.body_covariance import BodyCovariance
+from mbkf.model.joint_centres import centre_covariance, centre_names
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.sensors.flexed_skin import slide_covariance
 
 
 def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovariance:
-    """The covariance of (k, p, c).
+    """The covariance of (k, e, p, c), e the displacements of joint centres.
+
+    Scaling leaves e at 0. As consider parameters (S. F. Schmidt 1966) they put the other unknowns wrong by S e,
+    S = −J⁻¹ J_e.
 
     Args:
         problem: The problem that was solved.
-        information: (K + 3 M (1 + D), …) information on (k, δ, c) at the minimum, frames eliminated.
+        information: (K + E + 3 M (1 + D), …) J on (k, δ, c) and J_e at the minimum, as
+            :meth:`ScalingProblem.information` has them.
     """
+    count, centres = len(problem.body.scale_factors), centre_names(problem.body)
+    e = np.arange(count, count + len(centres))
+    found = np.delete(np.arange(len(information)), e)
     to_places = problem.places_by_unknowns()
-    covariance = to_places @ np.linalg.inv(information) @ to_places.T
+    covariance = np.zeros_like(information)
+    alone = np.linalg.inv(information[np.ix_(found, found)])
+    S = np.zeros((len(information), len(centres)))
+    S[e] = np.eye(len(centres))
+    S[found] = -to_places @ (alone @ information[np.ix_(found, e)])
+    covariance[np.ix_(found, found)] = to_places @ alone @ to_places.T
+    covariance += S @ centre_covariance(problem.body) @ S.T
     names = tuple(marker.name for marker in problem.markers)
-    return BodyCovariance.of(tuple(problem.body.scale_factors), names, covariance, problem.prior.flexions)
+    return BodyCovariance.of(
+        tuple(problem.body.scale_factors), names, covariance, problem.prior.flexions, centres
+    )
 
 
 def corrected_covariance(
@@ -43,12 +60,19 @@ def corrected_covariance(
         before: That of scaling.
         problem: The correction's problem, whose factors are fixed and whose offsets and displacements have the prior
             precision Π.
-        information: (K + 3 M (1 + D), …) information on (k, δ, c) at the minimum, frames eliminated.
+        information: (K + E + 3 M (1 + D), …) that on (k, e, δ, c) at the minimum
+            (:meth:`ScalingProblem.information`); e acts as k does.
     """
-    count, prior = len(problem.body.scale_factors), problem.prior
+    factors, prior = len(problem.body.scale_factors), problem.prior
+    count = before.sizes
     found_anew = slice(count, len(information))
-    precision = prior.precision
-    back = 2.0 * np.eye(len(information)) - problem.places_by_unknowns()
+    precision = block_diag(
+        prior.precision[:factors, :factors],
+        np.zeros((count - factors,) * 2),
+        prior.precision[factors:, factors:],
+    )
+    back = np.eye(len(information))
+    back[count:, :factors] = -problem.places_by_unknowns()[factors:, :factors]
     data = back.T @ (information - precision) @ back
     precision = precision[found_anew, found_anew]
     J = data[found_anew, found_anew] + precision
@@ -59,4 +83,4 @@ def corrected_covariance(
     moved = np.vstack([root[:count], gain @ root])
     covariance = moved @ moved.T
     covariance[found_anew, found_anew] += np.linalg.inv(J)
-    return BodyCovariance.of(before.factors, names, covariance, prior.flexions)
+    return BodyCovariance.of(before.factors, names, covariance, prior.flexions, before.centres)

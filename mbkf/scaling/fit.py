@@ -281,7 +281,7 @@ def _subject(
         height_m=height_m,
         report=_report(problem, solution, frames, dropped, settings),
         body_text=body.text,
-        covariance=body_covariance(problem, solution.equations.schur_complement()),
+        covariance=body_covariance(problem, problem.information(state)),
     )
 
 

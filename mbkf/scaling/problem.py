@@ -15,9 +15,10 @@ divided by its standard deviation:
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.model.description import BodyDescription
@@ -217,9 +218,30 @@ class ScalingProblem:
 
     def linearise(self, state: ScalingState) -> ArrowEquations:
         """Gauss–Newton equations; frames border only what they share."""
-        shown = self._shown(state)
+        return self._equations(state, self._shown(state), self._precision, self.prior.away(state))
+
+    def information(self, state: ScalingState) -> Array:
+        """(K + E + 3 M (1 + D), …) information on factors, joint centres, offsets and displacements, frames eliminated.
+
+        That on the centres is the data's alone, without a prior.
+        """
+        count, shown = len(self.body.scale_factors), self._shown(state)
+        shown = replace(shown, by_factors=np.concatenate([shown.by_factors, self._by_centres(state)], axis=3))
+        centres = shown.by_factors.shape[3] - count
+        precision = block_diag(
+            self._precision[:count, :count], np.zeros((centres, centres)), self._precision[count:, count:]
+        )
+        away = np.insert(self.prior.away(state), [count] * centres, 0.0)
+        return self._equations(state, shown, precision, away).schur_complement()
+
+    def _by_centres(self, state: ScalingState) -> Array:
+        """(N, M, 3, E) whitened derivatives of the markers by displacements of joint centres."""
+        return self._worn.by_centres(state.poses) * self._whiten()[..., None]
+
+    def _equations(self, state: ScalingState, shown: _Shown, precision: Array, away: Array) -> ArrowEquations:
+        """Gauss–Newton equations of frames and of unknowns with a prior's precision, away from its mean."""
         frames, frame_gradient = self._frame_equations(state, shown)
-        count, (poses, _, _, nv) = len(self.body.scale_factors), shown.by_pose.shape
+        count, (poses, _, _, nv) = shown.by_factors.shape[3], shown.by_pose.shape
         across = shown.by_pose.reshape(poses, -1, nv).swapaxes(1, 2)
         # a marker's offset moves that marker only: (nv, 3) (3, 3) for each, not (nv, 3 M) (3 M, 3 M)
         by_offset = (shown.by_pose.swapaxes(2, 3) @ shown.axes).swapaxes(1, 2)
@@ -227,12 +249,9 @@ class ScalingProblem:
         border = np.concatenate(
             [across @ shown.by_factors.reshape(poses, -1, count), by_place.reshape(poses, nv, -1)], axis=2
         )
-        away = self.prior.away(state)
-        corner, corner_gradient = self._precision.copy(), self._precision @ away
+        corner, corner_gradient = precision.copy(), precision @ away
         self._add_shared(shown, corner, corner_gradient)
-        cost = (
-            float((shown.errors**2).sum()) + float(away @ self._precision @ away) + self._posture_cost(state)
-        )
+        cost = float((shown.errors**2).sum()) + float(away @ precision @ away) + self._posture_cost(state)
         return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, cost)
 
     def _frame_equations(self, state: ScalingState, shown: _Shown) -> tuple[Array, Array]:
@@ -253,7 +272,7 @@ class ScalingProblem:
 
     def _add_shared(self, shown: _Shown, corner: Array, gradient: Array) -> None:
         """Adds the markers' terms of what frames share: offsets of two markers have no term in common."""
-        count, markers = len(self.body.scale_factors), np.arange(len(self.markers))
+        count, markers = shown.by_factors.shape[3], np.arange(len(self.markers))
         flat = shown.by_factors.reshape(-1, count)
         corner[:count, :count] += flat.T @ flat
         gradient[:count] += shown.errors.ravel() @ flat
@@ -273,11 +292,15 @@ class ScalingProblem:
             for j in range(kinds):
                 places[i, markers, :, j, markers] += (by_kind[i] * by_kind[j] * own).sum(axis=0)
 
+    def _whiten(self) -> Array:
+        """(N, M, 1) root of a marker's weight over its noise; 0 where it is missing."""
+        return np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
+
     def _shown(self, state: ScalingState) -> _Shown:
         """Whitened errors of all frames and their derivatives."""
         shares = self._shares(state.poses)
         reading = self._worn.reading(state.poses, state.factors, self._displacements_m(state, shares))
-        whiten = np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
+        whiten = self._whiten()
         errors = np.array([one.positions_m for one in reading.markers]) - self.measured_m
         by_pose = np.array([one.jacobian for one in reading.markers])
         if len(state.slides_m):

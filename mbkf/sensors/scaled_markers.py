@@ -81,6 +81,12 @@ class ScaledMarkers:
         markers = [self.sensor.reading_of(*one) for one in zip(placed, spatial.swapaxes(1, 2), strict=True)]
         return ScaledReading(markers, origins + axes @ self._by_scale, axes)
 
+    def by_centres(self, poses: Array) -> Array:
+        """(N, M, 3, E) derivatives of the places by displacements of joint centres, at configurations (N, nq)."""
+        frames = np.array([self._model.frames(q) for q in poses]).reshape(len(poses), -1, 4, 3)
+        rotations = frames[:, :, :3].swapaxes(2, 3)
+        return self._levers.summed(rotations, self._levers.centre_levers, self._joints)
+
     def _moved(self, frames: Array, factors: Array) -> Array:
         """(N, J, 3) displacement of the joints by the scale factors, from the model's."""
         levers = self._levers.levers @ (factors - self._model.scale)

@@ -8,6 +8,7 @@ import pytest
 from mbkf.filters import body_errors
 from mbkf.filters.body_errors import LOOK_S, LOOSE, BodyErrors
 from mbkf.model.human import HumanModel
+from mbkf.model.joint_centres import centre_names
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.flexed_skin import FlexedSkin
@@ -20,11 +21,12 @@ STEP = 1e-5
 
 @dataclass(frozen=True)
 class Case:
-    """Errors by one root l of factors, places and displacements by flexion, in a moment of a motion under loads."""
+    """Errors by one root l of factors, joint centres, places and displacements by flexion, in a motion under loads."""
 
     errors: BodyErrors
     noise_m: np.ndarray
     factors: np.ndarray
+    centres: np.ndarray
     places: np.ndarray
     slides: np.ndarray
     q: np.ndarray
@@ -38,7 +40,8 @@ class Case:
 
     def varied(self, step):
         """The markers on the body that is wrong by ``step`` times the root."""
-        body = HumanModel(self.model.description, self.model.scale + step * self.factors, self.model.mass_kg)
+        factors, centres = self.model.scale + step * self.factors, step * self.centres
+        body = HumanModel(self.model.description, factors, self.model.mass_kg, centres_m=centres)
         sensor = self.errors.sensor
         shares = FlexedSkin(self.model, sensor.segments).shares(self.q)
         wrong = self.places + np.einsum("md,dmi->mi", shares, self.slides)
@@ -56,15 +59,26 @@ def case(*parts):
     noise_m = rng.uniform(0.003, 0.015, len(names))
     factors = 0.03 * rng.normal(size=18) * ("factors" in parts)
     places = 0.01 * rng.normal(size=(len(names), 3)) * ("places" in parts)
+    size = len(centre_names(model.description))
+    centres = 0.005 * np.random.default_rng(6).normal(size=size) * ("centres" in parts)
     skin = FlexedSkin(model, sensor.segments)
     slides = 0.01 * rng.normal(size=(skin.flexions, len(names), 3)) * ("skin" in parts)
-    root = np.concatenate([factors, places.ravel(), slides.ravel()])[:, None]
+    root = np.concatenate([factors, centres, places.ravel(), slides.ravel()])[:, None]
     errors = BodyErrors(sensor, noise_m, root, skin)
     motion = smooth_motion(model, rng)
     wrenches = rng.normal(size=(2, 6)) * [60.0, 60.0, 300.0, 40.0, 40.0, 10.0]
     wrenches[:, 2] = [250.0, 500.0]
     return Case(
-        errors, noise_m, factors, places, slides, motion.q(0.4), motion.v(0.4), motion.a(0.4), wrenches
+        errors,
+        noise_m,
+        factors,
+        centres,
+        places,
+        slides,
+        motion.q(0.4),
+        motion.v(0.4),
+        motion.a(0.4),
+        wrenches,
     )
 
 
@@ -100,7 +114,7 @@ def column(one, root):
     return np.sign(fitted_slope(one) @ one.errors.pose_root(one.q)[:, 0]) * root[:, 0]
 
 
-@pytest.mark.parametrize("part", ["factors", "places", "skin"])
+@pytest.mark.parametrize("part", ["factors", "centres", "places", "skin"])
 def test_a_pose_is_off_as_one_fitted_with_the_wrong_body(part):
     one = case(part)
     assert_near(column(one, one.errors.pose_root(one.q)), fitted_slope(one), 2e-9)
@@ -135,6 +149,19 @@ def test_torques_are_off_as_those_of_the_wrong_body_on_the_wrong_motion(both):
     assert_near(found / np.abs(expected).max(), expected / np.abs(expected).max(), 4e-4)
 
 
+def test_the_own_torques_of_a_body_are_those_of_wrong_factors_and_joint_centres():
+    """At a motion and loads that are known."""
+    one, loads = case("factors", "centres"), 1e-3
+    tau = [
+        NewtonEuler(one.varied(step).model).tau(one.q, one.v, one.a, one.wrenches.ravel())
+        for step in (loads, -loads)
+    ]
+    expected = (tau[0] - tau[1]) / (2 * loads)
+    balance = one.errors._balance.torques(one.q, one.v, one.a, one.wrenches.ravel())
+    found = column(one, one.errors._own_torques(one.q, one.v, one.a, one.wrenches.ravel(), balance))
+    assert_near(found / np.abs(expected).max(), expected / np.abs(expected).max(), 1e-4)
+
+
 @pytest.mark.parametrize("contact", [(Contact.UNMEASURED, Contact.MEASURED), (Contact.UNMEASURED,) * 2])
 def test_what_no_plate_reads_closes_newtons_law(both, contact):
     """The root's residual does not err, and each foot errs as it bears; a plate's reading is as it is."""
@@ -153,7 +180,7 @@ def test_fewer_columns_keep_nearly_all_of_the_variance(monkeypatch):
     rng = np.random.default_rng(1)
     model = random_model(rng)
     sensor, names = protocol_sensor(model)
-    count = 18 + 3 * len(names)
+    count = 18 + len(centre_names(model.description)) + 3 * len(names)
     root, noise_m = 0.01 * rng.normal(size=(count, count)), np.full(len(names), 0.005)
     q = smooth_motion(model, rng).q(0.3)
     kept = BodyErrors(sensor, noise_m, root).pose_root(q)

@@ -19,6 +19,7 @@ from mbkf.filters.record import (
 )
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking import track_of
+from mbkf.model.joint_centres import centre_names
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made_filter, recording, tracked
 
@@ -81,9 +82,10 @@ def test_a_frame_without_an_estimate_stays_blank():
 
 @pytest.fixture(scope="module")
 def body():
-    """Errors by 2 % of every factor and 5 mm of every marker's place."""
+    """Errors by 2 % of every factor, 5 mm of every joint centre and of every marker's place."""
     sensor = inputs().sensor
-    sd = np.concatenate([np.full(18, 0.02), np.full(3 * len(sensor.segments), 0.005)])
+    places = len(centre_names(sensor.model.description)) + 3 * len(sensor.segments)
+    sd = np.concatenate([np.full(18, 0.02), np.full(places, 0.005)])
     return BodyErrors(sensor, inputs().noise_m, np.diag(sd))
 
 

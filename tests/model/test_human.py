@@ -11,9 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, data_folder
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
-from mbkf.io.body_covariance import BodyCovariance
-from mbkf.io.subject import Subject
-from mbkf.model.human import HumanModel, covariance_of
+from mbkf.model.human import HumanModel
 from mbkf.model.sides import mirrored
 from tests.motions import (
     assert_near,
@@ -383,17 +381,3 @@ def test_frames_are_the_placements():
     np.testing.assert_array_equal(jacobian, model.placements_and_jacobian(q)[2])
     for joint in range(len(R)):
         assert_near(np.r_[place, 1.0] @ frames[4 * joint : 4 * joint + 4], R[joint] @ place + p[joint], 1e-14)
-
-
-def test_a_split_factor_is_its_origin_where_it_is_not_stated():
-    """Subjects of before the pelvis had a vertical factor of its own keep their body, and the spread of its size."""
-    body, rng = reference_model().description, np.random.default_rng(0)
-    ((split, origin),) = body.split_factors.items()
-    older = tuple(name for name in body.scale_factors if name != split)
-    factors = dict(zip(older, rng.uniform(0.9, 1.1, len(older)), strict=True))
-    known = BodyCovariance(older, (), np.tril(rng.normal(size=(len(older),) * 2)))
-    subject = Subject(body.name, 70.0, factors, (), "", covariance=known)
-    assert dict(zip(body.scale_factors, HumanModel.of(subject).scale, strict=True))[split] == factors[origin]
-    place = [older.index(body.split_factors.get(name, name)) for name in body.scale_factors]
-    found = covariance_of(subject, body)
-    np.testing.assert_allclose(found.covariance, known.covariance[np.ix_(place, place)], atol=1e-12)

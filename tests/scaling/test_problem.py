@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from mbkf.model.human import HumanModel
+from mbkf.model.joint_centres import centre_names
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingProblem
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingState
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_scale, reference_model
 
 MODEL = reference_model()
@@ -160,6 +162,44 @@ def test_the_arrow_is_the_gauss_newton_matrix(problem, state, jacobian):
         assert_near(equations.frames[t] / size, dense[own, own] / size, 1e-9)
         assert_near(equations.border[t] / size, dense[own, FRAMES * nv :] / size, 1e-9)
     assert_near(equations.corner / size, dense[FRAMES * nv :, FRAMES * nv :] / size, 1e-9)
+
+
+def test_the_information_is_that_of_the_equations_with_joint_centres(problem, state):
+    """Without their rows that of the fit; the whole by differences of markers on bodies whose centres are displaced."""
+    names, count, h = centre_names(BODY), 18, 1e-6
+    found = problem.information(state)
+    e = np.arange(count, count + len(names))
+    kept = np.delete(np.arange(len(found)), e)
+    fitted = problem.linearise(state).schur_complement()
+    assert_near(found[np.ix_(kept, kept)] / np.abs(fitted).max(), fitted / np.abs(fitted).max(), 1e-9)
+    shares = np.array([problem.skin.shares(q) for q in state.poses])[:, :, : len(state.slides_m)]
+    local = problem.local_m(state.factors, state.offsets_m)
+    whiten = np.sqrt(problem.weights.markers)[:, None] / problem.noise_m
+    columns = []
+    for one in np.eye(len(names)):
+        ends = []
+        for sign in (1.0, -1.0):
+            body = HumanModel(BODY, state.factors, 80.0, centres_m=sign * h * one)
+            frames = []
+            for t, q in enumerate(state.poses):
+                places = (
+                    local + np.einsum("md,dmi->mi", shares[t], state.slides_m)
+                    if len(state.slides_m)
+                    else local
+                )
+                frames.append(MarkerSensor(body, problem.segments, places).positions(q))
+            ends.append(np.array(frames))
+        slope = (ends[0] - ends[1]) / (2 * h) * np.where(problem.seen, whiten, 0.0)[..., None]
+        columns.append(slope.ravel())
+    by_centres = np.array(columns).T
+    shown = problem._shown(state)
+    by_pose = shown.by_pose.reshape(FRAMES, -1, MODEL.nv)
+    frames = problem.linearise(state).frames
+    expected = by_centres.T @ by_centres
+    for t in range(FRAMES):
+        across = by_pose[t].T @ by_centres.reshape(FRAMES, -1, len(names))[t]
+        expected -= across.T @ np.linalg.solve(frames[t], across)
+    assert_near(found[np.ix_(e, e)] / np.abs(expected).max(), expected / np.abs(expected).max(), 1e-7)
 
 
 def test_missing_markers_say_nothing(problem, state):

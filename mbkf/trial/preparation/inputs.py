@@ -16,7 +16,8 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.human import HumanModel, covariance_of
+from mbkf.model.human import HumanModel
+from mbkf.model.subject_covariance import covariance_of
 from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.flexed_skin import FlexedSkin, slide_covariance
