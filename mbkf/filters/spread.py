@@ -2,7 +2,8 @@
 
 Taken frame by frame, so that long trials need not keep a covariance matrix per frame. Each number has two parts,
 independent of each other: that of the filter (noise, skin), by its covariance, and the offset that repeats in the same
-posture, caused by errors of the scaled body (:mod:`mbkf.filters.body_errors`). The change of the offset with the
+posture, caused by errors of the scaled body (:mod:`mbkf.filters.body_errors`) and by a coordinate's zero, which differs
+among persons. The change of the offset with the
 posture needs the whole trial (:mod:`mbkf.filters.offset_change`).
 """
 
@@ -206,6 +207,7 @@ class Spread:
         variance = self.reader.coordinates.of(self.q, blocks, diagonals)
         np.maximum(variance, 0.0, out=variance)
         if self.body is not None:
+            variance[2] += self.reader.clinical.zero_variance
             variance[:2] += variance[2:]
         return np.sqrt(variance, out=variance)
 

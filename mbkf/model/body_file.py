@@ -45,7 +45,7 @@ _SEGMENT_KEYS = (
     "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
     "posture_sd_deg", "acceleration_sd", "movement_sd", "limits_deg",
 )  # fmt: skip
-_ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title")
+_ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title", "zero_sd_deg")
 KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",

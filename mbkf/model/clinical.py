@@ -91,6 +91,7 @@ class ClinicalAngles:
         names: (A,) coordinate names, OpenSim's where it has them.
         units: (A,) "rad" or "m".
         rotational: (A,) True for angles, False for the pelvis's translations.
+        zero_variance: (A,) variances of a coordinate's zero among persons, rad².
         root_angles: (3,) columns of the root's angles; they are stated against the world's axes.
         root_turns: Where the root's rotation stands in the tangent space.
         ball_turns: (n, 3) where the rotations of the joints with three angles do, in the model's order.
@@ -105,6 +106,8 @@ class ClinicalAngles:
         column = {name: i for i, name in enumerate(self.names)}
         translations = [c.name for joint in self.joints for c in joint.translations]
         self.rotational: BoolArray = read_only([name not in translations for name in self.names], dtype=bool)
+        zero_sd = [np.deg2rad(c.zero_sd_deg) for joint in self.joints for c in joint.coordinates]
+        self.zero_variance: Array = read_only(np.square(zero_sd))
         self.units: tuple[str, ...] = tuple("rad" if turns else "m" for turns in self.rotational)
         self._place_balls(column)
         self._place_dofs(column)

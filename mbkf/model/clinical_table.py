@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from mbkf.conventions import TomlTable
 from mbkf.model.sides import mirrored
 
+LARGEST_ZERO_DEG = 45.0
+"""Bound of the spread of a coordinate's zero."""
+
 
 @dataclass(frozen=True)
 class Angle:
@@ -16,6 +19,7 @@ class Angle:
     Attributes:
         name: Coordinate name, e.g. ``"hip_flexion_r"``.
         title: The same for people, without the side; "" where the name reads well by itself.
+        zero_sd_deg: How far a person's zero of it, by the bones, is from the reference body's.
         axis: "x", "y" or "z".
         sign: +1 or −1.
         positive: What a positive value means, in words.
@@ -28,6 +32,7 @@ class Angle:
     positive: str = ""
     opensim: str = ""
     title: str = ""
+    zero_sd_deg: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -92,6 +97,11 @@ def _check(joint: ClinicalJoint) -> None:
     if joint.heading_sd_deg is not None and not joint.heading_sd_deg > 0:
         raise ValueError(f"joint {joint.name}: heading_sd_deg must be positive, not {joint.heading_sd_deg}")
     for angle in joint.coordinates:
+        if not 0.0 <= angle.zero_sd_deg < LARGEST_ZERO_DEG:
+            raise ValueError(
+                f"joint {joint.name}: zero_sd_deg of {angle.name} is {angle.zero_sd_deg:g}; it lies between 0 and "
+                f"{LARGEST_ZERO_DEG:g}"
+            )
         if angle.sign not in (1, -1):
             raise ValueError(f"joint {joint.name}: sign of {angle.name} is 1 or -1, not {angle.sign}")
 
@@ -119,6 +129,7 @@ def _left(right: ClinicalJoint) -> ClinicalJoint:
             angle.positive,
             _left_name(angle.opensim),
             angle.title,
+            angle.zero_sd_deg,
         )
         for angle in right.angles
     )

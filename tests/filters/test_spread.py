@@ -113,13 +113,15 @@ def test_totals_are_both_independent_parts(case, shifted, name):
 
 
 def test_offsets_are_those_of_errors_drawn_from_the_roots(case, shifted):
-    """Of dofs, and of angles and rates through the same linear map, with all that is common to the dofs."""
+    """Of dofs, and of angles and rates through the same linear map; zeros of angles differ among persons besides."""
     roots, both = shifted
-    E = ClinicalAngles(case[0]).rate_matrix(case[1].q)
+    clinical = ClinicalAngles(case[0])
+    E, zeros = clinical.rate_matrix(case[1].q), {"angle": clinical.zero_variance, "rate": 0.0}
     for name, root in (("position", roots.position), ("velocity", roots.velocity), ("torque", roots.torque)):
         np.testing.assert_allclose(getattr(both, f"{name}_offset") ** 2, np.diag(root @ root.T), rtol=1e-12)
     for name, root in (("angle", E @ roots.position), ("rate", E @ roots.velocity)):
-        np.testing.assert_allclose(getattr(both, f"{name}_offset") ** 2, np.diag(root @ root.T), rtol=1e-9)
+        expected = np.diag(root @ root.T) + zeros[name]
+        np.testing.assert_allclose(getattr(both, f"{name}_offset") ** 2, expected, rtol=1e-9)
     np.testing.assert_allclose(
         both.wrench_offset.ravel() ** 2, np.diag(roots.wrench @ roots.wrench.T), rtol=1e-12
     )

@@ -54,6 +54,14 @@ def test_titles_and_opensim_names_may_be_left_out():
         ("order", "xy", "follow its order"),
         ("main", "bend", "main angle bend"),
         ("angle", [{"name": "flexion_r", "axis": "y", "sign": 2}], "order|sign"),
+        (
+            "angle",
+            [
+                {"name": "flexion_r", "axis": "y", "sign": 1, "zero_sd_deg": -1.0},
+                {"name": "varus_r", "axis": "x", "sign": 1},
+            ],
+            "zero_sd_deg of flexion_r",
+        ),
         ("mirror", False, None),
     ],
 )
@@ -64,6 +72,13 @@ def test_a_damaged_table_is_refused(key, value, message):
         return
     with pytest.raises(ValueError, match=message):
         clinical_joints([entry])
+
+
+def test_both_sides_have_the_spread_of_a_zero():
+    joints = {joint.name: joint for joint in load_body().clinical_joints}
+    for side in "rl":
+        spread = {angle.name: angle.zero_sd_deg for angle in joints[f"elbow_{side}"].angles}
+        assert spread[f"elbow_flex_{side}"] > 0.0 == spread[f"pro_sup_{side}"]
 
 
 def test_two_coordinates_of_one_name_are_refused():
