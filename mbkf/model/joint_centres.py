@@ -28,7 +28,7 @@ def centre_covariance(body: BodyDescription) -> Array:
             if m != n and other.segment == mirrored(centre.segment):
                 alike = (1.0 - OWN_SHARE**2) * centre.sd_m * other.sd_m * [1.0, -1.0, 1.0]
                 found[n, :, m, :] = np.diag(alike)
-    return found.reshape(3 * len(centres), -1)
+    return found.reshape(3 * len(centres), 3 * len(centres))
 
 
 def centre_levers(model: Body, segments: list[str]) -> Array:
@@ -42,4 +42,4 @@ def centre_levers(model: Body, segments: list[str]) -> Array:
     levers = np.zeros((len(segments), 3, len(centres), 3))
     for n, centre in enumerate(centres):
         levers[segments.index(centre.segment), :, n, :] = np.eye(3)
-    return levers.reshape(len(segments), 3, -1)
+    return levers.reshape(len(segments), 3, 3 * len(centres))
