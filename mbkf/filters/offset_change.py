@@ -2,30 +2,29 @@
 
 An error by the body is B_t e in frame t, with e ~ N(0, I) the same in all frames (:mod:`mbkf.filters.body_errors`).
 About its mean over the trial it is (B_t − B̄) e, with B̄ the mean of B over the trial, so that its variances are the
-squared sums of the rows of B_t − B̄. B̄ is the mean over the instants at which roots are worked out, 0.1 s apart.
+squared sums of the rows of B_t − B̄. B̄ is the mean over the instants at which roots are worked out.
 
-Live there is no mean over the trial: a frame takes that over the instants so far. A trial is gone through once more
-when its mean is known, with the roots that were kept; those of a long trial's later instants are worked out anew.
+It needs the whole trial, so that it is worked out when the trial is over: with the roots that were kept, as far as
+there is memory for them, and with those of later instants worked out anew.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.filters.body_errors import BodyErrorRoots
+from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
+from mbkf.filters.record import Stretches, Track, roots_again
 from mbkf.model.clinical import ClinicalAngles
 
-Root: TypeAlias = NDArray[np.float32]
-"""Root of errors, one row for each number."""
+Float32: TypeAlias = NDArray[np.float32]
 
 KEPT_BYTES = 60_000_000
-"""Memory for the roots of a trial: those of a minute, for a body with 52 dofs."""
+"""Memory for the roots of a trial: those of about a minute, for a body with 52 dofs."""
 
 
 class ReadRoots(NamedTuple):
@@ -38,100 +37,87 @@ class ReadRoots(NamedTuple):
         wrench: (12, r) of the feet's wrenches.
     """
 
-    angle: Root
-    rate: Root
-    torque: Root
-    wrench: Root
+    angle: Float32
+    rate: Float32
+    torque: Float32
+    wrench: Float32
 
 
-@dataclass(frozen=True)
-class OffsetChange:
-    """Standard deviations of the change of the offset about its mean.
-
-    Attributes:
-        angle: (A,) of the clinical coordinates, rad or m.
-        rate: (A,) of their rates.
-        torque: (nv,) of the generalised forces.
-        wrench: (2, 6) of the feet's wrenches.
-    """
-
-    angle: Array
-    rate: Array
-    torque: Array
-    wrench: Array
-
-
-@dataclass(frozen=True)
-class _Instant:
-    """First frame of a stretch whose frames share their roots, its configuration, and the roots if they are kept."""
-
-    number: int
-    q: Array
-    roots: ReadRoots | None
+CHANGES = tuple(f"{name}_change" for name in ReadRoots._fields)
+"""Fields of a track that hold the changes."""
 
 
 class OffsetChanges:
-    """Follows the roots along a trial."""
+    """Changes of the offsets of a trial."""
 
-    def __init__(self, clinical: ClinicalAngles, whole_trial: bool = False) -> None:
-        """Args: the clinical coordinates, and True where :meth:`about_the_whole` will be asked for."""
-        self._clinical, self._whole_trial = clinical, whole_trial
+    def __init__(self, body: BodyErrors, clinical: ClinicalAngles, dt_s: float) -> None:
+        """Makes it.
+
+        Args:
+            body: The errors by the body.
+            clinical: The clinical coordinates.
+            dt_s: Time between frames.
+        """
+        self._body, self._clinical, self._dt_s = body, clinical, dt_s
         self._latest: BodyErrorRoots | None = None
+        self._begins: list[int] = []
         self._sums: list[Array] = []
-        self._count, self._room = 0, KEPT_BYTES
-        self._instants: list[_Instant] = []
-        self._change: OffsetChange | None = None
+        self._kept: dict[int, ReadRoots] = {}
+        self._room = KEPT_BYTES
 
-    def so_far(self, number: int, q: Array, roots: BodyErrorRoots) -> OffsetChange:
-        """Change of the offset in a frame about the mean over the instants so far, its own among them.
+    def follow(self, number: int, q: Array, roots: BodyErrorRoots) -> None:
+        """Takes the roots of a frame; frames of a stretch share one object, and its first one counts.
 
         Args:
             number: The frame; frames come in order.
             q: (nq,) configuration.
-            roots: Its roots; the same object for all frames of a stretch.
+            roots: The roots.
         """
-        if self._change is None or roots is not self._latest:
-            self._latest = roots
-            read = self._read(q, roots)
-            self._add(read)
-            if self._whole_trial:
-                size = sum(one.nbytes for one in read)
-                fits = size <= self._room
-                self._room -= size if fits else 0
-                self._instants.append(_Instant(number, q.copy(), read if fits else None))
-            self._change = self._about_mean(read)
-        return self._change
+        if roots is self._latest:
+            return
+        self._latest = roots
+        read = self._read(q, roots)
+        self._sums = self._sums or [np.zeros(one.shape) for one in read]
+        for one, total in zip(read, self._sums, strict=True):
+            np.add(total, one, out=total)
+        self._begins.append(number)
+        size = sum(one.nbytes for one in read)
+        if size <= self._room:
+            self._kept[number], self._room = read, self._room - size
 
-    def about_the_whole(
-        self, again: Callable[[int], BodyErrorRoots]
-    ) -> Iterator[tuple[int, int | None, OffsetChange]]:
-        """Changes about the mean of the whole trial: of the frames from one number up to another, None for the end.
+    def follow_all(self, rows: NDArray) -> None:
+        """Takes the roots of all frames of a trial whose roots were not kept, from its records (T,)."""
+        stretches = Stretches(self._dt_s)
+        for t in np.flatnonzero(rows["known"]):
+            if stretches.begins(int(rows["number"][t]), bool(rows["started"][t])):
+                self.follow(int(t), rows["q"][t], roots_again(self._body, rows[t]))
+
+    def added_to(self, track: Track, rows: NDArray) -> Track:
+        """The trial with the standard deviations of changes about their mean; NaN in frames without an estimate.
 
         Args:
-            again: Works out the roots of a frame anew.
+            track: The trial; it is not changed.
+            rows: (T,) records of all its frames, with those that were followed (:mod:`mbkf.filters.record`).
         """
-        ends = [*(one.number for one in self._instants[1:]), None]
-        for one, end in zip(self._instants, ends, strict=False):
-            roots = one.roots or self._read(one.q, again(one.number))
-            yield one.number, end, self._about_mean(roots)
+        if not self._begins:
+            return track
+        means = [(total / len(self._begins)).astype(np.float32) for total in self._sums]
+        found = [np.full((len(rows), len(mean)), np.nan, np.float32) for mean in means]
+        for first, end in zip(self._begins, [*self._begins[1:], len(rows)], strict=True):
+            stretch = first + np.flatnonzero(rows["known"][first:end])
+            roots = self._kept.get(first) or self._read(
+                rows["q"][first], roots_again(self._body, rows[first])
+            )
+            for changes, root, mean in zip(found, roots, means, strict=True):
+                apart = root - mean
+                changes[stretch] = np.sqrt(np.einsum("ij,ij->i", apart, apart))
+        changed: dict[str, Any] = dict(zip(CHANGES, found, strict=True))
+        changed["wrench_change"] = found[-1].reshape(-1, 2, 6)
+        return replace(track, **changed)
 
     def _read(self, q: Array, roots: BodyErrorRoots) -> ReadRoots:
-        E = self._clinical.rate_matrix(q)
-        found = (E @ roots.position, E @ roots.velocity, roots.torque, roots.wrench)
-        return ReadRoots(*(one.astype(np.float32) for one in found))
-
-    def _add(self, roots: ReadRoots) -> None:
-        self._sums = self._sums or [np.zeros(one.shape) for one in roots]
-        self._count += 1
-        self._sums = [total + one for total, one in zip(self._sums, roots, strict=True)]
-
-    def _about_mean(self, roots: ReadRoots) -> OffsetChange:
-        angle, rate, torque, wrench = (
-            _row_norms(one - total / self._count) for one, total in zip(roots, self._sums, strict=True)
+        E = self._clinical.rate_matrix(q).astype(np.float32)
+        position, velocity, torque, wrench = (
+            one.astype(np.float32) for one in (roots.position, roots.velocity, roots.torque, roots.wrench)
         )
-        return OffsetChange(angle, rate, torque, wrench.reshape(2, 6))
-
-
-def _row_norms(root: Array) -> Array:
-    """(n,) roots of the squared sums of rows."""
-    return np.asarray(np.sqrt(np.einsum("ij,ij->i", root, root)))
+        return ReadRoots(E @ position, E @ velocity, torque, wrench)

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
 from mbkf.filters.estimate import Posterior
-from mbkf.filters.offset_change import OffsetChange, OffsetChanges
 from mbkf.filters.spread import ASKED, Spread
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.dimensions import shape_of
@@ -52,7 +51,7 @@ class Field(NamedTuple):
     axes: tuple[str, ...] = ()
 
 
-_KINDS = {np.float64: "<f8", np.float32: "<f4", np.int64: "<i8", np.bool_: "?"}
+_KINDS = {np.float64: "<f8", np.int64: "<i8", np.bool_: "?"}
 
 FIELDS = (
     Field("number", "<i8"),
@@ -77,16 +76,11 @@ SPREAD_AT_ONCE = {
 TORQUE_SPREAD = {"torque_sd": "torque", "torque_offset": "torque_offset"}
 """Fields and the attributes of :class:`~mbkf.filters.spread.Spread` that fill them."""
 
-CHANGES = ("angle", "rate", "torque", "wrench")
-"""Attributes of :class:`~mbkf.filters.offset_change.OffsetChange`; their fields are ``angle_change`` and so on."""
-
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
     """Type of a record, by the sizes of axes (:data:`mbkf.io.dimensions.AXES`) that differ from trial to trial."""
-    large_first = sorted(
-        FIELDS, key=lambda one: -np.dtype(one.kind).itemsize
-    )  # the numbers of a row are aligned
-    return np.dtype([(f.name, f.kind, shape_of(f.axes, sizes)) for f in large_first])
+    flags_last = sorted(FIELDS, key=lambda one: one.kind == "?")  # so that the numbers of a row are aligned
+    return np.dtype([(f.name, f.kind, shape_of(f.axes, sizes)) for f in flags_last])
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:
@@ -104,13 +98,28 @@ def blank(dtype: np.dtype, rows: int) -> NDArray:
     return empty
 
 
+class Stretches:
+    """Frames that share the errors by the body of the first one."""
+
+    def __init__(self, dt_s: float) -> None:
+        """Args: the time between frames."""
+        self._frames = max(1, round(OFFSETS_HELD_S / dt_s))
+        self._first, self._due = 0, -1
+
+    def begins(self, number: int, started: bool) -> bool:
+        """True for the first frame of a stretch; frames come in order, and ``started`` marks starts of the filter."""
+        if started or self._due < 0:
+            self._first, self._due = number, -1
+        before, self._due = self._due, (number - self._first) // self._frames
+        return self._due != before
+
+
 class HeldErrors:
     """Errors by the body along a trial: worked out once in a while, and only when asked for."""
 
     def __init__(self, body: BodyErrors | None, dt_s: float) -> None:
         """Args: the errors by the body, None where they are not known, and the time between frames."""
-        self._body, self._held = body, max(1, round(OFFSETS_HELD_S / dt_s))
-        self._first, self._due, self._roots = 0, -1, _unknown_body
+        self._body, self._stretches, self._roots = body, Stretches(dt_s), _unknown_body
 
     def of(self, number: int, posterior: Posterior) -> Callable[[], BodyErrorRoots | None]:
         """Function that computes the roots for a frame: those of the first frame of its stretch since the start.
@@ -119,21 +128,17 @@ class HeldErrors:
             number: The frame; frames come in order.
             posterior: The filter's estimate.
         """
-        if posterior.started or self._due < 0:
-            self._first, self._due = number, -1
-        due = (number - self._first) // self._held
-        if self._body is not None and self._due != due:
+        if self._stretches.begins(number, posterior.started) and self._body is not None:
             found, body = posterior, self._body
-            self._due = due
             self._roots = cache(lambda: body.at(found.q, found.v, found.a, found.wrench, found.contact))
         return self._roots
 
-    def again(self, row: NDArray) -> BodyErrorRoots:
-        """The roots at the estimate that a record (1,) holds, worked out anew; the errors by the body are known."""
-        assert self._body is not None
-        found, footing = row[0], row[0]["footing"]
-        contact = None if footing[0] == UNASKED else (int(footing[0]), int(footing[1]))
-        return self._body.at(found["q"], found["v"], found["a"], found["wrench"], contact)
+
+def roots_again(body: BodyErrors, row: np.void) -> BodyErrorRoots:
+    """Roots of the errors by the body at the estimate that a record holds."""
+    footing = row["footing"]
+    contact = None if footing[0] == UNASKED else (int(footing[0]), int(footing[1]))
+    return body.at(row["q"], row["v"], row["a"], row["wrench"], contact)
 
 
 def _unknown_body() -> BodyErrorRoots | None:
@@ -154,7 +159,6 @@ class FrameRecorder:
         markers: int,
         body: BodyErrors | None = None,
         asked: Collection[str] = ASKED,
-        whole_trial: bool = False,
     ) -> None:
         """Makes it.
 
@@ -163,13 +167,9 @@ class FrameRecorder:
             markers: Number of markers.
             body: What estimates err by because the person's body is not known exactly; None where that is not known.
             asked: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are stated; others are NaN.
-            whole_trial: True where :meth:`finish` will be called when the trial is over.
         """
         self.filter, self._body = filter, HeldErrors(body, filter.dt_s)
         self._asks_torques, self._asks_angles = (name in asked for name in ASKED)
-        asks = {"angle": self._asks_angles, "rate": self._asks_angles, "torque": self._asks_torques}
-        self._changing = [name for name in CHANGES if asks.get(name, True)]
-        self._changes = OffsetChanges(filter.clinical, whole_trial)
         model = filter.model
         sizes = {"marker": markers, "configuration": model.nq, "dof": model.nv}
         sizes |= {"coordinate": len(filter.clinical.names), "ball": len(filter.clinical.ball_turns)}
@@ -236,36 +236,11 @@ class FrameRecorder:
         row["marker_nis"], row["marker_spread_m"] = found.markers, found.marker_spread_m
 
     def spread(self, row: NDArray, spread: Spread) -> None:
-        """Standard deviations of clinical coordinates, their rates and the height of the feet; changes of offsets.
-
-        Changes are those about the mean of the trial so far.
-        """
+        """Standard deviations of clinical coordinates, their rates and the height of the feet."""
         row["foot_height_sd"] = spread.foot_height
-        changed = None
-        if spread.body is not None:
-            changed = self._changes.so_far(int(row["number"][0]), spread.q, spread.body)
-        self._fill_changes(row, changed)
         if not self._asks_angles:
             return
         for name in ("angle", "rate"):
             row[f"{name}_sd"] = getattr(spread, name)
             row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
         row["ball_covariance"], row["ball_offset"] = spread.ball_covariance, spread.ball_offset
-
-    def finish(self, rows: NDArray) -> None:
-        """Changes of offsets about the mean of the whole trial, in the place of those about the mean so far.
-
-        Args:
-            rows: (T,) records of all frames of the trial, in order from frame 0.
-        """
-
-        def again(number: int) -> BodyErrorRoots:
-            return self._body.again(rows[number : number + 1])
-
-        for first, end, changed in self._changes.about_the_whole(again):
-            self._fill_changes(rows[first:end], changed)
-
-    def _fill_changes(self, rows: NDArray, changed: OffsetChange | None) -> None:
-        """Changes of offsets in the records with an estimate; 0 where the errors by the body are not known."""
-        for name in self._changing:
-            rows[f"{name}_change"][rows["known"]] = 0.0 if changed is None else getattr(changed, name)

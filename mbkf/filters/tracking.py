@@ -15,6 +15,7 @@ from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
+from mbkf.filters.offset_change import OffsetChanges
 from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_filter import TrackingFilter
@@ -48,8 +49,8 @@ def track(
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    recorder = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads, whole_trial=True)
-    frames = len(recording)
+    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads), len(recording)
+    changes = None if body is None else OffsetChanges(body, filter.clinical, filter.dt_s)
     rows = blank(recorder.dtype, frames)
     rows["number"] = np.arange(frames)
     size = 2 * filter.model.nv
@@ -59,6 +60,8 @@ def track(
         for t, posterior in found:
             spread = recorder.motion(rows[t : t + 1], posterior)
             recorder.spread(rows[t : t + 1], spread)
+            if changes is not None and spread.body is not None:
+                changes.follow(t, spread.q, spread.body)
             if covariance is not None:
                 covariance[t] = filter.covariance(posterior) + spread.offset_covariance
 
@@ -78,8 +81,8 @@ def track(
             "and are unit and axes right (--unit, --up)?"
         )
     keep(later.finish())
-    recorder.finish(rows)
-    return track_of(rows, smoothed=smoothing is not None, covariance=covariance)
+    found = track_of(rows, smoothed=smoothing is not None, covariance=covariance)
+    return found if changes is None else changes.added_to(found, rows)
 
 
 def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = None) -> Track:
@@ -98,6 +101,9 @@ def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = N
     for field in fields(Track):
         if field.default is LATER:
             values.setdefault(field.name, unknown(quantities(Track)[field.name], sizes))
+    for name, one in quantities(Track).items():
+        if one.change_of:
+            values[name] = np.where(np.isnan(values[one.change_of]), np.nan, np.float32(0.0))
     asked = rows["footing"][:, 0] != UNASKED
     values["foot_contact"] = np.where(asked[:, None], rows["footing"], 0) if asked.any() else None
     values.setdefault("uncorrected", np.zeros(len(rows), dtype=bool))  # older logs lack it

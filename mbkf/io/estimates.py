@@ -106,7 +106,7 @@ class TrackEstimates(Estimates):
     )
     wrench_sd: Array = spread("wrench")
     wrench_offset: Array = offset("wrench_sd")
-    wrench_change: Array = change("wrench_sd")
+    wrench_change: Array = change("wrench_sd", written=False)
     support: Array = quantity(
         "time part wrench",
         WRENCH,
@@ -118,13 +118,13 @@ class TrackEstimates(Estimates):
         "time coordinate", ANGLE, "of the clinical coordinates, the root's in the world's axes"
     )
     angle_offset: Array = offset("angle_sd")
-    angle_change: Array = change("angle_sd")
+    angle_change: Array = change("angle_sd", written=False)
     rate_sd: Array = quantity("time coordinate", RATE, "of the rates of the clinical coordinates")
     rate_offset: Array = offset("rate_sd")
-    rate_change: Array = change("rate_sd")
+    rate_change: Array = change("rate_sd", written=False)
     torque_sd: Array = quantity("time dof", FORCE, "of the generalised forces; NaN where not known")
     torque_offset: Array = offset("torque_sd")
-    torque_change: Array = change("torque_sd")
+    torque_change: Array = change("torque_sd", written=False)
     ball_covariance: Array = quantity(
         "time ball xyz xyz",
         Unit("rad^2"),

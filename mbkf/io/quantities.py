@@ -211,14 +211,21 @@ def offset(of: str, default: T = _ABSENT) -> T:
     return field(default=default, metadata={_QUANTITY: declared})
 
 
-def change(of: str, default: T = _ABSENT) -> T:
-    """The field of the change of that part with the posture, about its trial mean; 0 where a record lacks it."""
+def change(of: str, default: T = _ABSENT, *, written: bool = True) -> T:
+    """The field of the change of that part with the posture, about its trial mean; 0 where a record lacks it.
+
+    Args:
+        of: The standard deviations.
+        default: None for what not every record has.
+        written: Kept in files.
+    """
     meaning = f"change within the trial of the part of {of} that repeats in the same posture, about its mean"
     declared = Quantity(
         (),
         Unit(""),
         meaning,
         dtype=np.float32,
+        written=written,
         required=False,
         change_of=of,
         section="what-an-interval-means",

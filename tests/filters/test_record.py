@@ -5,20 +5,22 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from mbkf.filters import offset_change
 from mbkf.filters.body_errors import BodyErrors
+from mbkf.filters.offset_change import CHANGES
 from mbkf.filters.record import (
     FIELDS,
     OFFSETS_HELD_S,
     UNASKED,
     FrameRecorder,
     HeldErrors,
+    Stretches,
     Track,
     blank,
     record_dtype,
+    roots_again,
 )
 from mbkf.filters.spread import ASKED
-from mbkf.filters.tracking import track_of
+from mbkf.filters.tracking import track, track_of
 from mbkf.model.joint_centres import centre_names
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made_filter, recording, tracked
@@ -46,6 +48,7 @@ def test_arrays_of_a_trial_are_fields_of_the_record():
         "starts",
         "smoothed",
         "covariance",
+        *CHANGES,
     }
     assert made_of_it <= own
 
@@ -67,10 +70,10 @@ def test_rows_one_by_one_are_the_whole_trial(name):
         recorder.spread(row, spread)
         recorder.innovation(row, one)
         rows[t] = row[0]
-    track, whole = track_of(rows), tracked(name)
+    made, whole = track_of(rows), tracked(name)
     for field in fields(Track):
         if field.name not in ("step_seconds", "covariance"):
-            np.testing.assert_array_equal(getattr(track, field.name), getattr(whole, field.name), field.name)
+            np.testing.assert_array_equal(getattr(made, field.name), getattr(whole, field.name), field.name)
 
 
 def test_a_frame_without_an_estimate_stays_blank():
@@ -111,37 +114,32 @@ def test_spreads_are_totals_with_the_offset_beside_them(name, body):
         assert not rows[1][beside].any()
 
 
-def test_a_trial_holds_changes_of_offsets_about_its_own_mean_and_totals_as_they_were(body, monkeypatch):
-    """Roots that were not kept are worked out from the records; frames without an estimate stay unknown."""
+def test_stretches_begin_with_starts_and_after_the_time_that_offsets_are_held():
+    stretches, frames = Stretches(DT), round(OFFSETS_HELD_S / DT)
+    starts = {0, frames + 3}
+    begins = [t for t in range(3 * frames) if stretches.begins(t, t in starts)]
+    assert begins == [0, frames, frames + 3, 2 * frames + 3]
+
+
+def test_roots_are_found_again_from_a_record(body):
     tracking, found = estimates("dynamic")
-    held = round(OFFSETS_HELD_S / DT)
-    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], body, whole_trial=True)
-    rows = blank(recorder.dtype, len(found) + 1)
-    rows["number"] = np.arange(len(rows))
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1])
+    row, _ = recorder.row(20, recording().markers_m[20], found[20], 0.001)
+    one = found[20]
+    roots, again = body.at(one.q, one.v, one.a, one.wrench, one.contact), roots_again(body, row[0])
+    for name in ("position", "velocity", "torque", "wrench"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(roots, name))
 
-    def filled():
-        for t, one in enumerate(found):
-            recorder.step(rows[t : t + 1], one, 0.001)
-            recorder.spread(rows[t : t + 1], recorder.motion(rows[t : t + 1], one))
 
-    monkeypatch.setattr(offset_change, "KEPT_BYTES", 0)
-    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], body, whole_trial=True)
-    filled()
-    so_far = rows.copy()
-    recorder.finish(rows)
-    instants = [found[t] for t in range(0, len(found), held)]
-    roots = [body.at(one.q, one.v, one.a, one.wrench, one.contact) for one in instants]
-    torque = np.array([one.torque for one in roots])
+def test_a_whole_trial_has_the_changes_of_its_offsets(body):
+    _, found = estimates("kinematic")
+    plain, told = (track(made_filter("kinematic"), recording(), body=one) for one in (None, body))
+    begins = range(0, len(found), round(OFFSETS_HELD_S / DT))
+    torque = np.array([body.at(*found[t][:4], found[t].contact).torque for t in begins])
     expected = np.linalg.norm(torque - torque.mean(axis=0), axis=2)
-    for t in range(len(found)):
-        np.testing.assert_allclose(rows["torque_change"][t], expected[t // held], rtol=1e-4, atol=1e-4)
-    np.testing.assert_array_equal(rows["torque_change"][-2], so_far["torque_change"][-2])
-    assert (so_far["torque_change"][0] == 0.0).all() and (rows["angle_change"][0] > 0.0).any()
-    for name in rows.dtype.names:
-        if not name.endswith("_change"):
-            np.testing.assert_array_equal(rows[name], so_far[name])
-        elif rows[name].ndim > 1:
-            assert np.isnan(rows[name][-1]).all()
+    np.testing.assert_allclose(told.torque_change[begins], expected, rtol=1e-3, atol=1e-4)
+    np.testing.assert_array_equal(plain.torque_change, np.where(np.isnan(plain.torque_sd), np.nan, 0.0))
+    assert (told.angle_change[:, 6:] > 0.0).any()
 
 
 def test_errors_by_the_body_are_held_for_a_while_and_found_when_asked(body, monkeypatch):

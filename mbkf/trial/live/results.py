@@ -8,12 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import NotObservable
+from mbkf.filters.offset_change import OffsetChanges
 from mbkf.filters.record import Track
 from mbkf.filters.tracking import track_of
 from mbkf.imu.segments import segment_of
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, read_subject
+from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.inertial.motion_result import Timeline, motion_result
@@ -65,12 +67,19 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
         inputs = live_inputs(logged.names, measured.rate_hz, logged.stream.plates, subject, settings).inputs
         capture = Capture(logged.stream.trial, measured, logged.stream.plates, notes=notes)
         hidden = np.zeros(measured.present.shape, dtype=bool)
+        if inputs.body is not None:
+            changes = OffsetChanges(inputs.body, ClinicalAngles(inputs.sensor.model), inputs.dt_s)
+            changes.follow_all(logged.rows)
+            result = changes.added_to(result, logged.rows)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
     return replace(found, settings=logged.settings)
 
 
 def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracked: Track) -> Reconstruction:
     """The result where inertial sensors alone show the person.
+
+    The log does not hold the spreads of their mounts, so that the change of an offset is not known. All of it counts as
+    change.
 
     Args:
         logged: Contents of the log.
@@ -80,6 +89,13 @@ def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracke
     """
     stream, joints = logged.stream, HumanModel.of(subject).joints
     segments = [segment_of(name, joints) for name in stream.sensors]
+    tracked = replace(
+        tracked,
+        angle_change=tracked.angle_offset,
+        rate_change=tracked.rate_offset,
+        torque_change=tracked.torque_offset,
+        wrench_change=tracked.wrench_offset,
+    )
     timeline = Timeline(stream.trial, stream.rate_hz, _start_s(logged))
     with single_threaded(), np.errstate(invalid="ignore", divide="ignore"):
         return motion_result(subject, segments, timeline, tracked, notes=notes, more=logged.settings)
