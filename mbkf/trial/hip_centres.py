@@ -1,8 +1,8 @@
 """Hip centres as scaling knows them: their spread about the truth in a deep flexion, given the markers on the pelvis.
 
 Pelvis markers that err by δm on the body put its pose wrong by the rigid displacement that fits −δm best, and with it a
-hip centre, which errs by δh on the body itself. Scale factors, marker places and displacements of the skin, together p,
-have the covariance L Lᵀ, so that
+hip centre, which errs by δh on the body itself. Scale factors, displacements of joint centres, marker places and
+displacements of the skin, together p, have the covariance L Lᵀ, so that
 
     δ = (∂h/∂p − [I, −h×] (AᵀA)⁻¹ Aᵀ ∂m/∂p) δp,   A = rows [I, −m×].
 """
@@ -47,8 +47,9 @@ def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | Non
     if len(own) < LEAST_MARKERS:
         return None
     rows = known.rows(known.markers, {}, slide_covariance(body, segments))
-    count = len(known.factors)
-    factors, moved = rows[:count], rows[count:].reshape(-1, len(segments), 3, rows.shape[1])
+    factors = rows[: len(known.factors)]
+    centres = dict(zip(known.centres, rows[len(known.factors) : known.sizes], strict=True))
+    moved = rows[known.sizes :].reshape(-1, len(segments), 3, rows.shape[1])
     shares = FlexedSkin(model, segments).shares(_flexed(model, flexion_deg))
     places = moved[0] + np.einsum("md,dmcr->mcr", shares, moved[1:])
     fitted = _rigid(np.array([by_name[known.markers[n]].position_m for n in own]))
@@ -58,6 +59,7 @@ def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | Non
         reference = body.segment(thigh).origin_m
         centre = reference * (pelvis.scale_matrix @ model.scale)
         error = (reference[:, None] * pelvis.scale_matrix) @ factors + _rigid(centre[None]) @ turned
+        error += [centres.get(f"{thigh}_centre_{axis}", np.zeros(rows.shape[1])) for axis in "xyz"]
         squared.append(float((error**2).sum()))
     return float(np.sqrt(np.mean(squared)))
 
