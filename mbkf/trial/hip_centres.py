@@ -1,8 +1,13 @@
 """Hip centres as scaling knows them: their spread about the truth in a deep flexion, given the markers on the pelvis.
 
 Pelvis markers that err by δm on the body put its pose wrong by the rigid displacement that fits −δm best, and with it a
+<<<<<<< Updated upstream
 hip centre, which errs by δh on the body itself. Scale factors, displacements of joint centres, marker places and
 displacements of the skin, together p, have the covariance L Lᵀ, so that
+=======
+hip centre, which errs by δh on the body itself. Scale factors, joint centres, marker places and displacements of the
+skin, together p, have the covariance L Lᵀ, so that
+>>>>>>> Stashed changes
 
     δ = (∂h/∂p − [I, −h×] (AᵀA)⁻¹ Aᵀ ∂m/∂p) δp,   A = rows [I, −m×].
 """
@@ -14,6 +19,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
+from mbkf.model.joint_centres import centre_levers
+from mbkf.model.subject_covariance import covariance_of
 from mbkf.sensors.flexed_skin import FlexedSkin, slide_covariance
 
 DEEP_DEG = 100.0
@@ -22,8 +29,8 @@ DEEP_DEG = 100.0
 LEAST_MARKERS = 3
 """Least number of markers on the pelvis that determine its pose."""
 
-WITH_SQUAT_MM = 7.0
-"""The spread with a walk and a deep squat beside standing: 7.5 and 6.8 mm of two persons, without them 26 and 25 mm."""
+WITH_SQUAT_MM = 9.0
+"""The spread with a walk and a deep squat beside standing: 9.1 and 8.8 mm of two persons, without them 28 mm."""
 
 
 def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | None:
@@ -37,8 +44,9 @@ def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | Non
         The distance; None for a body without legs, without covariance or with fewer than :data:`LEAST_MARKERS` markers
         on the pelvis.
     """
-    known, model = subject.covariance, HumanModel.of(subject)
+    model = HumanModel.of(subject)
     body, roles = model.description, model.roles
+    known = covariance_of(subject, body)
     if known is None or not roles.knees:
         return None
     by_name = {marker.name: marker for marker in subject.markers}
@@ -47,19 +55,29 @@ def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | Non
     if len(own) < LEAST_MARKERS:
         return None
     rows = known.rows(known.markers, {}, slide_covariance(body, segments))
+<<<<<<< Updated upstream
     factors = rows[: len(known.factors)]
     centres = dict(zip(known.centres, rows[len(known.factors) : known.sizes], strict=True))
     moved = rows[known.sizes :].reshape(-1, len(segments), 3, rows.shape[1])
+=======
+    sizes, moved = rows[: known.sizes], rows[known.sizes :].reshape(-1, len(segments), 3, rows.shape[1])
+>>>>>>> Stashed changes
     shares = FlexedSkin(model, segments).shares(_flexed(model, flexion_deg))
     places = moved[0] + np.einsum("md,dmcr->mcr", shares, moved[1:])
     fitted = _rigid(np.array([by_name[known.markers[n]].position_m for n in own]))
     turned = -np.linalg.pinv(fitted) @ places[own].reshape(len(fitted), -1)
     pelvis, squared = body.segment(roles.root), []
+    by_centres = dict(zip(model.joints, centre_levers(model, list(model.joints)), strict=True))
     for thigh, _ in roles.knees:
         reference = body.segment(thigh).origin_m
         centre = reference * (pelvis.scale_matrix @ model.scale)
+<<<<<<< Updated upstream
         error = (reference[:, None] * pelvis.scale_matrix) @ factors + _rigid(centre[None]) @ turned
         error += [centres.get(f"{thigh}_centre_{axis}", np.zeros(rows.shape[1])) for axis in "xyz"]
+=======
+        by_sizes = np.hstack([reference[:, None] * pelvis.scale_matrix, by_centres[thigh]])
+        error = by_sizes @ sizes + _rigid(centre[None]) @ turned
+>>>>>>> Stashed changes
         squared.append(float((error**2).sum()))
     return float(np.sqrt(np.mean(squared)))
 
@@ -70,10 +88,10 @@ def hip_note(subject: Subject) -> str:
     known = (
         "" if spread_m is None else f"hip centres are uncertain by {1e3 * spread_m:.0f} mm (RMS) in a squat: "
     )
-    reduced = "" if spread_m is None else f", and reduce that to about {WITH_SQUAT_MM:.0f} mm"
+    reduced = "" if spread_m is None else f" and reduce this to about {WITH_SQUAT_MM:.0f} mm"
     return (
-        f"{known}standing does not distinguish skin that moves from the bones under it. A walk and a deep squat, or "
-        f"getting up from a chair, do{reduced}: add them with --trial, or scale the session's folder"
+        f"{known}no deep flexion distinguishes skin that moves from the bones under it. A walk and a deep squat, or "
+        f"getting up from a chair, do{reduced}: add them with --trial, or to the session's folder"
     )
 
 
