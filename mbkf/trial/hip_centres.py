@@ -1,13 +1,8 @@
 """Hip centres as scaling knows them: their spread about the truth in a deep flexion, given the markers on the pelvis.
 
 Pelvis markers that err by δm on the body put its pose wrong by the rigid displacement that fits −δm best, and with it a
-<<<<<<< Updated upstream
-hip centre, which errs by δh on the body itself. Scale factors, displacements of joint centres, marker places and
-displacements of the skin, together p, have the covariance L Lᵀ, so that
-=======
 hip centre, which errs by δh on the body itself. Scale factors, joint centres, marker places and displacements of the
 skin, together p, have the covariance L Lᵀ, so that
->>>>>>> Stashed changes
 
     δ = (∂h/∂p − [I, −h×] (AᵀA)⁻¹ Aᵀ ∂m/∂p) δp,   A = rows [I, −m×].
 """
@@ -55,13 +50,7 @@ def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | Non
     if len(own) < LEAST_MARKERS:
         return None
     rows = known.rows(known.markers, {}, slide_covariance(body, segments))
-<<<<<<< Updated upstream
-    factors = rows[: len(known.factors)]
-    centres = dict(zip(known.centres, rows[len(known.factors) : known.sizes], strict=True))
-    moved = rows[known.sizes :].reshape(-1, len(segments), 3, rows.shape[1])
-=======
     sizes, moved = rows[: known.sizes], rows[known.sizes :].reshape(-1, len(segments), 3, rows.shape[1])
->>>>>>> Stashed changes
     shares = FlexedSkin(model, segments).shares(_flexed(model, flexion_deg))
     places = moved[0] + np.einsum("md,dmcr->mcr", shares, moved[1:])
     fitted = _rigid(np.array([by_name[known.markers[n]].position_m for n in own]))
@@ -71,13 +60,8 @@ def hip_spread_m(subject: Subject, flexion_deg: float = DEEP_DEG) -> float | Non
     for thigh, _ in roles.knees:
         reference = body.segment(thigh).origin_m
         centre = reference * (pelvis.scale_matrix @ model.scale)
-<<<<<<< Updated upstream
-        error = (reference[:, None] * pelvis.scale_matrix) @ factors + _rigid(centre[None]) @ turned
-        error += [centres.get(f"{thigh}_centre_{axis}", np.zeros(rows.shape[1])) for axis in "xyz"]
-=======
         by_sizes = np.hstack([reference[:, None] * pelvis.scale_matrix, by_centres[thigh]])
         error = by_sizes @ sizes + _rigid(centre[None]) @ turned
->>>>>>> Stashed changes
         squared.append(float((error**2).sum()))
     return float(np.sqrt(np.mean(squared)))
 
