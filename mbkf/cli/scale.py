@@ -110,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
     check_folder(out.parent)
-    folder = args.static is not None and Path(args.static).is_dir()
+    folder = args.static is not None and _is_session(Path(args.static))
     subject = _of_folder(args) if folder else _of_captures(args, args.static, _stated(args))
     write_subject(subject, out)
     warn_of_fit(subject)
@@ -118,6 +118,13 @@ def run(args: argparse.Namespace) -> int:
     _print(subject.report, subject.protocol, str(out), advice)
     warn_of_markers(subject)
     return 0
+
+
+def _is_session(path: Path) -> bool:
+    """A folder that is not named as a capture."""
+    from mbkf.io.capture import folder_suffixes
+
+    return path.is_dir() and path.suffix.lower() not in folder_suffixes()
 
 
 def _stated(args: argparse.Namespace) -> dict[str, Any]:

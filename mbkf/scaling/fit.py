@@ -81,12 +81,16 @@ def scale_subject(
         )
     if dropped.any():
         problem = problem.without(dropped)
-    if dynamic:
-        problem = problem.with_prior(with_skin(problem))
-    if dynamic or dropped.any():
-        solution = _minimise(problem, problem.start_from(solution.state), progress)
-    problem = problem.with_prior(learnt_prior(problem, solution.state, solution.equations.schur_complement()))
-    solution = _minimise(problem, solution.state, progress)
+        solution = _minimise(problem, solution.state, progress)
+    rigid, solution = _with_learnt_prior(problem, solution, progress)
+    exchanged = _exchanged(rigid, solution.state)  # skin that moves would hide them
+    freed = problem.with_prior(with_skin(problem)) if dynamic else problem
+    if freed.prior.flexions:
+        problem, solution = _with_learnt_prior(
+            freed, _minimise(freed, freed.start_from(solution.state), progress), progress
+        )
+    else:
+        problem = rigid
     rms = float(np.sqrt(np.nanmean(np.linalg.norm(problem.errors_m(solution.state), axis=2) ** 2)))
     noise = float(np.sqrt((problem.noise_m**2).mean()))
     if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * noise):
@@ -108,13 +112,24 @@ def scale_subject(
     if quality.refusal:
         raise NotConverged(quality.refusal)
     subject = _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
-    doubts = [*quality.doubts, *_exchanged(problem, solution.state)]
+    doubts = [*quality.doubts, *exchanged]
     if doubts:
         subject.report[DOUBTS_KEY] = doubts
     if len(standing):
         model = problem.posture.model
         subject.report[STANDING_KEY] = [round(float(x), 7) for x in _middle(model, standing)]
     return subject
+
+
+def _with_learnt_prior(
+    problem: ScalingProblem,
+    solution: Solution[ScalingState],
+    progress: Callable[[int, int], None] | None,
+) -> tuple[ScalingProblem, Solution[ScalingState]]:
+    """The problem with the prior that its solution teaches, and the solution of that."""
+    learnt = learnt_prior(problem, solution.state, solution.equations.schur_complement())
+    problem = problem.with_prior(learnt)
+    return problem, _minimise(problem, solution.state, progress)
 
 
 def _check_size(mass_kg: float, height_m: float | None) -> None:

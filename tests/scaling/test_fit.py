@@ -219,8 +219,8 @@ def test_markers_left_out_come_with_reasons(person, without):
     assert lost.session_sd_m == reference.placement_sd_m
 
 
-def test_a_wild_sample_is_dropped_and_counted(person):
-    trial = person.moving(10)
+def test_a_wild_sample_is_dropped_and_counted():
+    trial = Person(1).moving(10)
     positions = trial.positions_m.copy()
     positions[3, NAMES.index("RMID")] += [0.0, 0.2, 0.0]
     result = scale_subject([], [replace(trial, positions_m=positions)], PROTOCOL, mass_kg=72.0)
