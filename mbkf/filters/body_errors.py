@@ -45,11 +45,14 @@ SIZE_STEP = 1e-4
 KEPT_OF_SIZES = 0.98
 """Share of the variance of factors and joint centres whose own effect on torques is kept."""
 
-POSTURES, POSTURE_RAD = 12, 0.4
+POSTURES, POSTURE_RAD = 10, 0.4
 """Errors by the body are compared in so many postures, joints turned from neutral by such angles (1 sd)."""
 
 KEPT_VARIANCE = 0.99
 """Share of the variance kept: half of the columns of L move no joint."""
+
+RANK = 1e-12
+"""Share of the largest variance below which a direction has none but rounding's."""
 
 LOOSE = 1e-6
 """Information on every dof besides markers and posture, 1/rad²: what nothing determines has no error by the body."""
@@ -159,9 +162,14 @@ class BodyErrors:
         stacked = np.concatenate(rows)
         size = np.linalg.norm(stacked, axis=1)
         known = size > 1e-9 * size.max(initial=0.0)
-        _, sizes, directions = np.linalg.svd(stacked[known] / size[known, None], full_matrices=False)
-        shares = np.cumsum(sizes**2) / np.sum(sizes**2)
-        return np.asarray(directions[: 1 + int(np.searchsorted(shares, KEPT_VARIANCE))].T)
+        scaled = stacked[known] / size[known, None]
+        # the right singular vectors, by the left ones: there are fewer rows than columns
+        squares, left = np.linalg.eigh(scaled @ scaled.T)
+        squares, left = squares[::-1], left[:, ::-1]
+        shares = np.cumsum(squares) / np.sum(squares)
+        kept = 1 + int(np.searchsorted(shares, KEPT_VARIANCE))
+        kept = min(kept, int(np.count_nonzero(squares > RANK * squares[0])))
+        return np.asarray(scaled.T @ (left[:, :kept] / np.sqrt(squares[:kept])))
 
     def pose_root(self, q: Array) -> Array:
         """(nv, r) W L at a configuration q (nq,).

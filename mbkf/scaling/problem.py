@@ -137,19 +137,20 @@ class ScalingProblem:
     def usual_shares(self, poses: Array) -> Array:
         """(D, M) mean share of each displacement in the frames (N, nq) that show the marker."""
         seen = np.maximum(self.seen, 1e-9)
-        return np.asarray((self._shares(poses)[1:] * seen).sum(axis=1) / seen.sum(axis=0))
+        shares = np.array([self.skin.shares(q) for q in poses])[:, :, : len(self.prior.slides_m)]
+        return np.asarray((np.moveaxis(shares, 2, 0) * seen).sum(axis=1) / seen.sum(axis=0))
 
     def _shares(self, poses: Array) -> Array:
         """(1 + D, N, M) 1 and f of N configurations."""
         size = (len(poses), len(self.markers))
-        if not len(self.prior.slides_m):
+        if not self.prior.flexions and not self.prior.slides_m.any():
             return np.ones((1, *size))
         found = np.array([self.skin.shares(q) for q in poses]).reshape(*size, -1)
         return np.concatenate([np.ones((1, *size)), np.moveaxis(found, 2, 0)])
 
     def _displacements_m(self, state: ScalingState, shares: Array) -> Array:
         """(N, M, 3) δ + Σ_d f_d c_d; (M, 3) without displacements."""
-        if not len(state.slides_m):
+        if not state.slides_m.any():
             return state.offsets_m
         return state.offsets_m + np.einsum("dtm,dmi->tmi", shares[1:], state.slides_m)
 
@@ -303,7 +304,7 @@ class ScalingProblem:
         whiten = self._whiten()
         errors = np.array([one.positions_m for one in reading.markers]) - self.measured_m
         by_pose = np.array([one.jacobian for one in reading.markers])
-        if len(state.slides_m):
+        if state.slides_m.any():
             by_share = np.array([self.skin.linearised(q)[1] for q in state.poses])
             by_pose += reading.axes @ np.einsum("dmi,tmdv->tmiv", state.slides_m, by_share)
         by_pose *= whiten[..., None]
