@@ -26,6 +26,9 @@ from mbkf.sensors.flexed_skin import slide_covariance
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
+FINE, COARSE = 1e-4, 3e-3
+"""Relative decreases of the cost below which a fit ends; the coarse one where the spread of the skin is learnt next."""
+
 MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
 MIN_SESSION_SD_M = 0.005
@@ -84,10 +87,10 @@ def scale_subject(
         solution = _minimise(problem, solution.state, progress)
     rigid, solution = _with_learnt_prior(problem, solution, progress)
     exchanged = _exchanged(rigid, solution.state)  # skin that moves would hide them
-    freed = problem.with_prior(with_skin(problem)) if dynamic else problem
+    freed = problem.with_prior(with_skin(problem)) if dynamic and settings.skin else problem
     if freed.prior.flexions:
         problem, solution = _with_learnt_prior(
-            freed, _minimise(freed, freed.start_from(solution.state), progress), progress
+            freed, _minimise(freed, freed.start_from(solution.state), progress, COARSE), progress
         )
     else:
         problem = rigid
@@ -260,7 +263,10 @@ def first_poses(problem: ScalingProblem) -> Array:
 
 
 def _minimise(
-    problem: ScalingProblem, start: ScalingState, progress: Callable[[int, int], None] | None
+    problem: ScalingProblem,
+    start: ScalingState,
+    progress: Callable[[int, int], None] | None,
+    tolerance: float = FINE,
 ) -> Solution[ScalingState]:
     report = None if progress is None else lambda done: progress(done, MAX_ITERATIONS)
     return minimise(
@@ -268,7 +274,7 @@ def _minimise(
         problem.linearise,
         problem.cost,
         problem.move,
-        tolerance=1e-4,
+        tolerance=tolerance,
         max_iterations=MAX_ITERATIONS,
         on_iteration=report,
     )

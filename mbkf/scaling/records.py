@@ -24,6 +24,7 @@ class ScalingSettings:
         dynamic_posture_frames: The same in a dynamic trial.
         dynamic_marker_frames: Number of independent observations of the markers in a dynamic trial: skin moves with the
             posture and not anew in every frame.
+        skin: Fit the markers' displacements by flexion, where a trial moves.
         thesis_factors: Scale by the thesis's factors (its Table 4.1): one that the body file splits equals its origin.
         frames_per_trial: Greatest number of frames taken from one trial.
         outlier_m: Distance from the fitted body beyond which a sample is left out, m.
@@ -37,6 +38,7 @@ class ScalingSettings:
     static_posture_frames: float = 1.0
     dynamic_posture_frames: float = 1.0
     dynamic_marker_frames: float = 15.0
+    skin: bool = True
     thesis_factors: bool = False
     frames_per_trial: int = 40
     outlier_m: float = 0.06

@@ -206,7 +206,7 @@ class TrackNaming:
             self._protocol,
             mass_kg=self._mass_kg,
             height_m=self._height_m,
-            settings=ScalingSettings(frames_per_trial=SCALING_FRAMES),
+            settings=ScalingSettings(frames_per_trial=SCALING_FRAMES, skin=False),
         )
 
     def _shown(self, owner: Indices) -> MarkerTrajectories:
