@@ -13,6 +13,8 @@ from mbkf.kernel.loading import COMPILED, REFERENCE, SWITCH, library
 from mbkf.numerics.threads import single_threaded
 
 STUDIES = Path(__file__).parent / "benchmarks"
+# programs that tests start compute on one thread, too
+os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 
 
 def pytest_configure(config: pytest.Config) -> None:

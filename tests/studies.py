@@ -11,6 +11,7 @@ import pytest
 
 from mbkf.study.batch.progress import Progress
 from mbkf.study.batch.run import follow, plan_of
+from mbkf.study.scaling.session import scale_from_session
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.synth import synthesise, write_folder
 
@@ -55,10 +56,17 @@ def batch_here(
 
 @contextmanager
 def runs_here() -> Iterator[None]:
-    """Runs of the laboratory's page do their work in a thread of this process."""
+    """Runs of the laboratory's page do their work in a thread of this process; bodies are those of the static."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("mbkf.app.runs.LocalWorkers", ThisProcess)
+        patch.setattr("mbkf.study.batch.person.scale_from_session", from_standing)
         yield
+
+
+def from_standing(static, others, *how):
+    """The body of a session by its standing trial, whatever else it holds."""
+    del others
+    return scale_from_session(static, (), *how)
 
 
 def study(folder: Path, persons: int = 1, trials: int = 1) -> Path:

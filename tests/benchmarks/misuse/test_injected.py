@@ -9,9 +9,18 @@ import pytest
 from benchmarks.misuse import injected
 from benchmarks.misuse.injected import ERRORS, HIT, MODES, OTHER, Places
 from mbkf.app.runs import FAILED, FINISHED, RunState
+from tests.studies import from_standing
 
 SECONDS = 1.5
 """Length of the walk."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def bodies():
+    """Bodies by the standing trial alone, whose scaling is short."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mbkf.study.batch.person.scale_from_session", from_standing)
+        yield
 
 
 @pytest.fixture(scope="module")
