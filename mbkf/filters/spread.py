@@ -3,8 +3,7 @@
 Taken frame by frame, so that long trials need not keep a covariance matrix per frame. Each number has two parts,
 independent of each other: that of the filter (noise, skin), by its covariance, and the offset that repeats in the same
 posture, caused by errors of the scaled body (:mod:`mbkf.filters.body_errors`) and by a coordinate's zero, which differs
-among persons. The change of the offset with the
-posture needs the whole trial (:mod:`mbkf.filters.offset_change`).
+among persons. The change of the offset with the posture needs the whole trial (:mod:`mbkf.filters.offset_change`).
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ OF_BODY = {
 
 
 def driven(body: OsimBody, part: str, q: Array, stand: Array, placed: tuple[Array, Array]) -> Driven:
-    """What drives the skin of a body over a movement.
+    """Movement of a body that displaces its skin: joint angles and impacts.
 
     Args:
         body: The person's body.

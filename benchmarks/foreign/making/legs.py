@@ -24,7 +24,7 @@ LEAST_KNEE_RAD = np.deg2rad(-2.0)
 
 @dataclass(frozen=True)
 class Stance:
-    """What legs have to do.
+    """Task of the legs in a movement.
 
     Attributes:
         height_m: (T,) height of the pelvis.

@@ -15,7 +15,7 @@ LEAST_FORCE_N = 20.0
 """Vertical force below which a foot has no centre of pressure, and nothing is given to it."""
 
 REACH_M = np.array([0.07, 0.0, 0.035])
-"""How far from where a foot stands its centre of pressure may lie."""
+"""Greatest distance of the centre of pressure from the place of its foot."""
 
 FARTHEST_M = 0.3
 """Beyond this a centre of pressure is that of a hardly loaded foot."""

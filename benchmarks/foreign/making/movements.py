@@ -24,7 +24,7 @@ CUT_OFF_HZ = 6.0
 """Of the correction of the pelvis's path that keeps feet where they stand."""
 
 LEANS, LEAN_HZ = 6, 0.35
-"""How often a standing body is turned about its ankles, and the cut-off of the turn."""
+"""Number of turns that balance a standing body about its ankles, and the cut-off of the turn."""
 
 PLACES = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
 

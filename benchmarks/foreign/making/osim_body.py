@@ -24,7 +24,7 @@ GRAVITY = np.array([0.0, -9.80665, 0.0])
 
 @dataclass(frozen=True)
 class Size:
-    """How a body differs from the model that it is made from.
+    """Differences of a body from the model that it is made from.
 
     Attributes:
         factors: Factors on length along x, y, z by body.

@@ -170,7 +170,7 @@ STANDING_DEG: Mapping[str, float] = {
     "ankle_angle_l": 3.0, "lumbar_extension": -3.0, "arm_add_r": -25.0, "arm_add_l": -25.0,
     "elbow_flex_r": 12.0, "elbow_flex_l": 12.0, "pro_sup_r": 60.0, "pro_sup_l": 60.0,
 }  # fmt: skip
-"""How a person stands in the static trial."""
+"""Posture of a person in the static trial."""
 
 
 def person_named(name: str) -> Person:

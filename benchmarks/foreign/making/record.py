@@ -21,7 +21,7 @@ from mbkf.conventions import SIDES, Array, BoolArray
 
 RATE_HZ = 100.0
 ROUNDS, GAIN = 14, 0.7
-"""How often the motion in flight is corrected, and by which share each time."""
+"""Number of corrections of the motion in flight, and the share that each applies."""
 
 IN_STANCE = 0.3
 """Weight of the turn of the body in stance, beside that in flight."""
@@ -30,7 +30,7 @@ LOOK_S = 1e-4
 """Half of the step over which momentum is differentiated."""
 
 TOE_M = 0.04
-"""How far the toes' ball lies before their joint, before scaling."""
+"""Distance of the ball of the foot in front of the toes' joint, before scaling, m."""
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ SLOW_MM = 0.8
 
 @dataclass(frozen=True)
 class Driven:
-    """What drives the skin of one body.
+    """Movement of one body that displaces its skin.
 
     Attributes:
         flexions: (T, d) flexion of neighbouring joints less standing, rad.
