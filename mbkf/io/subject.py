@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -133,6 +133,11 @@ class SubjectMarker:
         """(3,) position in the neutral posture, m."""
         return self.position_m - self.slid @ self.slides_m if self.slid.size else self.position_m
 
+    @property
+    def free_slides_m(self) -> Array:
+        """(D, 3) displacements that ``position_m`` does not hold; no rows for a marker corrected on a trial."""
+        return NO_SLIDES if self.slid.any() else self.slides_m
+
 
 @dataclass(frozen=True)
 class Subject:
@@ -174,6 +179,18 @@ class Subject:
         """(nq,) configuration in the static trial; None for a person scaled without one, or by an older version."""
         found = self.report.get(STANDING_KEY)
         return None if found is None else read_only(found)
+
+    def in_neutral_posture(self) -> Subject:
+        """The person with all markers at their places in the neutral posture, as scaling leaves them."""
+        if not any(marker.slid.any() for marker in self.markers):
+            return self
+        markers = [
+            replace(
+                marker, position_m=read_only(marker.neutral_m), slid=read_only(np.zeros_like(marker.slid))
+            )
+            for marker in self.markers
+        ]
+        return replace(self, markers=tuple(markers))
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.mass_kg) and self.mass_kg > 0):

@@ -42,9 +42,15 @@ class CompiledMarkers:
         self._joint_ids = np.ascontiguousarray(joint_ids, dtype=np.int32)
         self._local = np.ascontiguousarray(local_m, dtype=float)
 
-    def places(self, q: Array) -> tuple[Array, Array]:
-        """(M, 3) places in the world at q (nq,), and (6, nv) the body's spatial Jacobian there."""
-        return self._kernel.marker_places(self._tree, self._joint_ids, self._local, np.ascontiguousarray(q))
+    def places(self, q: Array, local_m: Array | None = None) -> tuple[Array, Array]:
+        """(M, 3) places in the world at q (nq,), and (6, nv) the body's spatial Jacobian there.
+
+        Args:
+            q: (nq,) configuration.
+            local_m: (M, 3) places in the joints' frames, contiguous; None for those that are kept.
+        """
+        local = self._local if local_m is None else local_m
+        return self._kernel.marker_places(self._tree, self._joint_ids, local, np.ascontiguousarray(q))
 
     def information(
         self,

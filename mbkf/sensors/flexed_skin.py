@@ -52,12 +52,47 @@ class FlexedSkin:
         """(M, D) f(θ) at a configuration q (nq,)."""
         return _share(self._turning @ self._posture.deviation(q)[0])
 
+    def displacement(self, slides_m: Array) -> SkinDisplacement:
+        """The displacement of the markers as a function of the configuration.
+
+        Args:
+            slides_m: (M, D, 3) displacement of each marker by each flexion, m.
+        """
+        return SkinDisplacement(self._posture, self._turning, slides_m)
+
     def linearised(self, q: Array) -> tuple[Array, Array]:
         """(M, D) f(θ) at a configuration q (nq,) and their derivative (M, D, nv) in its tangent space."""
         deviation, jacobian = self._posture.deviation(q)
         theta = self._turning @ deviation
         slope = 0.5 * np.cos(0.5 * theta) / np.sin(0.5 * FLEXED_RAD)
         return _share(theta), slope[..., None] * (self._turning @ jacobian)
+
+
+class SkinDisplacement:
+    """Σ_d f(θ_d) c_d of M markers with known c: markers of one segment share their flexions, each computed once."""
+
+    def __init__(self, posture: PostureSensor, turning: Array, slides_m: Array) -> None:
+        """Prepares the sum.
+
+        Args:
+            posture: Rotations of the joints.
+            turning: (M, D, nv) share of each rotation in a flexion.
+            slides_m: (M, D, 3) displacements c, m.
+        """
+        count = len(slides_m)
+        rows = turning.reshape(-1, turning.shape[2])
+        self._posture = posture
+        self._turning, which = np.unique(rows, axis=0, return_inverse=True)
+        by_flexion = np.zeros((3 * count, len(self._turning)))
+        slides = np.moveaxis(slides_m, 1, 2).reshape(3 * count, -1)
+        of_marker = np.repeat(which.reshape(count, -1), 3, axis=0)
+        np.add.at(by_flexion, (np.arange(3 * count)[:, None], of_marker), slides)
+        self._by_flexion = by_flexion
+
+    def at(self, q: Array) -> Array:
+        """(M, 3) displacement at q (nq,), m."""
+        theta = self._turning @ self._posture.deviation(q)[0]
+        return (self._by_flexion @ _share(theta)).reshape(-1, 3)
 
 
 def _share(theta: Array) -> Array:

@@ -62,7 +62,7 @@ def filled(
     for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
         rotations, origins = sensor.model.placements(q[t])
         axes[t] = rotations[sensor.joint_ids]
-        on_body[t] = origins[sensor.joint_ids] + np.einsum("mij,mj->mi", axes[t], sensor.local_m)
+        on_body[t] = origins[sensor.joint_ids] + np.einsum("mij,mj->mi", axes[t], sensor.local_at(q[t]))
     offset = np.einsum("tmji,tmj->tmi", axes, shown_m - on_body)
     with_skin = on_body + np.einsum("tmij,tmj->tmi", axes, _expected(sensor, offset, dt_s, both_sides))
     return on_body, with_skin

@@ -100,10 +100,17 @@ class MarkerSensor:
 
     @cached_property
     def _places(self) -> Array:
-        """(M, 4 J) weights of the joints' axes and origins in each marker's position."""
+        return self.weights(self.local_m)
+
+    def weights(self, local_m: Array) -> Array:
+        """(M, 4 J) weights of the joints' axes and origins in the positions of markers at (M, 3) in their segments."""
         places = np.zeros((len(self.segments), len(self.model.supports), 4))
-        places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
+        places[np.arange(len(self.segments)), self.joint_ids] = np.insert(local_m, 3, 1.0, axis=1)
         return places.reshape(len(self.segments), 4 * len(self.model.supports))
+
+    def local_at(self, q: Array) -> Array:
+        """(M, 3) positions in the segments' frames at q (nq,), m: the same at every configuration here."""
+        return self.local_m
 
     def positions(self, q: Array) -> Array:
         """(M, 3) world positions at the configuration q (nq,)."""

@@ -49,6 +49,7 @@ def label(
     report = progress or (lambda *_: None)
     points = capture.markers
     with single_threaded():
+        subject = subject.in_neutral_posture()
         body = label_body(subject.markers, subject, RunningSettings())
         names = no_names(points) if ignore_names else known_names(points, body.markers, body.sensor)
         known = names.trusted if names.names else None

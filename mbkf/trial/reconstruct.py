@@ -85,8 +85,8 @@ def reconstruct(
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = plates_without(capture, settings.without_plates)
-        if settings.correct_markers:
-            subject = correct_markers(subject, shown)
+        fixed = settings.correct_markers
+        subject = correct_markers(subject, shown) if fixed else subject.in_neutral_posture()
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)

@@ -64,7 +64,8 @@ def _weighed(subject: Subject, capture: Capture) -> Finding:
                 markers = subject_markers(checked.markers, subject)
             except NotObservable:
                 return finding
-            inputs, recording = trial_inputs(markers, checked.plates, subject, ReconstructSettings())
+            person = subject.in_neutral_posture()
+            inputs, recording = trial_inputs(markers, checked.plates, person, ReconstructSettings())
             motion = markers_alone(inputs, recording)
             model, times = inputs.sensor.model, markers.times_s
             found = plate_checks(model, motion, times, markers.rate_hz, inputs.plates)

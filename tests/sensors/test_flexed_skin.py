@@ -50,6 +50,13 @@ def test_derivatives_are_those_of_the_shares():
     assert_near(jacobian.reshape(-1, MODEL.nv), numeric, 1e-8)
 
 
+def test_known_displacements_add_up_by_their_shares():
+    rng = np.random.default_rng(2)
+    q, slides = moderate_pose(MODEL, rng), rng.normal(0.0, 0.01, (len(SEGMENTS), SKIN.flexions, 3))
+    expected = np.einsum("md,mdi->mi", SKIN.shares(q), slides)
+    assert_near(SKIN.displacement(slides).at(q), expected, 1e-15)
+
+
 def test_markers_of_a_segment_move_together_for_the_most_part():
     prior = slide_covariance(MODEL.description, SEGMENTS)
     assert len(prior) == flexions_of(MODEL.description, SEGMENTS) == SKIN.flexions

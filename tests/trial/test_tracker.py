@@ -9,6 +9,14 @@ import pytest
 import mbkf
 from mbkf.errors import InvalidInput, NotObservable, ShapeError
 from mbkf.io.body_covariance import BodyCovariance
+from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.subject import NO_SLIDES
+from mbkf.model.human import HumanModel
+from mbkf.scaling.correction import correct_markers
+from mbkf.sensors.flexed_skin import FlexedSkin
+from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.live.filter import live_inputs
+from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.plants.damped import Damped
 
@@ -212,3 +220,82 @@ def test_a_reading_that_the_person_cannot_make_is_one_that_was_not_made(nonsense
     for missing, refused in zip(*found, strict=True):
         np.testing.assert_array_equal(refused.q, missing.q)
         np.testing.assert_array_equal(refused.wrenches, missing.wrenches)
+
+
+@cache
+def deep_squat():
+    """A person whose skin moves by a centimetre at 60°, the poses of a squat to 105°, and its exact markers."""
+    rng, (person, _, _) = np.random.default_rng(3), squat()
+    model, segments = HumanModel.of(person), [marker.segment for marker in person.markers]
+    skin = FlexedSkin(model, segments)
+    slides = rng.normal(0.0, 0.01, (len(segments), skin.flexions, 3))
+    sensor = MarkerSensor(model, segments, np.array([marker.position_m for marker in person.markers]))
+    poses, places = [], []
+    for depth in np.sin(np.linspace(0.0, np.pi, 80)):
+        bent = np.zeros(model.nv)
+        for segment, deg in (("thigh", -105.0), ("shank", 100.0)):
+            for side in ("right", "left"):
+                dofs = model.joint(f"{side}_{segment}").v
+                bent[dofs.start + (dofs.stop - dofs.start > 1)] = np.radians(deg) * depth
+        q = model.integrate(model.neutral(), bent)
+        moved = np.einsum("md,mdi->mi", skin.shares(q), slides)
+        axes = model.placements(q)[0][sensor.joint_ids]
+        poses.append(q)
+        places.append(sensor.positions(q) + np.einsum("mij,mj->mi", axes, moved))
+    known = tuple(replace(m, slides_m=c) for m, c in zip(person.markers, slides, strict=True))
+    return replace(person, markers=known, covariance=None), np.array(poses), np.array(places)
+
+
+def angle_errors_deg(person, name):
+    """(frames, 4) errors of hips' and knees' flexion in the deepest frames of the squat, followed live."""
+    _, poses, places = deep_squat()
+    tracker = mbkf.Tracker(person, rate_hz=50.0, settings=ReconstructSettings(filter=name))
+    found = []
+    for frame in places:
+        tracker.push(frame)
+        found += tracker.answers
+    clinical = mbkf.ClinicalAngles(HumanModel.of(person))
+    columns = [
+        clinical.names.index(f"{joint}_{side}") for joint in ("hip_flexion", "knee_angle") for side in "rl"
+    ]
+    own = np.array([[one.angles[clinical.names[k]] for k in columns] for one in found[30:50]])
+    return np.degrees(own - clinical.angles(poses[30:50])[:, columns])
+
+
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_a_deep_squat_is_followed_live_on_skin_that_moves_as_scaling_found(name):
+    person, _, _ = deep_squat()
+    rigid = replace(person, markers=tuple(replace(m, slides_m=NO_SLIDES) for m in person.markers))
+    known, neutral = angle_errors_deg(person, name), angle_errors_deg(rigid, name)
+    assert np.abs(known).max() < 0.3
+    assert np.abs(neutral).max() > 3.0
+
+
+def test_live_places_are_those_of_a_corrected_trial_on_the_average_of_its_postures():
+    person, poses, places = deep_squat()
+    trial = MarkerTrajectories(tuple(marker.name for marker in person.markers), places, 50.0)
+    corrected = correct_markers(person, trial)
+    live = live_inputs(trial.names, 50.0, (), corrected, ReconstructSettings()).inputs.sensor
+    usual = np.mean([live.local_at(q) for q in poses], axis=0)
+    offline, _ = trial_inputs(trial, (), corrected, ReconstructSettings())
+    away = np.linalg.norm(offline.sensor.local_at(poses[0]) - usual, axis=1)
+    neutral = np.linalg.norm(live.local_at(HumanModel.of(person).neutral()) - usual, axis=1)
+    assert away.max() < 1e-4
+    assert neutral.max() > 0.01
+
+
+def test_kept_markers_follow_the_posture_also_of_a_person_who_was_corrected_on_another_trial():
+    person, poses, places = deep_squat()
+    trial = Capture("", MarkerTrajectories(tuple(marker.name for marker in person.markers), places, 50.0))
+    moved = [
+        replace(m, position_m=m.position_m + 0.5 * m.slides_m.sum(axis=0), slid=np.full(len(m.slides_m), 0.5))
+        for m in person.markers
+    ]
+    kept = ReconstructSettings(
+        filter="kinematic", correct_markers=False, smooth=False, checks=False, pelvis="lab"
+    )
+    found = mbkf.reconstruct(trial, replace(person, markers=tuple(moved)), settings=kept)
+    model = HumanModel.of(person)
+    away = [model.difference(q, own) for q, own in zip(poses[30:50], found.q[30:50], strict=True)]
+    assert np.degrees(np.abs(away)[:, 6:12]).max() < 0.3
+    assert np.linalg.norm(found.predicted_m - places, axis=2)[30:50].max() < 1e-3

@@ -21,6 +21,7 @@ from mbkf.model.human import HumanModel
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_most_markers, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.subject_sensor import subject_sensor
 from mbkf.study.scaling.likeness import StandingMarkers
 from mbkf.study.survey.movement import kind_of_markers
 from mbkf.trial.preparation.selection import subject_markers
@@ -88,7 +89,7 @@ class StandingBody:
             raise NotObservable(refusal)
         by_name = {marker.name: marker for marker in self._subject.markers}
         worn = [by_name[name] for name in own.names]
-        sensor = MarkerSensor(self._model, [m.segment for m in worn], np.array([m.position_m for m in worn]))
+        sensor = subject_sensor(self._model, worn)
         poses = self._poses(sensor, own.positions_m, np.array([m.noise_m for m in worn]))
         turned = np.degrees(_angles(_long_axes(self._model, poses), self._axes))
         greatest = np.percentile(turned, EXCURSION_PERCENTILE, axis=0)

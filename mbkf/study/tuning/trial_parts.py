@@ -148,6 +148,6 @@ def _inputs(
 ) -> tuple[FilterInputs, Recording]:
     """Inputs and readings of a whole trial, nothing hidden or withheld."""
     shown = subject_markers(capture.markers, subject)
-    if settings.correct_markers:
-        subject = correct_markers(subject, shown)
+    fixed = settings.correct_markers
+    subject = correct_markers(subject, shown) if fixed else subject.in_neutral_posture()
     return trial_inputs(shown, capture.plates, subject, settings)

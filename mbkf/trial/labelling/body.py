@@ -22,6 +22,7 @@ from mbkf.labelling.running import RunningLabeller, RunningSettings
 from mbkf.model.human import HumanModel
 from mbkf.scaling.correction import correct_markers
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.subject_sensor import subject_sensor
 from mbkf.trial.labelling.any_attitude import AnyAttitude
 from mbkf.trial.labelling.single_pass import LabellingPass
 
@@ -93,7 +94,7 @@ def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: Run
     seen = subject.scaled_markers
     worn = tuple(m for m in markers if seen is None or m.name in seen)
     model = HumanModel.of(subject)
-    sensor = MarkerSensor(model, [m.segment for m in worn], np.array([m.position_m for m in worn]))
+    sensor = subject_sensor(model, worn)
     sd = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in worn])
     return LabelBody(subject, worn, sensor, FirstFrameSearch(sensor, sd), settings)
 

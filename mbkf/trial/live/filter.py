@@ -241,6 +241,7 @@ def live_inputs(
     Raises:
         NotObservable: Too few of the subject's markers are among the stream's.
     """
+    subject = subject.in_neutral_posture()
     everywhere = MarkerTrajectories(stream_names, np.zeros((1, len(stream_names), 3)), rate_hz)
     shown = subject_markers(everywhere, subject)
     columns = np.array([stream_names.index(name) for name in match_names(stream_names, subject.markers)])

@@ -37,6 +37,7 @@ UNEXPLAINED = 1
 
 def live_body(subject: Subject, names: tuple[str, ...] | None = None) -> LabelBody:
     """The subject's markers ready to be looked for in a stream: those of the ``names``, in that order, or all."""
+    subject = subject.in_neutral_posture()
     body = label_body(subject.markers, subject, RunningSettings())
     if names is None or names == body.names:
         return body

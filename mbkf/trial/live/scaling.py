@@ -19,9 +19,9 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.subject_sensor import subject_sensor
 from mbkf.trial.label_unscaled import label_unscaled
 from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.scale import scale
@@ -193,7 +193,7 @@ def _posture(capture: Capture, subject: Subject) -> tuple[HumanModel, Array]:
     shown = subject_markers(capture.markers, subject)
     own = [marker for name in shown.names for marker in subject.markers if marker.name == name]
     model = HumanModel.of(subject)
-    sensor = MarkerSensor(model, [m.segment for m in own], np.array([m.position_m for m in own]))
+    sensor = subject_sensor(model, own)
     best = shown.positions_m[shown.present.sum(axis=1).argmax()]
     noise_m = np.array([marker.noise_m for marker in own])
     first = segment_by_segment(sensor, best)

@@ -23,6 +23,7 @@ from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.flexed_skin import FlexedSkin, slide_covariance
 from mbkf.sensors.lasting_noise import MOVEMENT_HZ, white_noise_m
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.subject_sensor import subject_sensor
 from mbkf.trial.preparation.filters import FilterInputs
 
 NEVER_LEARNT = 0.3
@@ -63,7 +64,7 @@ def trial_inputs(
     plates, remarks = cleaned(plates, subject.mass_kg)
     by_name = {marker.name: marker for marker in subject.markers}
     tracked = [by_name[name] for name in shown.names]
-    sensor = MarkerSensor(model, [m.segment for m in tracked], np.array([m.position_m for m in tracked]))
+    sensor = subject_sensor(model, tracked)
     noise_m, spread_m = _noise(tracked, 1.0 / shown.rate_hz, settings.dynamic.markers.innovation_share)
     present = shown.present.mean(axis=0) >= MIN_PRESENT
     inputs = FilterInputs(
