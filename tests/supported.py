@@ -42,6 +42,7 @@ def foot_loads(wrench, unread=False, floor_m=0.0):
         np.tile([0, 1], (frames, 1)),
         np.full(frames, not unread),
         np.full((frames, 2), unread),
+        np.full(frames, True),
         floor_m,
         (),
     )

@@ -235,19 +235,28 @@ def print_summary(summary: Summary, folder: Path) -> None:
         rows.append(("hidden markers RMS / max", hidden))
     for name, value in (summary["truth"] or {}).items():
         rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
+    rows.append(("unexplained loads", "\n".join(_unexplained(summary))))
     rows += [("checks", "\n".join(_checks(summary)))]
     title = f"{summary['trial']} ({summary['filter']} filter)"
     table = Table(title=title, title_justify="left", show_header=False)
     table.add_column()
     table.add_column(justify="right")
     for name, text in rows:
-        if text or name not in ("markers ignored", "checks"):
+        if text or name not in ("markers ignored", "unexplained loads", "checks"):
             table.add_row(name, text)
     console = terminal()
     console.print(table)
     for warning in summary["warnings"]:
         console.print(f"note: {warning}", soft_wrap=True)
     console.print(str(folder), soft_wrap=True)
+
+
+def _unexplained(summary: Summary) -> list[str]:
+    """Unexplained forces with their times."""
+    return [
+        f"{one['force_n']:.0f} N {one['direction']}, {one['from_s']:.2f} to {one['to_s']:.2f} s"
+        for one in summary["unexplained"]
+    ]
 
 
 def _checks(summary: Summary) -> list[str]:

@@ -26,8 +26,9 @@ from mbkf.io.dimensions import (
 )
 from mbkf.io.estimates import Estimates
 from mbkf.io.findings import Finding
-from mbkf.io.quantities import Column, attribute, change, flag, offset, quantity, spread, texts
+from mbkf.io.quantities import LATER, Column, attribute, change, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
+from mbkf.io.unexplained import UnexplainedLoad
 
 SOURCE_CODES = {one.value: one.name.lower() for one in Source}
 
@@ -184,6 +185,10 @@ class SupportLoads:
     )
 
 
+def _unexplained(text: str) -> tuple[UnexplainedLoad, ...]:
+    return tuple(UnexplainedLoad(**{**one, "vector_n": tuple(one["vector_n"])}) for one in json.loads(text))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Quality:
     """Frames that count."""
@@ -191,8 +196,19 @@ class Quality:
     measured: BoolArray = flag("time", "plates measure every load", section="valid-frames")
     valid: BoolArray = flag(
         "time",
-        "every load is measured, or estimated so well that the torques which it changes are known",
+        "every load is measured, or estimated so well that the torques which it changes are known, and no unexplained "
+        "force acts",
         section="valid-frames",
+    )
+    unexplained_force_n: Array = quantity(
+        "time xyz",
+        NEWTON,
+        "force that acts besides weight and contacts, mean over 0.5 s; NaN where no plate reads a foot's load",
+        LATER,
+        section="unexplained-loads",
+    )
+    unexplained: tuple[UnexplainedLoad, ...] = attribute(
+        "stretches in which such a force acts; their frames are not valid", (), read=_unexplained
     )
 
 

@@ -62,6 +62,30 @@ class ContactTold(TypedDict):
     how: str
 
 
+class UnexplainedTold(TypedDict):
+    """A stretch of time in which the body moves as if a force acted on it that no contact gives.
+
+    Attributes:
+        from_s, to_s: Times of its first and its last frame.
+        force_n, sd_n: Size of the mean force and its standard deviation, N.
+        vector_n: (3,) the mean force on the body, world axes, N.
+        direction: "upward", "downward", "horizontal", "obliquely upward" or "obliquely downward".
+        share_of_weight: Its size over body weight.
+        cause: "mass", "clock", "right_foot" or "left_foot" where that is likelier than a load, else "".
+        hint: Meaning and remedy.
+    """
+
+    from_s: float
+    to_s: float
+    force_n: float
+    sd_n: float
+    vector_n: list[float]
+    direction: str
+    share_of_weight: float
+    cause: str
+    hint: str
+
+
 class Summary(TypedDict):
     """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
 
@@ -85,9 +109,10 @@ class Summary(TypedDict):
         hidden_marker_rms_mm, hidden_marker_max_mm: Distances of markers hidden on purpose.
         residual_force_rms_n, residual_moment_rms_nm: Residual at the pelvis in measured frames.
         valid_frames: Frames in which every contact that bears load is measured, or estimated so that the torques it
-            loads are known well enough (:mod:`mbkf.trial.results.validity`).
+            loads are known well enough (:mod:`mbkf.trial.results.validity`), and in which no unexplained force acts.
         measured_frames: Frames in which plates measure every contact.
         contacts: Which part of the body bore load from when to when, how much, and how that is known.
+        unexplained: Forces that no contact explains, from when to when, how much and whereto.
         plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.
         torque_peak_nm_per_kg, torque_sd_nm, torque_sd_offset_nm, torque_sd_varying_nm: Flexion torques by joint, their
             standard deviations, and the two parts of these (:data:`mbkf.io.results.SdPart`).
@@ -131,6 +156,7 @@ class Summary(TypedDict):
     valid_frames: int
     measured_frames: int
     contacts: list[ContactTold]
+    unexplained: list[UnexplainedTold]
     plate_force_change_rms_n: float | None
     plate_moment_change_rms_nm: float | None
     torque_peak_nm_per_kg: dict[str, float | None]

@@ -11,6 +11,7 @@ from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.findings import Finding, not_judged
 from mbkf.io.results import ARRAYS, QUANTITIES, Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
+from mbkf.io.unexplained import UnexplainedLoad
 from tests.io.reconstructions import made_up, made_up_whole
 from tests.sealed import unsealed
 
@@ -30,6 +31,7 @@ def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
             Finding("mass", 30.4, 1.0, "%", 5.0, "outside", "weigh ü", 70.0),
             not_judged("x", "mm", 1.0, "y"),
         ),
+        unexplained=(UnexplainedLoad(0.1, 0.4, (1.0, -2.0, 590.0), 8.0, 0.82, "mass", "weigh ü"),),
     )
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")

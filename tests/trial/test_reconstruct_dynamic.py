@@ -101,6 +101,29 @@ def test_newtons_law_holds_with_the_measured_plates():
     assert rms(made(filter="kinematic").residual_force_n[LATE]) > 10.0
 
 
+@pytest.mark.parametrize("filter", ["dynamic", "kinematic"])
+def test_a_load_that_plates_lack_spoils_its_frames(filter):
+    """Plates read 20 % less throughout: the body weighs less, or a harness bears it."""
+    plates = tuple(
+        replace(plate, force_n=0.8 * plate.force_n, moment_nm=0.8 * plate.moment_nm)
+        for plate in capture().plates
+    )
+    settings = ReconstructSettings(filter=filter, smooth=False, correct_markers=False, checks=False)
+    found = reconstruct(replace(capture(), plates=plates), trial("squat").subject, settings=settings)
+    (load,) = found.unexplained
+    assert load.direction == "upward" and load.cause == "mass"
+    assert load.share == pytest.approx(0.2, abs=0.02)
+    assert found.measured.all() and not found.valid.any()
+    assert load.sentence in found.warnings
+
+
+def test_without_plates_loads_follow_the_motion_and_nothing_is_unexplained():
+    found = made(without_plates=tuple(plate.name for plate in capture().plates), smooth=True)
+    assert found.unexplained == () and np.isnan(found.unexplained_force_n).all()
+    weight = 9.80665 * found.subject.mass_kg
+    assert np.abs(made().unexplained_force_n).max() < 0.02 * weight
+
+
 def test_plates_are_moved_by_less_than_their_noise():
     change = made().plate_change
     assert change.shape == (80, 2, 6)

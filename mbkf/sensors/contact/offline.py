@@ -57,6 +57,7 @@ class FootLoads:
         foot_of_plate: (T, P) 0 right, 1 left, 2 both, -1 none.
         valid: (T,) frames in which every loaded foot stands on a recorded plate.
         unread: (T, 2) feet that touch the floor where no plate reads.
+        recorded: (T,) frames in which every plate was recorded.
         floor_m: Height of the floor as the soles show it; NaN where they were never tracked.
         warnings: Remarks for the reader of a report.
     """
@@ -68,6 +69,7 @@ class FootLoads:
     foot_of_plate: Array
     valid: BoolArray
     unread: BoolArray
+    recorded: BoolArray
     floor_m: float
     warnings: tuple[str, ...]
 
@@ -111,7 +113,8 @@ def assign_feet(
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     valid &= ~_on_silent_plate(areas, soles, on_plate, recorded, rate_hz)
     floor_m = _floor_height(soles, on_plate)
-    return FootLoads(total, at_feet, free, wrench, foot, valid, touching & ~on_plate, floor_m, warnings)
+    unread, everywhere = touching & ~on_plate, np.asarray(recorded.all(axis=1))
+    return FootLoads(total, at_feet, free, wrench, foot, valid, unread, everywhere, floor_m, warnings)
 
 
 def _facing_down(model: Body, q: Array) -> BoolArray:

@@ -23,6 +23,7 @@ from mbkf.trial.live.filter import live_inputs
 from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
+from mbkf.trial.results.warnings import unexplained_remarks
 
 
 def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
@@ -72,7 +73,8 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
             changes.follow_all(logged.rows)
             result = changes.added_to(result, logged.rows)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-    return replace(found, settings=logged.settings)
+    warnings = (*unexplained_remarks(found.unexplained), *found.warnings)
+    return replace(found, settings=logged.settings, warnings=warnings)
 
 
 def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracked: Track) -> Reconstruction:

@@ -15,13 +15,16 @@ from mbkf.io.result_groups import Measurements, Provenance, Quality
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.utf8 import storable
+from mbkf.model.body import Body
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.loads.balance import LoadBalance
+from mbkf.trial.loads.unexplained import unexplained_loads
 from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
 from mbkf.trial.results.clinical import clinical_motion
 from mbkf.trial.results.progression import pelvis_frame
-from mbkf.trial.results.reactions import ground_reactions
+from mbkf.trial.results.reactions import GroundReactions, ground_reactions
 from mbkf.trial.results.readings import angle_reading, zero_posture
 from mbkf.trial.results.summary import ROOT_DOFS
 from mbkf.trial.results.validity import torques_known, torques_possible
@@ -64,6 +67,7 @@ def assemble(
     source = ground.loads.foot_source
     known = torques_known(model, motion.coordinate_names, moments.moments_sd, source, bears)
     known &= torques_possible(torques.tau, ROOT_DOFS, model.mass_kg)
+    judged = unexplained_loads(balance_of(model, result, measured.rate_hz, ground), times_s)
     instrument = "marker" if measured.names else "sensor"
     of_track = track_warnings(result, motion.dof_names, inputs.unobservable, instrument)
     return Reconstruction.of(
@@ -97,8 +101,26 @@ def assemble(
         moments,
         ground.loads,
         ground.supports,
-        Quality(measured=ground.measured & located, valid=ground.accounted & located & known),
+        Quality(
+            measured=ground.measured & located,
+            valid=ground.accounted & located & known & ~judged.acts,
+            unexplained_force_n=judged.force_n,
+            unexplained=judged.loads,
+        ),
     )
+
+
+def balance_of(model: Body, result: Track, rate_hz: float, ground: GroundReactions) -> LoadBalance:
+    """Positions and contacts of a tracked trial.
+
+    Args:
+        model: The body.
+        result: The track.
+        rate_hz: Frame rate.
+        ground: Loads on it.
+    """
+    bears = np.nan_to_num(ground.supports.support_wrench[..., :3]).sum(axis=1)
+    return LoadBalance.of(model, result.q, rate_hz, ground.loads.foot_wrench[..., :3], bears, ground.judged)
 
 
 def _located(result: Track) -> BoolArray:

@@ -37,6 +37,8 @@ class GroundReactions:
         measured: (T,) every loaded foot on a measured plate, of its own or shared, and no other part bears.
         accounted: (T,) measured, or a load that no plate reads is estimated: a foot beside plates or another part; no
             plate is loaded by something other than a foot.
+        judged: (T,) every loaded foot is read by a plate, so that motion and loads can contradict each other; loads
+            that are estimated follow the motion.
         warnings: Remarks for the reader.
     """
 
@@ -45,6 +47,7 @@ class GroundReactions:
     torques: Torques
     measured: BoolArray
     accounted: BoolArray
+    judged: BoolArray
     warnings: tuple[str, ...]
 
 
@@ -68,6 +71,7 @@ def ground_reactions(
         tau = by_plates.tau * known
         loads = _measured_loads(read)
         measured = accounted = read.valid
+        judged = read.recorded & ~read.unread.any(axis=1)
         shared = _shared_warning((read.foot_of_plate == BOTH).any(axis=1))
         unread = ("no force plates: torques and residuals are not computed",)
         warnings = (*read.warnings, *shared) if plates else unread
@@ -77,6 +81,7 @@ def ground_reactions(
         bears = bearing(supports.support_wrench).any(axis=1)
         estimated = (loads.foot_source == Source.ESTIMATED).any(axis=1) | bears
         measured = read.valid & ~estimated
+        judged = read.recorded & (loads.foot_source != Source.ESTIMATED).all(axis=1)
         accounted = measured | (estimated & ~_stray(read, plates))
         held = ~falling(track.q[:, 2], rate_hz) & ~bears
         contact = _contact_warnings(track.foot_contact, plates)
@@ -93,7 +98,8 @@ def ground_reactions(
         residual_moment_nm=by_plates.residual_moment_nm * known,
     )
     loads = replace(loads, read_plate_names=tuple(plate.name for plate in plates))
-    return GroundReactions(loads, supports, torques, measured, accounted, warnings)
+    judged &= bool(plates) & track.tracked
+    return GroundReactions(loads, supports, torques, measured, accounted, judged, warnings)
 
 
 def _measured_loads(read: FootLoads) -> Reactions:

@@ -9,8 +9,9 @@ from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.contacts import ContactInterval
 from mbkf.io.results import Reconstruction, SdPart
-from mbkf.io.results_folder import ContactTold, StatedAxes, Summary
+from mbkf.io.results_folder import ContactTold, StatedAxes, Summary, UnexplainedTold
 from mbkf.io.truth import Truth
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.human import HumanModel, reference_body
 from mbkf.trial.results import innovations
 from mbkf.trial.results.progression import kind_of
@@ -67,6 +68,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "valid_frames": int(r.valid.sum()),
         "measured_frames": int(r.measured.sum()),
         "contacts": [contact_summary(one) for one in r.contacts],
+        "unexplained": [unexplained_summary(one) for one in r.unexplained],
         "plate_force_change_rms_n": _rms(change[..., :3]),
         "plate_moment_change_rms_nm": _rms(change[..., 3:]),
         "torque_peak_nm_per_kg": peaks,
@@ -96,6 +98,21 @@ def contact_summary(contact: ContactInterval) -> ContactTold:
         "peak_n": contact.peak_n,
         "sd_n": contact.sd_n if np.isfinite(contact.sd_n) else None,
         "how": contact.how,
+    }
+
+
+def unexplained_summary(load: UnexplainedLoad) -> UnexplainedTold:
+    """An unexplained load as summaries have it."""
+    return {
+        "from_s": load.from_s,
+        "to_s": load.to_s,
+        "force_n": load.force_n,
+        "sd_n": load.sd_n,
+        "vector_n": list(load.vector_n),
+        "direction": load.direction,
+        "share_of_weight": load.share,
+        "cause": load.cause,
+        "hint": load.hint,
     }
 
 

@@ -10,11 +10,15 @@ from mbkf.filters.record import Track
 from mbkf.io.findings import Finding
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.checks.judge import messages
 from mbkf.trial.preparation.coverage import INFERRED_KEY
 from mbkf.trial.results import innovations
 from mbkf.trial.results.supports import supports_remarks
+
+MOST_LISTED = 4
+"""Number of unexplained loads that have a remark of their own."""
 
 
 def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruction) -> tuple[str, ...]:
@@ -29,12 +33,20 @@ def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruct
     inferred, doubts = report.get(INFERRED_KEY), report.get(DOUBTS_KEY)
     return (
         *messages(tuple(checks)),
+        *unexplained_remarks(found.unexplained),
         *innovations.remarks(found),
         *((str(inferred["told"]),) if isinstance(inferred, dict) else ()),
         *(f"the subject file: {doubt}" for doubt in (doubts if isinstance(doubts, list) else ())),
         *found.warnings,
         *supports_remarks(found.contacts),
     )
+
+
+def unexplained_remarks(loads: Sequence[UnexplainedLoad]) -> tuple[str, ...]:
+    """A remark on each unexplained load, the largest first."""
+    largest = sorted(loads, key=lambda one: -one.force_n)
+    rest = (f"and {len(loads) - MOST_LISTED} smaller unexplained forces",) if len(loads) > MOST_LISTED else ()
+    return (*(one.sentence for one in largest[:MOST_LISTED]), *rest)
 
 
 def track_warnings(

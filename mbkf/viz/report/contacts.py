@@ -29,7 +29,7 @@ def contact_section(r: Reconstruction) -> str:
     """The chart and the table of contacts, and the forces on parts besides the feet."""
     contacts = r.contacts
     if not contacts:
-        return section("contacts", "Contacts", paragraph("No load on the body is known."))
+        return section("contacts", "Contacts", paragraph("No load on the body is known."), *_unexplained(r))
     heads = ("", "from, s", "to, s", "peak, N", "± 2 standard deviations, N", "")
     rows = table(heads, [_row(one) for one in contacts], "contacts")
     return section(
@@ -38,6 +38,7 @@ def contact_section(r: Reconstruction) -> str:
         key(*((how, text) for how, text in HOW.items() if any(one.how == how for one in contacts))),
         contact_chart(r, contacts),
         folded(f"All {len(contacts)} contacts", rows) if len(contacts) > MOST_ROWS else rows,
+        *_unexplained(r),
         *_forces(r),
     )
 
@@ -82,6 +83,26 @@ def _forces(r: Reconstruction) -> list[str]:
         key(*entries, *band_key(False)),
         charts(cells, partial(time_chart, r.times_s), is_long(r)),
     ]
+
+
+def _unexplained(r: Reconstruction) -> list[str]:
+    """The table of forces that no contact explains."""
+    if not r.unexplained:
+        return []
+    heads = ("direction", "from, s", "to, s", "mean, N", "± 2 standard deviations, N", "% of body weight", "")
+    rows = [
+        (
+            one.direction,
+            number(one.from_s, 2),
+            number(one.to_s, 2),
+            number(one.force_n, 0),
+            number(2.0 * one.sd_n, 0),
+            number(100.0 * one.share, 0),
+            one.hint,
+        )
+        for one in r.unexplained
+    ]
+    return ["<h3>Forces that no contact explains</h3>", table(heads, rows, "unexplained")]
 
 
 def _row(one: ContactInterval) -> tuple[str, ...]:

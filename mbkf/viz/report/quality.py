@@ -94,7 +94,7 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     missing = summary.get("missing_fraction") or 0.0
     tracked = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
     fit = [_markers(r, summary), _tracked(r, tracked), *_ignored(summary)]
-    others = [*_residuals(r, summary), _nis(summary)]
+    others = [*_unexplained(r), *_residuals(r, summary), _nis(summary)]
     if any(one.kind == BAD for one in fit):
         others = [_doubted(one) for one in others]
         fit = [_doubted(one) for one in fit]
@@ -155,6 +155,23 @@ def _keypoint_noise_mm(r: Reconstruction) -> float:
     if not any(marker.correlated_m for marker in used):
         return 0.0
     return 1e3 * float(np.sqrt(np.mean([marker.noise_m**2 for marker in used])))
+
+
+def _unexplained(r: Reconstruction) -> list[Verdict]:
+    """The largest force that no contact explains; nothing where plates read no foot."""
+    if not r.unexplained:
+        seen = np.isfinite(r.unexplained_force_n).all(axis=1)
+        if not seen.any():
+            return []
+        share = np.abs(r.unexplained_force_n[seen]).max() / (r.subject.mass_kg * GRAVITY_M_S2)
+        remark = (
+            "of body weight at most over half a second, from positions and contacts alone; good: below 8 %"
+        )
+        return [Verdict("Unexplained force", f"{100.0 * share:.1f} %", GOOD, remark)]
+    largest = max(r.unexplained, key=lambda one: one.force_n)
+    more = f"; {len(r.unexplained) - 1} more below" if len(r.unexplained) > 1 else ""
+    remark = f"{largest.direction}, {largest.from_s:.2f} to {largest.to_s:.2f} s: {largest.hint}{more}"
+    return [Verdict("Unexplained force", f"{largest.force_n:.0f} N", BAD, remark)]
 
 
 def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:

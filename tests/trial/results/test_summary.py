@@ -8,6 +8,7 @@ import pytest
 
 from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.model.human import HumanModel
 from mbkf.trial.results.summary import compare_with_truth, summarise
@@ -17,7 +18,7 @@ KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
     "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
-    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts",
+    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts", "unexplained",
     "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "torque_sd_offset_nm",
     "torque_sd_varying_nm", "nis_per_dof", "nis", "marker_noise_mm_by_name", "later_frames",
@@ -66,7 +67,7 @@ def test_an_empty_or_untracked_reconstruction_has_no_numbers_but_no_error():
         is None
     )
     assert lost["valid_frames"] == lost["measured_frames"] == 0
-    assert lost["contacts"] == empty["contacts"] == []
+    assert lost["contacts"] == empty["contacts"] == lost["unexplained"] == []
 
 
 def test_marker_errors_leave_out_hidden_missing_and_untracked_samples():
@@ -117,6 +118,17 @@ def test_contacts_are_told_as_plain_data():
     assert right["sd_n"] == pytest.approx(3.0) and pelvis["sd_n"] is None
     assert (pelvis["from_s"], pelvis["to_s"]) == (r.times_s[6], r.times_s[11])
     assert pelvis["peak_n"] == 250.0
+
+
+def test_unexplained_loads_are_plain_data():
+    load = UnexplainedLoad(1.2, 9.8, (30.0, 0.0, 590.0), 8.0, 0.82, "", "a seat")
+    (found,) = summarise(made_up(unexplained=(load,)))["unexplained"]
+    assert found["force_n"] == pytest.approx(590.76, abs=0.01)
+    assert found["vector_n"] == [30.0, 0.0, 590.0]
+    assert {key: found[key] for key in found if key not in ("force_n", "vector_n")} == {
+        "from_s": 1.2, "to_s": 9.8, "sd_n": 8.0, "direction": "upward", "share_of_weight": 0.82, "cause": "",
+        "hint": "a seat",
+    }  # fmt: skip
 
 
 def test_plate_changes_are_per_component_and_torques_per_joint():

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from mbkf.io.findings import Finding
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.clinical import dof_names
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.preparation.coverage import INFERRED_KEY
-from mbkf.trial.results.warnings import all_warnings, track_warnings
+from mbkf.trial.results.warnings import MOST_LISTED, all_warnings, track_warnings, unexplained_remarks
 from tests.io.reconstructions import made_up
 from tests.motions import random_model, subject_of, track_of
 
@@ -54,6 +55,16 @@ def test_each_condition_is_counted(known, words):
 def test_dofs_that_no_marker_moves_are_named():
     (line,) = warnings(unobservable=NAMES[7:9])
     assert line.startswith("2 dofs move no marker") and f"{NAMES[7]}, {NAMES[8]}" in line
+
+
+def test_unexplained_loads_are_listed_the_largest_first():
+    loads = [UnexplainedLoad(k, k + 1, (0.0, 0.0, 100.0 + k), 1.0, 0.1) for k in range(MOST_LISTED + 2)]
+    found = unexplained_remarks(loads)
+    assert len(found) == MOST_LISTED + 1
+    assert found[0].startswith(f"unexplained force {101 + MOST_LISTED} N upward")
+    assert found[-1] == "and 2 smaller unexplained forces"
+    assert unexplained_remarks(loads[:1]) == (loads[0].sentence,)
+    assert all_warnings([], subject_of(MODEL), made_up(unexplained=tuple(loads[:1])))[0] == loads[0].sentence
 
 
 def test_findings_come_first_and_warnings_of_the_trial_follow():

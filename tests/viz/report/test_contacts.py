@@ -6,6 +6,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.viz.report.contacts import MOST_ROWS, contact_chart, contact_section, support_cells
 from tests.motions import assert_near
 from tests.recordings import RAIL, SEAT, leaning_walk, walk
@@ -29,6 +30,14 @@ def test_every_contact_has_its_row():
     ]
     assert hand[5] == "estimated from the motion"
     assert {row[0] for row in rows} == {"Right foot", "Left foot", "Pelvis", "Right hand"}
+
+
+def test_forces_that_no_contact_explains_have_a_table():
+    assert "no contact explains" not in contact_section(walk())
+    seat = UnexplainedLoad(1.2, 9.8, (0.0, 0.0, 590.0), 8.0, 0.82, "", "a seat")
+    text = contact_section(replace(walk(), unexplained=(seat,)))
+    assert rows_of(text)[-1] == ["upward", "1.20", "9.80", "590", "16", "82", "a seat"]
+    assert rows_of(text[text.index("no contact explains") :]) == [rows_of(text)[-1]]
 
 
 def test_bars_stand_when_parts_bear_and_tell_how_that_is_known():

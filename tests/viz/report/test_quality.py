@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.trial.results.summary import summarise
 from mbkf.viz.report.quality import BAD, CARE, GOOD, NONE, quality_section, verdicts
 from tests.recordings import broken_walk, walk
@@ -44,6 +45,21 @@ def test_keypoints_are_judged_by_their_noise(rms_mm, kind):
     markers = tuple(replace(m, noise_m=0.02, correlated_m=0.01, correlation_s=0.3) for m in r.subject.markers)
     r = replace(r, subject=replace(r.subject, markers=markers))
     assert judged(r, marker_rms_mm=rms_mm, marker_max_mm=110.0)["Marker error"].kind == kind
+
+
+def test_an_unexplained_force_is_bad_and_none_is_good():
+    assert "Unexplained force" not in judged(walk())
+    force = np.tile([0.0, 0.0, 0.03 * 9.80665 * walk().subject.mass_kg], (walk().frames, 1))
+    force[0] = np.nan
+    explained = replace(walk(), unexplained_force_n=force)
+    tile = judged(explained)["Unexplained force"]
+    assert (tile.kind, tile.value) == (GOOD, "3.0 %")
+    seat = UnexplainedLoad(1.2, 9.8, (0.0, 0.0, 590.0), 8.0, 0.82, "", "a seat")
+    tile = judged(replace(explained, unexplained=(seat, replace(seat, vector_n=(0.0, 0.0, 60.0)))))[
+        "Unexplained force"
+    ]
+    assert (tile.kind, tile.value) == (BAD, "590 N")
+    assert tile.remark == "upward, 1.20 to 9.80 s: a seat; 1 more below"
 
 
 def test_only_a_filter_that_imposes_newtons_law_corrects():
