@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.exchanges import Distances, Exchange, body_distances, find_exchanges, undo_exchanges
+from mbkf.labelling.turned_segments import find_turned
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -36,7 +38,8 @@ def names_put_right(
         HumanModel.of(subject), [m.segment for m in own], np.array([m.position_m for m in own])
     )
     placed = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in own])
-    found = find_exchanges(markers.positions_m, body_distances(sensor, placed))
+    neutral = sensor.positions(sensor.model.neutral())
+    found = _found(markers.positions_m, neutral, sensor, body_distances(sensor, placed))
     return _changed(markers, found), _exchanges(markers, found)
 
 
@@ -71,11 +74,8 @@ def trials_put_right(
             [marker.segment for marker in match.values()],
             np.array([marker.position_m for marker in match.values()]).reshape(-1, 3),
         )
-        found = (
-            find_exchanges(own.positions_m, _standing(static.positions_m[:, columns], sensor))
-            if match
-            else ()
-        )
+        stood = static.positions_m[:, columns]
+        found = _found(own.positions_m, _middle(stood), sensor, _standing(stood, sensor)) if match else ()
         exchanges += _exchanges(own, found)
         fresh = _changed(own, found)
         positions = trial.markers.positions_m.copy()
@@ -89,6 +89,23 @@ def trials_put_right(
 def exchange_notes(found: Sequence[tuple[str, str, int]]) -> tuple[str, ...]:
     """One line about each pair."""
     return tuple(f"names {a} and {b} exchanged in {frames} frames, put right" for a, b, frames in found)
+
+
+def _found(
+    positions_m: Array, places_m: Array, sensor: MarkerSensor, distances: Distances
+) -> tuple[Exchange, ...]:
+    """Names permuted within segments, then pairs that are exchanged in some frames."""
+    proximal = {one.name: one.parent for one in sensor.model.description.segments if one.parent}
+    turned = find_turned(positions_m, places_m, sensor.segments, proximal)
+    return (*turned, *find_exchanges(undo_exchanges(positions_m, turned), distances))
+
+
+def _middle(positions_m: Array) -> Array:
+    """(M, 3) median place of each marker; NaN of a marker that is never seen."""
+    places = np.full(positions_m.shape[1:], np.nan)
+    seen = np.isfinite(positions_m).any(axis=(0, 2))
+    places[seen] = np.nanmedian(positions_m[:, seen], axis=0)
+    return places
 
 
 def _standing(positions_m: np.ndarray, sensor: MarkerSensor) -> Distances:

@@ -61,6 +61,20 @@ def test_trials_are_put_right_by_the_standing_trial(real_data):
     assert (again, none) == ([right], ())
 
 
+def test_a_cluster_named_back_to_front_is_put_right(real_data):
+    """Front and rear markers of the left thigh have each other's names in this walk: it would be turned about."""
+    folder = real_data / "opencap_s6_walk"
+    static, trial = read_capture(folder / "s6_static1.trc"), read_capture(folder / "s6_walking1.trc")
+    every = trial.markers.frames
+    pairs = (("L_thigh1", "L_thigh3", every), ("L_thigh2", "L_thigh4", every))
+    _, told = trials_put_right(static.markers, [trial], load_protocol("opencap_lab"))
+    assert told == pairs
+    subject = scale(static, mass_kg=59.0, settings=ScalingSettings(frames_per_trial=15))
+    found = reconstruct(trial, subject, settings=KINEMATIC)
+    assert found.names_exchanged == pairs
+    assert np.degrees(np.abs(found.angle("hip_rotation_l"))).max() < 40.0
+
+
 def test_a_laboratory_s_exchange_is_told_and_fits_better(real_data):
     """RTOE and RMT5 of this run change names back and forth in 43 of 123 frames."""
     folder = real_data / "bmc_walk_run"
