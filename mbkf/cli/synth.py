@@ -33,6 +33,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         default=0.02,
         help="fraction of marker samples hidden (0.02)",
     )
+    parser.add_argument(
+        "--varied",
+        action="store_true",
+        help="joint centres, posture and skin that differ as people's do, to judge stated intervals",
+    )
     add_out(parser, "DIR", "folder to write", required=True)
 
 
@@ -78,6 +83,7 @@ def run(args: argparse.Namespace) -> int:
             seed=args.seed,
             rate_hz=args.rate,
             settings=settings,
+            varied=args.varied,
             progress=report,
         )
     paths = write_folder(subject, capture, args.out)

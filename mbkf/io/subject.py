@@ -25,6 +25,9 @@ FARTHEST_M, SPREADS_M, SCALES, HEIGHTS_M = 1.5, (1e-6, 1.0), (0.2, 2.0), (0.3, 2
 FARTHEST_TURN = 1e3
 """Bound of a coordinate of the posture, rad or m."""
 
+FARTHEST_CENTRE_M, FARTHEST_ZERO_DEG = 0.2, 90.0
+"""Bounds of a displacement of a joint centre, and of the zero of an angle or a joint's usual rotation."""
+
 MOST_SLID = 10.0
 """Bound of a share of a displacement by flexion; at 180° it is 2."""
 
@@ -76,6 +79,18 @@ _SCALE_FACTORS = fields.part(
 _FACTOR = fields.number("factor", "a scale factor", SCALES)
 _INERTIA = fields.part("inertia", "a segment's own inertia", "[inertia.SEGMENT]")
 _MARKERS = fields.part("marker", "a marker", "[[marker]]")
+_CENTRES = fields.part(
+    "joint_centres_m", "displacements of joint centres, known of synthetic persons alone", "[joint_centres_m]"
+)
+_CENTRE = fields.number("centre", "displacement along one axis", (-FARTHEST_CENTRE_M, FARTHEST_CENTRE_M), "m")
+_ZEROS = fields.part(
+    "angle_zeros_deg", "zeros of angles by the bones, known of synthetic persons alone", "[angle_zeros_deg]"
+)
+_ZERO = fields.number("zero", "zero of an angle", (-FARTHEST_ZERO_DEG, FARTHEST_ZERO_DEG), "deg")
+_HABITS = fields.part(
+    "habit_deg", "how joints are held in all motions, known of synthetic persons alone", "[habit_deg]"
+)
+_HABIT = fields.number("habit", "rotation about one axis", (-FARTHEST_ZERO_DEG, FARTHEST_ZERO_DEG), "deg")
 _COVARIANCE = fields.part("covariance", "uncertainty of factors and marker places", "[covariance]")
 SUBJECT = fields.record(
     "subject",
@@ -88,6 +103,9 @@ SUBJECT = fields.record(
     _SCALE_FACTORS,
     _INERTIA,
     _MARKERS,
+    _CENTRES,
+    _ZEROS,
+    _HABITS,
     _COVARIANCE,
 )
 """Entries of a subject file."""
@@ -155,6 +173,13 @@ class Subject:
         inertia: By segment, the difference of its mass and centre of mass from the table.
         covariance: Uncertainty of scale factors and marker places; None for a body that counts as known exactly, or
             that an older version scaled.
+        joint_centres_m: Displacement of joint centres from where the scale factors put them, m, by the names of
+            :func:`mbkf.model.joint_centres.centre_names`; those without a name stay there. Known of synthetic persons
+            alone: scaling finds no displacements, only their effect on what it finds.
+        angle_zeros_deg: By angle, the degrees to add to its value in the body's axes for its value by this person's
+            bones. Known of synthetic persons alone.
+        habit_deg: By joint and axis (``"torso_y"``), the rotation in which the person holds a joint besides what a
+            motion asks of everybody. Known of synthetic persons alone.
     """
 
     body: str
@@ -167,6 +192,9 @@ class Subject:
     body_text: str = ""
     inertia: dict[str, SegmentInertia] = field(default_factory=dict)
     covariance: BodyCovariance | None = field(default=None, repr=False)
+    joint_centres_m: dict[str, float] = field(default_factory=dict)
+    angle_zeros_deg: dict[str, float] = field(default_factory=dict)
+    habit_deg: dict[str, float] = field(default_factory=dict)
 
     @property
     def scaled_markers(self) -> Collection[str] | None:
@@ -243,6 +271,9 @@ def write_subject(subject: Subject, path: str | Path) -> None:
         "protocol": subject.protocol,
         "scale_factors": {name: float(value) for name, value in subject.scale_factors.items()},
         "inertia": {name: asdict(own) for name, own in subject.inertia.items()} or None,
+        "joint_centres_m": subject.joint_centres_m or None,
+        "angle_zeros_deg": subject.angle_zeros_deg or None,
+        "habit_deg": subject.habit_deg or None,
         "marker": [_marker_table(marker) for marker in subject.markers],
         "covariance": None if subject.covariance is None else subject.covariance.as_table(),
     }
@@ -285,6 +316,9 @@ def read_subject(path: str | Path) -> Subject:
             body_text=read.get(_BODY_TEXT) or "",
             inertia=_inertia(read),
             covariance=_covariance(read),
+            joint_centres_m=read.numbers_by_name(_CENTRES, _CENTRE),
+            angle_zeros_deg=read.numbers_by_name(_ZEROS, _ZERO),
+            habit_deg=read.numbers_by_name(_HABITS, _HABIT),
         )
     _check_report(subject, read)
     return subject

@@ -24,6 +24,7 @@ from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body, SegmentJoint
 from mbkf.model.body_file import load_body, parse_body
 from mbkf.model.description import JOINT_DOF, BodyDescription, Roles, Segment
+from mbkf.model.joint_centres import centres_of
 from mbkf.numerics.rotations import travel_by_turn
 
 
@@ -124,12 +125,13 @@ class HumanModel(Body):
         """The scaled body of a subject.
 
         Raises:
-            UnknownName: The subject's reference body or a scale factor is unknown.
+            UnknownName: The subject's reference body, a scale factor or a displacement of a joint centre is unknown.
             FileFormatError: The body file that the subject carries is damaged.
             InvalidInput: A scale factor of the body is missing, or the standing posture belongs to another body.
         """
         body = reference_body(subject)
-        model = cls(body, scale_of(subject, body), subject.mass_kg, subject.inertia)
+        centres_m = centres_of(subject, body)
+        model = cls(body, scale_of(subject, body), subject.mass_kg, subject.inertia, centres_m)
         posture = subject.standing_q
         if posture is not None and posture.shape != (model.nq,):
             raise InvalidInput(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.errors import UnknownName
+from mbkf.io.subject import Subject
 from mbkf.model.body import Body
 from mbkf.model.description import BodyDescription
 from mbkf.model.sides import mirrored
@@ -16,6 +18,19 @@ OWN_SHARE = 0.4
 def centre_names(body: BodyDescription) -> tuple[str, ...]:
     """(E,) names of the displacements of joint centres, three for each joint that has a spread."""
     return tuple(f"{centre.segment}_centre_{axis}" for centre in body.joint_centres for axis in "xyz")
+
+
+def centres_of(subject: Subject, body: BodyDescription) -> Array:
+    """(E,) displacements of a subject's joint centres, in the order of its body, m; 0 where it states nothing.
+
+    Raises:
+        UnknownName: The body does not have one of them.
+    """
+    names = centre_names(body)
+    for name in subject.joint_centres_m:
+        if name not in names:
+            raise UnknownName("displacement of a joint centre", name, names)
+    return np.array([subject.joint_centres_m.get(name, 0.0) for name in names])
 
 
 def centre_covariance(body: BodyDescription) -> Array:

@@ -14,7 +14,10 @@ def joint_origin(model: Body, segment: str) -> Array:
     Raises:
         UnknownName: The segment does not exist.
     """
-    own = model.description.segment(segment)
-    if own.parent == "world":
+    parent = model.description.segment(segment).parent
+    if parent == "world":
         return np.zeros(3)
-    return model.axis_scale(model.description.segment(own.parent)) * own.origin_m
+    tree, first = model.pin_model, model.joint(segment).joint_id
+    while tree.parents[first] != model.joint(parent).joint_id:  # a universal joint is two hinges
+        first = tree.parents[first]
+    return np.array(tree.jointPlacements[first].translation)

@@ -21,6 +21,7 @@ from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import reference_body, scale_of
+from mbkf.model.joint_centres import centres_of
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.model.subject_covariance import covariance_of
 from mbkf.numerics.levenberg_marquardt import minimise
@@ -144,7 +145,8 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         prior = replace(prior, slides_m=_slides_m(subject, markers, flexions))
     posture = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_OBSERVATIONS
     weights = FrameWeights.moving(count, OBSERVATIONS, posture)
-    return ScalingProblem(body, markers, frames.measured_m, weights, prior)
+    centres_m = centres_of(subject, body)
+    return ScalingProblem(body, markers, frames.measured_m, weights, prior, centres_m=centres_m)
 
 
 def _slides_m(subject: Subject, markers: tuple[ProtocolMarker, ...], flexions: int) -> Array:

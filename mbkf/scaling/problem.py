@@ -74,6 +74,7 @@ class ScalingProblem:
         prior: Prior of factors, offsets and displacements.
         skin: Shares of the displacements in the markers' places.
         standing_sd_rad: Spread of a joint's angle about neutral in straight standing.
+        centres_m: (E,) displacements of joint centres (:mod:`mbkf.model.joint_centres`); 0 where they are not known.
         seen: (N, M) True where a marker is present.
     """
 
@@ -85,7 +86,9 @@ class ScalingProblem:
         weights: FrameWeights,
         prior: ScalingPrior,
         standing_sd_rad: float = ScalingSettings.standing_sd_rad,
+        centres_m: Array | None = None,
     ) -> None:
+        self._centres_m = centres_m
         self.body, self.markers, self.prior, self.weights = body, markers, prior, weights
         self.measured_m = read_only(measured_m)
         self.seen = np.asarray(~np.isnan(self.measured_m).any(axis=2))
@@ -94,12 +97,15 @@ class ScalingProblem:
         self.segments = tuple(m.segment for m in markers)
         self._precision = prior.precision
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
-        model = HumanModel.scaled(body=body)
+        model = self._model(np.ones(len(body.scale_factors)))
         self.posture = PostureSensor(model)
         self.skin = FlexedSkin(model, self.segments)
         self._usual = UsualPosture(self.posture, standing_sd_rad)
         self._upright = UprightPosture(model)
         self._worn = ScaledMarkers(model, self.segments, self.reference_m)
+
+    def _model(self, factors: Array) -> HumanModel:
+        return HumanModel(self.body, factors, self.body.reference_mass_kg, centres_m=self._centres_m)
 
     def start(self, poses: Array) -> ScalingState:
         """State with the prior's factors, offsets and displacements."""
@@ -126,7 +132,7 @@ class ScalingProblem:
 
     def sensor(self, state: ScalingState) -> MarkerSensor:
         """The markers on the body of a state."""
-        model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
+        model = self._model(state.factors)
         return MarkerSensor(model, self.segments, self.local_m(state.factors, state.offsets_m))
 
     def errors_m(self, state: ScalingState) -> Array:

@@ -8,6 +8,7 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.subject import Subject
 from mbkf.model.body import Body
+from mbkf.sensors.flexed_skin import FlexedSkin
 
 OCCLUSION_FRAMES = 20
 
@@ -26,12 +27,26 @@ def true_markers(model: Body, subject: Subject, q: Array) -> Array:
         q: (T, nq) configurations.
     """
     joints = np.array([model.joint(marker.segment).joint_id for marker in subject.markers])
-    local = np.array([marker.position_m for marker in subject.markers])
+    local = _local(model, subject, q)
     positions = np.empty((len(q), len(joints), 3))
     for k, configuration in enumerate(q):
         rotations, origins = model.placements(configuration)
-        positions[k] = origins[joints] + np.einsum("mij,mj->mi", rotations[joints], local)
+        positions[k] = origins[joints] + np.einsum("mij,mj->mi", rotations[joints], local[k])
     return positions
+
+
+def _local(model: Body, subject: Subject, q: Array) -> Array:
+    """(T, M, 3) places in the segments' frames, with skin that moves by the flexions of its joints, m."""
+    neutral = np.array([marker.neutral_m for marker in subject.markers])
+    flexions = max((len(marker.slides_m) for marker in subject.markers), default=0)
+    if not flexions:
+        return np.broadcast_to(neutral, (len(q), *neutral.shape))
+    slides = np.zeros((len(neutral), flexions, 3))
+    for own, marker in zip(slides, subject.markers, strict=True):
+        own[: len(marker.slides_m)] = marker.slides_m
+    skin = FlexedSkin(model, [marker.segment for marker in subject.markers])
+    shares = np.array([skin.shares(configuration) for configuration in q])[:, :, :flexions]
+    return np.asarray(neutral + np.einsum("tmd,mdi->tmi", shares, slides))
 
 
 def skin_artefact(

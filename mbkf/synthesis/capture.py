@@ -98,7 +98,7 @@ def synthesise_capture(
         trial.plates,
         subject_mass_kg=subject.mass_kg,
     )
-    standing = synthesise_motion(model, "stand", STATIC_SECONDS, motion.rate_hz, seed)
+    standing = synthesise_motion(model, "stand", STATIC_SECONDS, motion.rate_hz, seed, subject.habit_deg)
     still = CaptureSettings(**{**asdict(chosen), "skin_sd_m": 0.0, "occlusion": 0.0})
     static, _ = _record(model, subject, standing, still, rng)
     truth = Truth(

@@ -13,6 +13,7 @@ import numpy as np
 
 from mbkf.conventions import SIDES, Array
 from mbkf.model.body import Body
+from mbkf.model.skeleton import joint_origin
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.masses import Masses, MovingMass
@@ -134,8 +135,7 @@ class InverseKinematics:
         for segment in model.description.segments:
             self.parent[segment.name] = segment.parent
             if segment.parent != "world":
-                parent = model.description.segment(segment.parent)
-                self.offset[segment.name] = model.axis_scale(parent) * segment.origin_m
+                self.offset[segment.name] = joint_origin(model, segment.name)
 
     def leg_length(self, side: str) -> float:
         """Hip to ankle with a straight knee, m; side "r" or "l"."""
@@ -249,7 +249,7 @@ class InverseKinematics:
         first, last = bend.rotations()
         rotations[f"{name}_{upper}"], rotations[f"{name}_{lower}"] = first, last
         origins[f"{name}_{upper}"] = near
-        origins[f"{name}_{lower}"] = near + first.apply(np.array([0.0, 0.0, -limb.links.lengths[0]]))
+        origins[f"{name}_{lower}"] = near + first.apply(limb.links.ends[0])
         if end is not None:
             origins[f"{name}_{end}"] = near + span
         return bend.flexion, bend.used
@@ -286,7 +286,7 @@ class InverseKinematics:
     def _leg(self, side: str, pelvis: Dual, angles: Mapping[str, tuple[Dual, ...]], foot: FootPose) -> Limb:
         """A leg, which hangs on the pelvis's (T, 3, 3) rotation and ends at the ankle."""
         name = SIDE_NAMES[side]
-        lengths = (-self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2])
+        ends = self.offset[f"{name}_shank"], self.offset[f"{name}_foot"]
         small = angles[f"{name}_shank"]
         left = dual_numbers.stack([-dual_numbers.sin(foot.yaw), dual_numbers.cos(foot.yaw), foot.yaw * 0.0])
 
@@ -296,7 +296,7 @@ class InverseKinematics:
         swing = None if foot.knee is None else foot.knee - foot.ankle.value
         return self._limb(
             (f"{name}_thigh", f"{name}_shank"),
-            TwoLinks(lengths, small[0], small[2]),
+            TwoLinks(ends, small[0], small[2]),
             pelvis.apply(self.offset[f"{name}_thigh"]),
             lambda hip: foot.ankle - hip,
             across,
@@ -321,12 +321,12 @@ class InverseKinematics:
             hand: Where the hand is.
         """
         torso = rotations["torso"]
-        lengths = (-self.offset[f"{name}_forearm"][2], -self.offset[f"{name}_hand"][2])
+        ends = self.offset[f"{name}_forearm"], self.offset[f"{name}_hand"]
         small = angles[f"{name}_forearm"]
         hanging, left = torso.apply(hand.hanging), torso.apply(np.array([0.0, 1.0, 0.0]))
         return self._limb(
             (f"{name}_upper_arm", f"{name}_forearm"),
-            TwoLinks(lengths, small[0], small[2], -1.0),
+            TwoLinks(ends, small[0], small[2], -1.0),
             origins["torso"] + torso.apply(self.offset[f"{name}_upper_arm"]),
             lambda shoulder: hanging + (hand.wrist - shoulder - hanging) * hand.held[:, None],
             lambda _: left,

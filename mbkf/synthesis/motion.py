@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from mbkf.synthesis.contact import FRICTION, sole_outline, split
 from mbkf.synthesis.coordinates import coordinates
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.motions import registered_motion
+from mbkf.synthesis.plan import held
 from mbkf.synthesis.strength import overloaded
 from mbkf.synthesis.support import SEGMENTS, Support, fault, wrenches
 
@@ -76,7 +78,12 @@ class TrueMotion:
 
 
 def synthesise_motion(
-    model: Body, motion: str, seconds: float, rate_hz: float = 100.0, seed: int = 0
+    model: Body,
+    motion: str,
+    seconds: float,
+    rate_hz: float = 100.0,
+    seed: int = 0,
+    habit_deg: Mapping[str, float] | None = None,
 ) -> TrueMotion:
     """Makes a motion of a body, a different one for every seed.
 
@@ -86,6 +93,7 @@ def synthesise_motion(
         seconds: Duration, s.
         rate_hz: Sample rate of the result.
         seed: Chooses the motion's details.
+        habit_deg: How the person holds joints besides what the motion asks (:attr:`mbkf.io.subject.Subject.habit_deg`).
 
     Raises:
         UnknownName: The motion does not exist.
@@ -97,7 +105,9 @@ def synthesise_motion(
         raise InvalidInput(f"a motion lasts {MIN_SECONDS:g} to {MAX_SECONDS:g} s, got {seconds:g} s")
     if not 20.0 <= rate_hz <= 2000.0:
         raise InvalidInput(f"a camera rate lies between 20 and 2000 Hz, got {rate_hz:g} Hz")
-    plan = kind.planner(model, float(seconds), np.random.default_rng([seed, kind.stream]))
+    plan = held(
+        kind.planner(model, float(seconds), np.random.default_rng([seed, kind.stream])), habit_deg or {}
+    )
     every = max(1, int(np.ceil(1000.0 / rate_hz - 1e-9)))
     frames = int(np.floor(seconds * rate_hz + 1e-9)) + 1
     fine = np.arange((frames - 1) * every + 1) / (rate_hz * every)

@@ -10,6 +10,7 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
+from mbkf.synthesis import anatomy
 
 STATURE_RANGE = (0.92, 1.05)
 """Common factor against the reference body: people of 1.66 to 1.89 m."""
@@ -33,6 +34,7 @@ def synthesise_subject(
     *,
     height_m: float | None = None,
     mass_kg: float | None = None,
+    varied: bool = False,
 ) -> Subject:
     """A person with exactly known factors, mass and marker positions, a different one for every seed.
 
@@ -42,6 +44,9 @@ def synthesise_subject(
         body: Name of the body.
         height_m: Height, m; None: a random one in :data:`STATURE_RANGE`.
         mass_kg: Mass, kg; None: by a random index in :data:`BODY_MASS_INDEX`.
+        varied: True for joint centres, zeros of angles, posture and movement of the skin with flexion that differ among
+            people (:mod:`mbkf.synthesis.anatomy`). By default joints lie where the scale factors put them, and markers
+            move on their segments only as the capture's settings say.
 
     Raises:
         UnknownName: The body or the protocol is unknown.
@@ -85,7 +90,7 @@ def synthesise_subject(
                 correlation_s=marker.correlation_s,
             )
         )
-    return Subject(
+    person = Subject(
         body,
         float(mass),
         factors,
@@ -94,6 +99,7 @@ def synthesise_subject(
         height_m=float(height),
         report={"synthetic": True, "seed": seed},
     )
+    return anatomy.varied(person, seed) if varied else person
 
 
 def body_of(subject: Subject) -> HumanModel:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -82,6 +82,23 @@ class MotionPlan:
     hold: Hold | None = None
     hands: HandsPlan | None = None
     belts: int = 0
+
+
+def held(plan: MotionPlan, habit_deg: Mapping[str, float]) -> MotionPlan:
+    """The plan of a person who holds joints otherwise.
+
+    Args:
+        plan: The plan.
+        habit_deg: Constant angle by joint and axis (``"torso_y"``), degrees.
+    """
+    angles = dict(plan.angles)
+    for name, angle_deg in habit_deg.items():
+        joint, _, axis = name.rpartition("_")
+        if joint in angles:
+            curves, k = list(angles[joint]), "xyz".index(axis)
+            curves[k] = added(curves[k], sinusoid(0.0, 1.0, 0.0, float(np.deg2rad(angle_deg))))
+            angles[joint] = (curves[0], curves[1], curves[2])
+    return replace(plan, angles=angles)
 
 
 def degrees(*knots: tuple[float, ...]) -> Curve:

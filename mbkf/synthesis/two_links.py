@@ -1,7 +1,12 @@
 """A limb of two links, thigh and shank or upper arm and forearm, that reaches from its near to its far end.
 
-The distance of the ends gives the flexion by the law of cosines. The upper link's rotation is F Lᵀ: F the frame of the
-span between the ends in the world, L the frame of the same span as the upper link sees it.
+With the middle joint at u in the upper link's frame and the far end at w beyond it, in axes that turn by the flexion θ
+about y, the distance s of the ends gives the flexion:
+
+    s² = |u|² + |w|² + 2 u_y w_y + 2 ρ cos(θ − φ),   (ρ cos φ, ρ sin φ) = (u_x w_x + u_z w_z, u_x w_z − u_z w_x),
+
+the law of cosines, where joints need not lie on the links' z axes. The upper link's rotation is F Lᵀ: F the frame of
+the span between the ends in the world, L the frame of the same span as the upper link sees it.
 """
 
 from __future__ import annotations
@@ -24,28 +29,35 @@ MIDDLE = np.array([0.0, 1.0, 0.0])
 
 
 class TwoLinks:
-    """Links along −z of their frames; the middle joint is Ry(flexion) Rx(x) Rz(z) with small x and z.
+    """Links that hang down, about along −z of their frames; the middle joint is Ry(flexion) Rx(x) Rz(z), x and z small.
 
     Attributes:
-        lengths: Of the upper and the lower link, m.
+        ends: (3,) far end of the upper and of the lower link, in its own frame, m.
+        lengths: Of both links, m.
         small: (T, 3, 3) Rx(x) Rz(z) of the middle joint.
         bends: Sign of flexion about the middle joint's y axis: 1 knee, −1 elbow.
     """
 
-    def __init__(self, lengths: tuple[float, float], x: Dual, z: Dual, bends: float = 1.0) -> None:
+    def __init__(self, ends: tuple[Array, Array], x: Dual, z: Dual, bends: float = 1.0) -> None:
         """Links whose small rotations are given.
 
         Args:
-            lengths: Of the upper and the lower link, m.
+            ends: (3,) far end of the upper and of the lower link, in its own frame, m.
             x: (T,) rotation of the middle joint about x, rad.
             z: (T,) its rotation about z, rad.
             bends: Sign of flexion about y.
         """
-        upper, lower = self.lengths = lengths
+        upper, lower = self.ends = ends
+        self.lengths = float(np.linalg.norm(upper)), float(np.linalg.norm(lower))
         self.bends = bends
         self.small = dual_numbers.rotation(0, x) @ dual_numbers.rotation(2, z)
-        self._by_square = 1.0 / (dual_numbers.cos(x) * (2 * upper * lower))
-        self._tip = self.small.apply(np.array([0.0, 0.0, -lower]))
+        self._tip = self.small.apply(lower)
+        tip_x, tip_y, tip_z = (self._tip[..., k] for k in range(3))
+        along, beside = tip_x * upper[0] + tip_z * upper[2], tip_z * upper[0] - tip_x * upper[2]
+        size = dual_numbers.sqrt(along * along + beside * beside)
+        self._phase = along / size, beside / size
+        self._by_square = 1.0 / (size * 2.0)
+        self._fixed = tip_y * (2.0 * upper[1]) + float(upper @ upper + lower @ lower)
 
     def bend(self, span: Dual, across: Dual) -> Bend:
         """The limb with its ends ``span`` apart.
@@ -54,21 +66,23 @@ class TwoLinks:
             span: (T, 3) from the near to the far end, m.
             across: (T, 3) near which the axis of the middle joint lies.
         """
-        upper, lower = self.lengths
-        upper, lower = self.lengths
         square = dual_numbers.dot(span, span)
-        cosine = (square - (upper**2 + lower**2)) * self._by_square
+        cosine = (square - self._fixed) * self._by_square
         limit = float(np.cos(STRAIGHT_RAD))
         free = np.abs(cosine.value) < limit
         if not free.all():
             cosine = dual_numbers.where(free, cosine, Dual.constant(np.clip(cosine.value, -limit, limit)))
         sine = self.bends * np.sqrt(1.0 - cosine.value**2)
-        turned = dual_numbers.turned(1, cosine, cosine.chain(sine, -cosine.value / sine, -(sine**-3)))
-        local = turned.apply(self._tip) + np.array([0.0, 0.0, -upper])
+        beyond = cosine.chain(sine, -cosine.value / sine, -(sine**-3))
+        c, s = self._phase
+        bent = cosine * c - beyond * s, beyond * c + cosine * s
+        turned = dual_numbers.turned(1, *bent)
+        local = turned.apply(self._tip) + self.ends[0]
         length = np.sqrt(square.value)
         rate = np.where(free, -2.0 * length * self._by_square.value / sine, 0.0)
+        flexion = np.arctan2(self.bends * bent[1].value, bent[0].value)
         outer, inner = Frame(span, across), Frame(local, MIDDLE)
-        return Bend(self, cosine.value, turned, outer, inner, length / (upper + lower), rate)
+        return Bend(self, flexion, turned, outer, inner, length / sum(self.lengths), rate)
 
 
 class Frame:
@@ -116,7 +130,7 @@ class Bend:
 
     Attributes:
         links: The links.
-        cosine: (T,) of the flexion.
+        flexion: (T,) of the middle joint, rad.
         turned: (T, 3, 3) rotation by the flexion.
         outer: Frame of the span in the world.
         inner: Frame of the span in the upper link's frame.
@@ -125,17 +139,12 @@ class Bend:
     """
 
     links: TwoLinks
-    cosine: Array
+    flexion: Array
     turned: Dual
     outer: Frame
     inner: Frame
     used: Array
     flexion_by_distance: Array
-
-    @property
-    def flexion(self) -> Array:
-        """(T,) rad."""
-        return np.asarray(np.arccos(self.cosine))
 
     def rotations(self) -> tuple[Dual, Dual]:
         """(T, 3, 3) world rotations of the upper and the lower link."""
@@ -152,7 +161,7 @@ class Bend:
         turned = self.turned.apply(lower)
         seen = self.inner.coordinates(turned + upper)
         inner, outer = self.inner.axes.value, self.outer.axes.value
-        middle = self.inner.along.value + np.array([0.0, 0.0, self.links.lengths[0]])
+        middle = self.inner.along.value - self.links.ends[0]
         swung, moved = (
             np.einsum("tji,jt->ti", inner, np.array([x[:, 2], 0.0 * x[:, 1], -x[:, 0]]))
             for x in (turned.value, middle)

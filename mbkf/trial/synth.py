@@ -25,6 +25,7 @@ def synthesise(
     rate_hz: float = 100.0,
     settings: CaptureSettings | None = None,
     subject: Subject | None = None,
+    varied: bool = False,
     progress: StageCallback | None = None,
 ) -> tuple[Subject, SyntheticCapture]:
     """A subject performing a motion, and the capture of it.
@@ -36,6 +37,8 @@ def synthesise(
         rate_hz: Camera rate.
         settings: Errors of the instruments.
         subject: The person who moves; a random one when None.
+        varied: True for a random person whose joint centres, posture and skin differ as people's do
+            (:mod:`mbkf.synthesis.anatomy`).
         progress: Called with the stage, items done and items in all.
 
     Raises:
@@ -44,10 +47,10 @@ def synthesise(
         NotConverged: This person cannot perform the motion; use another seed.
     """
     report = progress or (lambda *_: None)
-    subject = subject or synthesise_subject(seed)
+    subject = subject or synthesise_subject(seed, varied=varied)
     report("Moving", 0, 2)
     duration = registered_motion(motion).seconds if seconds is None else seconds
-    true_motion = synthesise_motion(body_of(subject), motion, duration, rate_hz, seed)
+    true_motion = synthesise_motion(body_of(subject), motion, duration, rate_hz, seed, subject.habit_deg)
     report("Moving", 1, 2)
     capture = synthesise_capture(subject, true_motion, settings, seed)
     report("Moving", 2, 2)

@@ -7,6 +7,8 @@ import pytest
 
 from mbkf.errors import NotConverged, NotObservable
 from mbkf.io.records import MarkerTrajectories
+from mbkf.model.human import HumanModel, reference_body
+from mbkf.model.joint_centres import centre_names
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling import correction
 from mbkf.scaling.correction import correct_markers, rigid_displacements
@@ -58,6 +60,15 @@ def test_shifts_of_markers_are_recovered(model, subject):
 def test_markers_in_place_stay_in_place(model, subject):
     moved = moved_mm(subject, correct_markers(subject, trial(model, subject)))
     assert max(moved.values()) < 2.0  # the posture prior draws a little
+
+
+def test_joint_centres_that_the_person_states_are_those_of_the_correction(model, subject):
+    body = reference_body(subject)
+    names = centre_names(body)
+    stated = dict(zip(names, 0.01 * np.random.default_rng(6).normal(size=len(names)), strict=True))
+    person = replace(subject, joint_centres_m=stated)
+    moved = moved_mm(person, correct_markers(person, trial(HumanModel.of(person), person)))
+    assert max(moved.values()) < 2.0
 
 
 def test_known_displacements_by_flexion_are_not_taken_for_shifts(model, subject):

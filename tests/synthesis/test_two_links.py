@@ -9,7 +9,11 @@ from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.two_links import STRAIGHT_RAD, Limb, TwoLinks
 
 TIMES = np.linspace(0.0, 2.0, 9)
-LENGTHS = 0.42, 0.40
+STRAIGHT = np.array([0.0, 0.0, -0.42]), np.array([0.0, 0.0, -0.40])
+BESIDE = np.array([0.02, -0.01, -0.42]), np.array([-0.015, 0.012, -0.40])
+"""Ends of links on their z axes, and as joints of a person lie beside them."""
+
+ENDS = pytest.mark.parametrize("ends", [STRAIGHT, BESIDE])
 UPPER, LOWER = np.array([0.02, 0.01, -0.3]), np.array([0.01, -0.02, -0.2])
 
 
@@ -19,35 +23,42 @@ def moving(*means):
     )
 
 
-def links(bends):
-    return TwoLinks(LENGTHS, sinusoid(0.03, 0.5, 0.1)(TIMES), sinusoid(0.05, 0.3, 0.4)(TIMES), bends)
+def links(bends, ends=BESIDE):
+    return TwoLinks(ends, sinusoid(0.03, 0.5, 0.1)(TIMES), sinusoid(0.05, 0.3, 0.4)(TIMES), bends)
 
 
-def bend(span, bends=1.0, across=(0.2, 1.0, 0.1)):
-    return links(bends).bend(span, moving(*across))
+def bend(span, bends=1.0, across=(0.2, 1.0, 0.1), ends=BESIDE):
+    return links(bends, ends).bend(span, moving(*across))
 
 
+@ENDS
 @pytest.mark.parametrize("bends", [1.0, -1.0])
-def test_the_far_end_is_reached_and_the_middle_joint_bends_its_way(bends):
+def test_the_far_end_is_reached_and_the_middle_joint_bends_its_way(bends, ends):
     span = moving(0.1, 0.05, -0.7)
-    found = bend(span, bends)
+    found = bend(span, bends, ends=ends)
     upper, lower = found.rotations()
-    reached = upper.apply(np.array([0.0, 0.0, -LENGTHS[0]])) + lower.apply(np.array([0.0, 0.0, -LENGTHS[1]]))
+    reached = upper.apply(ends[0]) + lower.apply(ends[1])
     for x, y in zip(reached.orders, span.orders, strict=True):
         assert np.abs(x - y).max() < 1e-12 * (1 + np.abs(y).max())
     relative = np.einsum("tji,tjk->tik", upper.value, lower.value)
     assert (bends * relative[:, 0, 2] > 0).all()
-    assert found.used == pytest.approx(np.linalg.norm(span.value, axis=1) / sum(LENGTHS))
+    turned = dual_numbers.rotation(1, Dual.constant(bends * found.flexion)).value @ found.links.small.value
+    np.testing.assert_allclose(relative, turned, atol=1e-12)
+    assert found.used == pytest.approx(np.linalg.norm(span.value, axis=1) / sum(map(np.linalg.norm, ends)))
 
 
-def test_out_of_reach_the_limb_stays_short_and_almost_straight():
+@ENDS
+def test_out_of_reach_the_limb_stays_short_and_almost_straight(ends):
     span = moving(0.0, 0.0, -1.2)
-    found = bend(span)
-    assert found.flexion == pytest.approx(STRAIGHT_RAD)
+    found = bend(span, ends=ends)
     assert not found.flexion_by_distance.any()
     upper, lower = found.rotations()
-    reached = upper.value[:, :, 2] * -LENGTHS[0] + lower.value[:, :, 2] * -LENGTHS[1]
+    reached = upper.apply(ends[0]).value + lower.apply(ends[1]).value
     assert np.abs(np.cross(reached, span.value)).max() < 1e-12
+    short = np.linalg.norm(reached, axis=1) / sum(map(np.linalg.norm, ends))
+    assert ((short > 0.997) & (short < 1.0)).all()
+    if ends is STRAIGHT:
+        assert found.flexion == pytest.approx(STRAIGHT_RAD)
 
 
 def test_what_the_links_carry_is_turned_with_them():
@@ -112,6 +123,6 @@ def test_a_straight_constant_limb_does_not_move():
     still = Dual.constant(np.tile([0.0, 0.0, -0.7], (len(TIMES), 1)))
     zero = Dual.constant(np.zeros(len(TIMES)))
     across = Dual.constant(np.tile([0.0, 1.0, 0.0], (len(TIMES), 1)))
-    for rotation in TwoLinks(LENGTHS, zero, zero).bend(still, across).rotations():
+    for rotation in TwoLinks(STRAIGHT, zero, zero).bend(still, across).rotations():
         assert not rotation.first.any()
         assert not rotation.second.any()

@@ -15,6 +15,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.io.results import Reconstruction
 from mbkf.model.human import HumanModel
+from mbkf.model.skeleton import joint_origin
 
 TO_ANIMATION = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Takes vectors from mbkf's axes to those of animation programs."""
@@ -58,7 +59,7 @@ def animated_body(r: Reconstruction, rows: NDArray[np.intp]) -> AnimatedBody:
     offsets = np.zeros((len(names), 3))
     for k, parent in enumerate(parents):
         if parent >= 0:
-            offsets[k] = model.axis_scale(segments[parent]) * segments[k].origin_m
+            offsets[k] = joint_origin(model, segments[k].name)
     ids = [joint.joint_id for joint in model.joints.values()]
     world = np.empty((len(rows), len(names), 3, 3))
     root = np.empty((len(rows), 3))
