@@ -109,6 +109,7 @@ def made(one: Drawn) -> tuple[Subject, SyntheticCapture]:
                 seed=one.seed + other * OTHER_PERSON,
                 rate_hz=one.rate_hz,
                 settings=one.errors,
+                varied=True,
             )
             return person, replace(capture, trial=spoilt(capture.trial, one))
         except NotConverged as error:

@@ -14,10 +14,12 @@ from benchmarks.intervals.trials import Judged, Key, against
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
 from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
+from mbkf.synthesis.anatomy import true_angles
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.innovations import SETTLING_S
@@ -102,16 +104,17 @@ def _errors(trial: Drawn) -> tuple[Error, ...]:
         reconstruct(recorded, subject, settings=ReconstructSettings(smooth=smooth, checks=False))
         for smooth in (False, True)
     )
-    return tuple(error_of(trial, one, capture.truth) for one in found)
+    return tuple(error_of(trial, one, capture.truth, person) for one in found)
 
 
-def error_of(trial: Drawn, found: Reconstruction, truth: Truth) -> Error:
+def error_of(trial: Drawn, found: Reconstruction, truth: Truth, person: Subject) -> Error:
     """Errors of a reconstruction after it has settled, in tracked frames.
 
     Args:
         trial: What the seed stands for.
         found: The reconstruction.
         truth: The truth in the same frames.
+        person: The true person.
     """
     after = found.times_s >= found.times_s[0] + SETTLING_S
     with_markers = after & np.isfinite(found.measured_m).any(axis=(1, 2))
@@ -119,7 +122,8 @@ def error_of(trial: Drawn, found: Reconstruction, truth: Truth) -> Error:
     clinical = ClinicalAngles(HumanModel.of(found.subject))
     of_joints = clinical.rotational.copy()
     of_joints[clinical.root_angles] = False
-    error = np.angle(np.exp(1j * (clinical.angles(truth.q) - found.angles)))[settled][:, of_joints]
+    away = true_angles(person, truth.q) - found.angles
+    error = np.angle(np.exp(1j * away))[settled][:, of_joints]
     sd = found.angles_sd[settled][:, of_joints]
     torque = (truth.tau - found.tau)[settled, ROOT_DOFS:]
     key = Key(trial.motion, trial.seed, trial.errors.skin_sd_m, "static")
@@ -130,7 +134,7 @@ def error_of(trial: Drawn, found: Reconstruction, truth: Truth) -> Error:
         tuple(name for name, own in zip(clinical.names, of_joints, strict=True) if own),
         _rms(torque),
         float(found.tracked[with_markers].mean()) if with_markers.any() else 0.0,
-        against(key, found, truth),
+        against(key, found, truth, person),
     )
 
 

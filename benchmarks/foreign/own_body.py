@@ -1,4 +1,4 @@
-"""Synthetic persons made from our own body, judged as foreign ones are: the truth that agrees with the filter."""
+"""Persons made from our own body, draws from the spreads that the filter states, judged as foreign ones are."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from benchmarks.dynamic.methods import tared
 from benchmarks.foreign.errors import GROUPS, Judged, Series
 from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
-from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
+from mbkf.synthesis.anatomy import true_angles
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import synthesise_subject
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -38,7 +38,7 @@ def judged_own(one: OwnBody) -> list[Judged]:
         one: The person.
     """
     with single_threaded():
-        person = synthesise_subject(one.seed)
+        person = synthesise_subject(one.seed, varied=True)
         trials = {name: synthesise(name, seed=one.seed, settings=SKIN, subject=person)[1] for name in MOTIONS}
         moving = [tared(trials[name].trial) for name in SCALED_FROM]
         subject = scale(trials["walk"].static, moving, mass_kg=person.mass_kg, protocol=person.protocol)
@@ -49,27 +49,28 @@ def judged_own(one: OwnBody) -> list[Judged]:
                 name,
                 reconstruct(tared(made.trial), subject, settings=settings),
                 made.truth,
+                person,
             )
             for name, made in trials.items()
         ]
 
 
-def against(person: str, motion: str, found: Reconstruction, truth: Truth) -> Judged:
+def against(name: str, motion: str, found: Reconstruction, truth: Truth, person: Subject) -> Judged:
     """Errors of angles of a reconstruction.
 
     Args:
-        person: Name of the person.
+        name: Name of the person.
         motion: Name of the motion.
         found: The reconstruction.
         truth: The truth in the same frames.
+        person: The true person.
     """
-    clinical = ClinicalAngles(HumanModel.of(found.subject))
-    exact = np.where(found.tracked[:, None], clinical.angles(truth.q), np.nan)
+    exact = np.where(found.tracked[:, None], true_angles(person, truth.q), np.nan)
     series = []
-    for group, names in GROUPS.items():
-        for name in names:
-            away = found.angle(name) - exact[:, clinical.names.index(name)]
+    for group, angles in GROUPS.items():
+        for angle in angles:
+            away = found.angle(angle) - exact[:, found.coordinate_names.index(angle)]
             error = np.degrees(np.arctan2(np.sin(away), np.cos(away)))
-            sds = (np.degrees(found.angle_sd(name, part)) for part in ("total", "varying"))
-            series.append(Series(person, motion, group, name, error, *sds))
-    return Judged(person, motion, tuple(series), (), {})
+            sds = (np.degrees(found.angle_sd(angle, part)) for part in ("total", "varying"))
+            series.append(Series(name, motion, group, angle, error, *sds))
+    return Judged(name, motion, tuple(series), (), {})

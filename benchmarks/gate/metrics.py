@@ -66,7 +66,7 @@ def synthetic_metrics(motion: str, seconds: float, folder: Path, changed: Change
         folder: For files.
         changed: Changes the settings.
     """
-    person, made = synthesise(motion, seconds=seconds)
+    person, made = synthesise(motion, seconds=seconds, varied=True)
     write_folder(person, made, folder)
     subject = scale(read_capture(folder / "static.c3d"), mass_kg=person.mass_kg)
     yield Metric(f"{motion}: scaling's marker RMS", _number(subject.report["marker_rms_mm"]), "mm")

@@ -1,6 +1,7 @@
 """One synthetic trial with a body scaled from captures: errors over stated standard deviations.
 
-A trial and a static capture are made of a person whose body is known exactly. The body is then scaled from the static
+A trial and a static capture are made of a person whose body is known exactly, and whose joint centres and skin are a
+draw from the spreads that the filters count on (:mod:`mbkf.synthesis.anatomy`). The body is then scaled from the static
 alone, or from the static and the trial, as a laboratory would, and the trial is reconstructed causally and smoothed.
 """
 
@@ -13,10 +14,12 @@ import numpy as np
 from benchmarks.dynamic.methods import tared
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
+from mbkf.synthesis.anatomy import true_angles
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
@@ -67,7 +70,8 @@ class Judged:
 def judged(key: Key) -> tuple[Judged, Judged]:
     """The trial causally and smoothed."""
     with single_threaded():
-        person, made = synthesise(key.motion, seed=key.person, settings=CaptureSettings(skin_sd_m=key.skin_m))
+        settings = CaptureSettings(skin_sd_m=key.skin_m)
+        person, made = synthesise(key.motion, seed=key.person, settings=settings, varied=True)
     trial = tared(made.trial)
     moving = [trial] if key.body == "static + trial" else []
     subject = scale(made.static, moving, mass_kg=person.mass_kg, protocol=person.protocol)
@@ -75,16 +79,17 @@ def judged(key: Key) -> tuple[Judged, Judged]:
         reconstruct(trial, subject, settings=ReconstructSettings(smooth=smooth, checks=False))
         for smooth in (False, True)
     ]
-    return against(key, both[0], made.truth), against(key, both[1], made.truth)
+    return against(key, both[0], made.truth, person), against(key, both[1], made.truth, person)
 
 
-def against(key: Key, found: Reconstruction, truth: Truth) -> Judged:
+def against(key: Key, found: Reconstruction, truth: Truth, person: Subject) -> Judged:
     """A reconstruction's errors over its stated standard deviations.
 
     Args:
         key: The trial.
         found: Its reconstruction.
         truth: The truth in the same frames.
+        person: The true person.
     """
     model = HumanModel.of(found.subject)
     settled = (found.times_s >= found.times_s[0] + SETTLING_S) & found.tracked
@@ -102,9 +107,9 @@ def against(key: Key, found: Reconstruction, truth: Truth) -> Judged:
     clinical = ClinicalAngles(model)
     of_joints = clinical.rotational.copy()
     of_joints[clinical.root_angles] = False
-    exact = clinical.angles(truth.q)
-    angle = np.angle(np.exp(1j * (exact - found.angles)))[settled][:, of_joints]
-    moment = (clinical.moments(truth.q, truth.tau, exact) - found.moments)[settled][:, of_joints]
+    away = true_angles(person, truth.q) - found.angles
+    angle = np.angle(np.exp(1j * away))[settled][:, of_joints]
+    moment = (clinical.moments(truth.q, truth.tau) - found.moments)[settled][:, of_joints]
     return Judged(
         key,
         found.smoothed,

@@ -44,20 +44,20 @@ def test_errors_are_those_of_the_settled_tracked_frames():
     made = walker()
     settings = ReconstructSettings(filter="kinematic", smooth=False, checks=False, correct_markers=False)
     found = reconstruct(made.trial, made.subject, settings=settings)
-    right = error_of(drawn(0), found, made.truth)
+    right = error_of(drawn(0), found, made.truth, made.subject)
     assert right.worst_deg < 20.0 and right.tracked == 1.0 and not right.smoothed
     name = "knee_angle_r"
     column, at = found.coordinate_names.index(name), right.angle_names.index(name)
     off = found.angles.copy()
     settled = found.times_s >= found.times_s[0] + 0.5
     off[:, column] += np.where(settled, 0.5, 100.0)
-    wrong = error_of(drawn(0), replace(found, angles=off), made.truth)
+    wrong = error_of(drawn(0), replace(found, angles=off), made.truth, made.subject)
     assert wrong.angle_rms_deg[at] == pytest.approx(np.degrees(0.5), abs=right.angle_rms_deg[at])
     assert wrong.angle_doubt[at] > 5.0 > right.angle_doubt[at]
     tracked = found.tracked.copy()
     tracked[-10:] = False
     off[-10:] = np.nan
-    left = error_of(drawn(0), replace(found, angles=off, tracked=tracked), made.truth)
+    left = error_of(drawn(0), replace(found, angles=off, tracked=tracked), made.truth, made.subject)
     assert np.isfinite(left.angle_rms_deg).all()
     assert left.tracked == pytest.approx(1.0 - 10 / settled.sum())
-    assert error_of(drawn(0), replace(found, angles=off), made.truth).worst_deg == np.inf
+    assert error_of(drawn(0), replace(found, angles=off), made.truth, made.subject).worst_deg == np.inf

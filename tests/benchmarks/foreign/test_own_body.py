@@ -22,7 +22,7 @@ def test_errors_are_those_of_the_truth() -> None:
     exact = ClinicalAngles(HumanModel.of(found.subject)).angles(made.truth.q)
     turned = exact.copy()
     turned[:, names.index("knee_angle_r")] += 0.1
-    judged = against("p", "walk", replace(found, angles=turned), made.truth)
+    judged = against("p", "walk", replace(found, angles=turned), made.truth, person)
     errors = {one.name: one.error[found.tracked] for one in judged.angles}
     assert set(errors) == {name for held in GROUPS.values() for name in held}
     np.testing.assert_allclose(errors.pop("knee_angle_r"), np.degrees(0.1))
