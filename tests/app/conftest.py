@@ -7,7 +7,7 @@ import pytest
 from mbkf.app.server import AppServer
 from tests.app.asking import asked
 from tests.studies import runs_here, study
-from tests.viz.conftest import browser, flags, opened, tab  # noqa: F401 — for this folder's tests, too
+from tests.viz.conftest import browser, opened, tab  # noqa: F401 — for this folder's tests, too
 
 
 @pytest.fixture(scope="module")

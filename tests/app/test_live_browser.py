@@ -8,19 +8,12 @@ from mbkf.stream.lsl.discovery import FoundStream
 from tests.app.test_recordings import record
 from tests.studies import study
 from tests.viz.browsing import until
-from tests.viz.conftest import FLAGS
 
 pytestmark = pytest.mark.slow
 
 HOSTILE = "<img src=x onerror=\"document.title='harmed'\"> $& {1}"
 
 FRAMED = "#scene canvas"
-
-
-@pytest.fixture(scope="module")
-def flags():
-    """The live view is a frame within a frame, which the graphics software puts together sooner."""
-    return FLAGS
 
 
 @pytest.fixture

@@ -11,17 +11,19 @@ from tests.viz.browsing import PATIENCE_S
 FLAGS = (
     "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-gpu-compositing",
 )  # fmt: skip
+"""The 3-D view alone is drawn by the graphics software, and the page around it without."""
+
+SLOW_DRAWING = """
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 250);
+window.cancelAnimationFrame = clearTimeout;
+"""
+"""Pages draw four times a second, on a screen of coarse pixels: without a graphics card each picture costs 0.05 s."""
 
 
 @pytest.fixture(scope="module")
-def flags():
-    """Of the browser: the 3-D view alone is drawn by the graphics software, and the page around it without."""
-    return (*FLAGS, "--disable-gpu-compositing")
-
-
-@pytest.fixture(scope="module")
-def browser(flags):
+def browser():
     chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if chromium is None:
         message = "no chromium on this machine; install it (Debian: apt-get install chromium)"
@@ -29,7 +31,7 @@ def browser(flags):
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=chromium, args=flags)
+        made = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
         yield made
         made.close()
 
@@ -46,7 +48,8 @@ def forgotten(page):
 @pytest.fixture(scope="module")
 def tab(browser):
     """The page that the tests of a file open one after the other: a new one would compile every script again."""
-    made = browser.new_page()
+    made = browser.new_page(device_scale_factor=0.25)
+    made.add_init_script(SLOW_DRAWING)
     made.set_default_timeout(1e3 * PATIENCE_S)
     return made
 

@@ -1,3 +1,3 @@
 """A real browser for the tests of this folder."""
 
-from tests.viz.conftest import browser, flags  # noqa: F401 — fixtures
+from tests.viz.conftest import browser  # noqa: F401 — a fixture
