@@ -10,7 +10,8 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import cast
 
@@ -74,6 +75,11 @@ def compiled(folder: Path, flags: Sequence[str] = ("-O3", "-fno-math-errno", "-f
     from setuptools import Distribution, Extension
     from setuptools.command.build_ext import build_ext
 
+    class Command(build_ext):
+        def build_extensions(self) -> None:
+            self.compiler.compile = _beside_each_other(self.compiler.compile)
+            super().build_extensions()
+
     with tempfile.TemporaryDirectory() as scratch:
         kernel = Extension(
             NAME,
@@ -83,7 +89,7 @@ def compiled(folder: Path, flags: Sequence[str] = ("-O3", "-fno-math-errno", "-f
             py_limited_api=True,
         )
         write_binding(folder, Path(scratch))
-        command = build_ext(Distribution({"ext_modules": [kernel]}))
+        command = Command(Distribution({"ext_modules": [kernel]}))
         command.build_lib = command.build_temp = scratch
         command.ensure_finalized()
         if command.compiler != "msvc":
@@ -92,6 +98,17 @@ def compiled(folder: Path, flags: Sequence[str] = ("-O3", "-fno-math-errno", "-f
         built = Path(command.get_ext_fullpath(NAME))
         fresh = shutil.copy(built, folder / f"{built.name}.new")
         return Path(fresh).replace(folder / built.name)  # in one go: others may be loading it
+
+
+def _beside_each_other(one_by_one: Callable[..., list[str]]) -> Callable[..., list[str]]:
+    """A compiler's method that compiles as many sources at once as there are processors."""
+
+    def compile_all(sources: Sequence[str], *where: object, **how: object) -> list[str]:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            objects = list(pool.map(lambda source: one_by_one([source], *where, **how), sources))
+        return [path for paths in objects for path in paths]
+
+    return compile_all
 
 
 def write_binding(folder: Path, to: Path) -> None:
