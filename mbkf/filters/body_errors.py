@@ -22,13 +22,12 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
 from mbkf.conventions import Array
+from mbkf.filters.pose_errors import PoseErrors
 from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
-from mbkf.model.scale_derivatives import OriginLevers
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -53,9 +52,6 @@ KEPT_VARIANCE = 0.99
 
 RANK = 1e-12
 """Share of the largest variance below which a direction has none but rounding's."""
-
-LOOSE = 1e-6
-"""Information on every dof besides markers and posture, 1/rad²: what nothing determines has no error by the body."""
 
 
 @dataclass(frozen=True)
@@ -133,33 +129,19 @@ class BodyErrors:
             skin: Shares of these displacements; None where no skin is known (D = 0).
         """
         model = sensor.model
-        self._skin = skin
-        self.sensor, self._model = sensor, model
-        self._weight = np.repeat(1.0 / noise_m, 3)[:, None]
-        posture = np.asarray(model.posture_sd)
-        self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
-        self._balance, self._origins = NewtonEuler(model), OriginLevers(model)
-        self._take(root)
-        self._take(root @ self._directions())
-        directions, self._along = _principal(self._sizes)
+        self.sensor, self._model, self._balance = sensor, model, NewtonEuler(model)
+        self._poses = PoseErrors(sensor, noise_m, root, skin)
+        self._poses.onto(self._directions())
+        directions, self._along = _principal(self._poses.sizes)
         self._varied = [NewtonEuler(one) for one in _varied(model, directions)]
-
-    def _take(self, root: Array) -> None:
-        count, markers = len(self._model.scale), len(self.sensor.joint_ids)
-        sizes = count + self._origins.centre_levers.shape[2]
-        moved = root[sizes:].reshape(-1, markers, 3, root.shape[1])
-        self._sizes, self._places, self._slides = root[:sizes], moved[0], moved[1:]
-        levers = np.concatenate([self._origins.levers, self._origins.centre_levers], axis=2)
-        self._levers = levers @ self._sizes
 
     def _directions(self) -> Array:
         """(r, n) orthonormal directions of L's columns in which nearly all of every dof's variance lies."""
         model, rng = self._model, np.random.default_rng(0)
-        rows = [self._sizes]
-        for _ in range(POSTURES):
-            moved = np.where(np.arange(model.nv) < ROOT, 0.0, POSTURE_RAD * rng.normal(size=model.nv))
-            rows.append(self.pose_root(model.integrate(model.neutral(), moved)))
-        stacked = np.concatenate(rows)
+        turned = POSTURE_RAD * rng.normal(size=(POSTURES, model.nv))
+        turned[:, :ROOT] = 0.0
+        poses = np.array([model.integrate(model.neutral(), moved) for moved in turned])
+        stacked = np.concatenate([self._poses.sizes, *self.pose_roots(poses)])
         size = np.linalg.norm(stacked, axis=1)
         known = size > 1e-9 * size.max(initial=0.0)
         scaled = stacked[known] / size[known, None]
@@ -177,23 +159,11 @@ class BodyErrors:
         Raises:
             numpy.linalg.LinAlgError: Markers and posture do not determine the pose.
         """
-        rotations, _ = self._model.placements(q)
-        joints, nv = self.sensor.joint_ids, self._model.nv
-        H = self.sensor.reading(q).jacobian
-        places = self._places
-        if self._skin is not None:
-            shares = self._skin.shares(q).T[:, :, None, None]
-            places = places + sum(share * slide for share, slide in zip(shares, self._slides, strict=True))
-        by_places = rotations[joints] @ places
-        by_factors = self._origins.summed(rotations, self._levers, joints)
-        moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1) * self._weight
-        weighed = H.reshape(len(moved), nv) * self._weight
-        information = weighed.T @ weighed
-        np.einsum("ii->i", information)[:] += self._prior
-        _, found, failed = lapack.dposv(information.T, weighed.T @ moved, overwrite_a=True)
-        if failed:
-            raise np.linalg.LinAlgError("markers and posture do not determine the pose")
-        return -np.asarray(found)
+        return self.pose_roots(q[None])[0]
+
+    def pose_roots(self, poses: Array) -> list[Array]:
+        """The same at each of the configurations (N, nq)."""
+        return self._poses.roots(poses)
 
     def at(
         self, q: Array, v: Array, a: Array, wrenches: Array, contact: tuple[int, int] | None
@@ -207,21 +177,22 @@ class BodyErrors:
             wrenches: (2, 6) right and left foot's wrenches about the world's origin; NaN where unknown.
             contact: What the feet stand on (:class:`mbkf.sensors.contact.records.Contact`); None where not decided.
         """
-        here, model, h = self.pose_root(q), self._model, LOOK_S
-        around = []
-        for sign in (1.0, -1.0):
-            step = sign * h * v + 0.5 * h * h * a
-            there = model.integrate(q, step)
-            back, _ = model.integration_derivatives(there, -step)
-            around.append(back @ self.pose_root(there))
+        model, h = self._model, LOOK_S
+        steps = (h * v + 0.5 * h * h * a, -h * v + 0.5 * h * h * a)
+        poses = [q, *(model.integrate(q, step) for step in steps)]
+        here, *around = self.pose_roots(np.array(poses))
+        for n, step in enumerate(steps):
+            back, _ = model.integration_derivatives(poses[n + 1], -step)
+            around[n] = back @ around[n]
         velocity = (around[0] - around[1]) / (2.0 * h)
-        acceleration = (around[0] - 2.0 * here + around[1]) / h**2
-        # The dofs' own axes turn while the error changes.
+        # The dofs' own axes turn while the error changes, at this rate.
         turned, _ = model.integration_derivatives(q, TURN_S * v)
-        acceleration += (turned @ velocity - velocity) / TURN_S
+        rate = (turned - np.eye(model.nv)) / TURN_S
         loads = np.nan_to_num(wrenches).ravel()
         balance = self._balance.torques(q, v, a, loads)
-        torque = balance.by_q @ here + balance.by_v @ velocity + balance.by_a @ acceleration
+        # The acceleration errs by (around₀ − 2 here + around₁) / h² + rate @ velocity.
+        by_q, by_v = balance.by_q - (2.0 / h**2) * balance.by_a, balance.by_v + balance.by_a @ rate
+        torque = by_q @ here + by_v @ velocity + balance.by_a @ ((around[0] + around[1]) / h**2)
         torque += self._own_torques(q, v, a, loads, balance)
         wrench = self._unread(balance, torque[:ROOT], loads, contact)
         return BodyErrorRoots(here, velocity, torque + balance.by_wrench @ wrench, wrench)

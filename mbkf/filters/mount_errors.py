@@ -39,8 +39,12 @@ class MountErrors(BodyErrors):
         self._joints = [model.joint(name).joint_id for name in segments]
         self._turns = np.asarray(turn_sd_rad)
 
-    def pose_root(self, q: Array) -> Array:
-        """(nv, 3 S) W L at a configuration q (nq,), L the spreads of the turns."""
+    def pose_roots(self, poses: Array) -> list[Array]:
+        """W L (nv, 3 S) at each of the configurations (N, nq), L the spreads of the turns."""
+        return [self._root(q) for q in poses]
+
+    def _root(self, q: Array) -> Array:
+        """(nv, 3 S) W L at a configuration q (nq,)."""
         model, count = self._model, len(self._joints)
         rotations, _ = model.placements(q)
         _, spatial = model.frames_and_jacobian(q)

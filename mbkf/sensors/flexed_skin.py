@@ -10,10 +10,12 @@ Akbarshahi et al. 2010). The body file has the spread of c_d
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.model.description import BodyDescription
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -51,6 +53,17 @@ class FlexedSkin:
     def shares(self, q: Array) -> Array:
         """(M, D) f(θ) at a configuration q (nq,)."""
         return _share(self._turning @ self._posture.deviation(q)[0])
+
+    @property
+    def carried(self) -> BoolArray:
+        """(M, D) True where a flexion moves a marker."""
+        return np.asarray(self._turning.any(axis=2))
+
+    def only(self, markers: NDArray[np.intp]) -> FlexedSkin:
+        """The shares of some of the markers, by their numbers."""
+        some = copy(self)
+        some._turning = self._turning[markers]
+        return some
 
     def displacement(self, slides_m: Array) -> SkinDisplacement:
         """The displacement of the markers as a function of the configuration.

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.filters import body_errors
-from mbkf.filters.body_errors import LOOK_S, LOOSE, BodyErrors
+from mbkf.filters.body_errors import LOOK_S, BodyErrors
+from mbkf.filters.pose_errors import LOOSE
 from mbkf.model.human import HumanModel
 from mbkf.model.joint_centres import centre_names
 from mbkf.model.newton_euler import NewtonEuler
