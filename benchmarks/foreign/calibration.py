@@ -93,7 +93,8 @@ def page(sets: Sets) -> Iterator[str]:
         "for synthetic persons made from our own body. All are scaled from standing, a walk and a squat and followed "
         "by the smoothed dynamic filter. Settings may have been chosen on the shared adult and child and on our "
         f"persons {_listed(CHOSEN_ON)}. The persons shown here as *own* are {_listed(SHOWN_ON)}: no setting was chosen "
-        "on them. They have two models of skin that the filter does not know ({doc}`benchmarks`)."
+        "on them. They have two models of skin that the filter does not know ({doc}`benchmarks`). {doc}`real_truth` "
+        "has real captures beside outside references."
     )
     yield ""
     yield f"![Observed over nominal share of intervals by group of joints](../benchmarks/foreign/{FIGURE})"
