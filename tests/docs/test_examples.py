@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mbkf.cli.main import main
-from tests.studies import ThisProcess
+from tests.studies import ThisProcess, from_standing
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs" / "examples").glob("[0-9]*.py"))
@@ -26,9 +26,10 @@ def command(words, *, capture_output=False, text=False, check):
 
 @pytest.fixture
 def here(monkeypatch):
-    """No example starts a process, since other tests prove that commands and workers are processes."""
+    """No example starts a process: other tests prove that commands and workers do; bodies are those of the static."""
     monkeypatch.setattr(subprocess, "run", command)
     monkeypatch.setattr("mbkf.study.batch.run.LocalWorkers", ThisProcess)
+    monkeypatch.setattr("mbkf.study.batch.person.scale_from_session", from_standing)
 
 
 @pytest.mark.slow

@@ -6,7 +6,6 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
-import xarray
 
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.dimensions import AXES
@@ -56,6 +55,8 @@ def test_every_dataset_states_its_meaning_and_codes(path):
 
 @pytest.mark.parametrize("frames", [0, 12])
 def test_xarray_shows_axes_and_labels(path, tmp_path, frames):
+    import xarray
+
     if not frames:
         path = tmp_path / "empty.h5"
         write_h5(made_up(0), path)

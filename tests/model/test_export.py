@@ -1,10 +1,8 @@
 """URDF and MJCF against the native body: same points, mass matrix, gravity and energy elsewhere."""
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
-import yourdfpy
 
 from mbkf.errors import UnknownName
 from mbkf.io.subject import SubjectMarker
@@ -62,6 +60,8 @@ class TestUrdf:
         return path
 
     def test_yourdfpy_reads_it_and_places_every_segment_and_marker(self, path, model, clinical, poses):
+        import yourdfpy
+
         urdf = yourdfpy.URDF.load(str(path), load_meshes=False, build_collision_scene_graph=False)
         assert urdf.validate()
         assert urdf.base_link == "pelvis"
@@ -110,11 +110,15 @@ class TestMjcf:
     @pytest.fixture(scope="class")
     @staticmethod
     def other(model):
+        import mujoco
+
         return mujoco.MjModel.from_xml_string(to_mjcf(model, MARKERS))
 
     @staticmethod
     def posed(other, model, q):
         """MuJoCo's data at a native configuration, and S of qvel = S v: the root's velocity in the world."""
+        import mujoco
+
         data = mujoco.MjData(other)
         data.qpos[:] = q
         for joint in model.joints.values():
@@ -139,6 +143,8 @@ class TestMjcf:
                 np.testing.assert_allclose(data.site(marker.name).xpos, point, atol=1e-12)
 
     def test_mujoco_has_the_same_mass_matrix_gravity_and_energy(self, other, model, poses):
+        import mujoco
+
         assert other.body_mass.sum() == pytest.approx(model.mass_kg, rel=1e-12)
         for q, v in poses:
             data, S = self.posed(other, model, q)

@@ -1,6 +1,7 @@
 """A Dask cluster of this computer does what local processes do."""
 
 import os
+from importlib.util import find_spec
 
 import pytest
 
@@ -11,9 +12,11 @@ from mbkf.study.batch.outcome import Status
 from mbkf.study.batch.worker_process import KILLED
 from tests.batch_tasks import Answer, Die, Fail
 
-pytest.importorskip("distributed", reason="Dask is not installed")
-
-pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("default"),
+    pytest.mark.skipif(find_spec("distributed") is None, reason="Dask is not installed"),
+]
 
 
 @pytest.fixture(scope="module")
