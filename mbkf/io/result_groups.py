@@ -26,7 +26,7 @@ from mbkf.io.dimensions import (
 )
 from mbkf.io.estimates import Estimates
 from mbkf.io.findings import Finding
-from mbkf.io.quantities import LATER, Column, attribute, change, flag, offset, quantity, spread, texts
+from mbkf.io.quantities import LATER, Column, Plot, attribute, change, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
 
@@ -205,6 +205,7 @@ class Quality:
         NEWTON,
         "force that acts besides weight and contacts, mean over 0.5 s; NaN where no plate reads a foot's load",
         LATER,
+        plot=Plot("Ground reactions", "Unexplained force", "N", factor=1.0, resolution=0.2),
         section="unexplained-loads",
     )
     unexplained: tuple[UnexplainedLoad, ...] = attribute(

@@ -63,5 +63,14 @@ class UnexplainedLoad:
     @property
     def sentence(self) -> str:
         """The load in words, with its hint."""
-        size = f"{self.force_n:.0f} N {self.direction} ({100.0 * self.share:.0f} % of body weight)"
-        return f"unexplained force {size} from {self.from_s:.2f} to {self.to_s:.2f} s: {self.hint}"
+        return f"unexplained force {self.size} from {self.from_s:.2f} to {self.to_s:.2f} s: {self.hint}"
+
+    @property
+    def sentence_now(self) -> str:
+        """The load in words while it goes on."""
+        return f"unexplained force {self.size}: {self.hint}"
+
+    @property
+    def size(self) -> str:
+        """Size, direction and share of body weight."""
+        return f"{self.force_n:.0f} N {self.direction} ({100.0 * self.share:.0f} % of body weight)"

@@ -30,6 +30,12 @@ def test_sentence():
     assert found == "unexplained force 590 N upward (82 % of body weight) from 1.20 to 9.80 s: a seat"
 
 
+def test_sentence_while_it_goes_on():
+    assert load((0.0, 0.0, 590.0), hint="a seat").sentence_now == (
+        "unexplained force 590 N upward (82 % of body weight): a seat"
+    )
+
+
 def test_size():
     assert load((3.0, 4.0, 12.0)).force_n == pytest.approx(13.0)
 

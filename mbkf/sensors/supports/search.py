@@ -69,7 +69,13 @@ class OtherContacts:
 
 
 def other_contacts(
-    model: Body, q: Array, v: Array, rate_hz: float, loads: FootLoads, read: BoolArray
+    model: Body,
+    q: Array,
+    v: Array,
+    rate_hz: float,
+    loads: FootLoads,
+    read: BoolArray,
+    doubted: BoolArray | None = None,
 ) -> OtherContacts:
     """Parts that carry load in a trial.
 
@@ -80,13 +86,16 @@ def other_contacts(
         rate_hz: Frame rate.
         loads: Loads of the feet by the plates.
         read: (T,) frames in which all plates were recorded; all False without plates.
+        doubted: (T,) frames in which something else than a contact is known to explain a missing wrench; they are not
+            searched. None for none of them.
     """
     bearings = BearingParts(model)
     points, speeds = _moving(bearings, q, v)
     judged = read & loads.valid & ~np.isnan(q).any(axis=1)
     body, soles = WholeBody.of(model, q, v), sole_points(model, q)
     reached = np.concatenate([points, soles.mean(axis=2)], axis=1)
-    flags, remarks = _missing(bearings, reached, body, rate_hz, loads, judged)
+    searched = judged if doubted is None else judged & ~doubted
+    flags, remarks = _missing(bearings, reached, body, rate_hz, loads, searched)
     lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
     # Beside a part that carries load on the floor, others that lie there do so as well.
     kneels = (flags & lying).any(axis=1)

@@ -41,8 +41,9 @@ class LiveFrame:
         support: (B, 6) estimated wrench on each other part that may bear load (``description.bearings``), NaN or no
             rows where the filter does not ask.
         support_sd: (B, 6) their standard deviations.
-        plotted: Estimates of the filter with a curve of their own in viewers (:data:`mbkf.io.results.PLOTTED`), by
-            name.
+        unexplained: True while an unexplained force is stated: torques and reactions are not to be used.
+        plotted: Estimates of the filter and the force that no contact explains, with a curve of their own in viewers
+            (:data:`mbkf.io.results.PLOTTED`), by name.
     """
 
     number: int
@@ -69,6 +70,7 @@ class LiveFrame:
     foot_source: Array = field(default_factory=lambda: np.full(2, Source.MEASURED))
     support: Array = field(default_factory=lambda: np.zeros((0, 6)))
     support_sd: Array = field(default_factory=lambda: np.zeros((0, 6)))
+    unexplained: bool = False
     plotted: Mapping[str, Array] = field(default_factory=dict)
 
 

@@ -18,8 +18,9 @@ class ResultValues:
     """Turns frames into rows of named numbers, one after another.
 
     Angles in rad (the pelvis's translations in m), moments in N m (N), reactions in N and N m about the world's origin,
-    z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same. Last stand
-    declared estimates (:data:`mbkf.io.results.PLOTTED`) in their own units.
+    z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same. Then stand
+    declared estimates (:data:`mbkf.io.results.PLOTTED`) in their own units, and last ``unexplained``: 1 while an
+    unexplained force is stated, so that moments and reactions are not to be used.
 
     Attributes:
         names: Of the numbers.
@@ -52,6 +53,7 @@ class ResultValues:
             ]
             groups.append((columns, [one.unit.text] * len(columns)))
             self._widths[name] = len(columns)
+        groups.append((["unexplained"], ["1"]))
         self.names: tuple[str, ...] = tuple(name for names, _ in groups for name in names)
         self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
 
@@ -72,6 +74,7 @@ class ResultValues:
         loads = frame.wrench.ravel(), frame.wrench_sd.ravel()
         unknown = {name: np.full(width, np.nan) for name, width in self._widths.items()}
         plotted = [np.ravel(values) for values in (unknown | dict(frame.plotted)).values()]
+        stated = np.array([float(frame.unexplained)])
         return np.concatenate(
-            [numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel(), *plotted]
+            [numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel(), *plotted, stated]
         )

@@ -20,6 +20,10 @@ from mbkf.sensors.contact.records import KeptContact
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.trial.live.filter import LiveInputs
+from mbkf.trial.loads.running import RunningLoad
+
+UNEXPLAINED = "unexplained_force_n"
+"""Name of the judged force among the curves of a frame."""
 
 _PLOTTED = {name: one.key for name, one in PLOTTED.items() if name in quantities(Estimates)}
 
@@ -46,7 +50,9 @@ class FrameMaker:
         while arrival_s - self._arrivals[0] > RATE_OVER_S:
             self._arrivals.popleft()
 
-    def frame(self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int) -> LiveFrame:
+    def frame(
+        self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int, load: RunningLoad | None = None
+    ) -> LiveFrame:
         """A listener's frame.
 
         Args:
@@ -54,6 +60,7 @@ class FrameMaker:
             row: (1,) the log's row of it.
             latency_s: From arrival to result.
             lost: Frames lost so far.
+            load: Judgement of the force that no contact explains; None where there is none.
         """
         if self._first is None:
             self._first = ready.number
@@ -94,7 +101,9 @@ class FrameMaker:
             foot_source=foot_sources(contact, wrench[None])[0],
             support=found["support"],
             support_sd=found["support_sd"],
-            plotted={name: np.asarray(found[key]) for name, key in _PLOTTED.items()},
+            unexplained=load is not None and load.acts,
+            plotted={name: np.asarray(found[key]) for name, key in _PLOTTED.items()}
+            | ({} if load is None else {UNEXPLAINED: load.force_n}),
         )
 
     def _rate(self) -> float:

@@ -13,7 +13,9 @@ from mbkf.stream.results.frame import FrameSink
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.setup import LiveSetup
 from mbkf.stream.run.statistics import RunStatistics
+from mbkf.stream.run.unexplained import LoadWatch
 from mbkf.trial.live.filter import LiveStep
+from mbkf.trial.loads.running import RunningLoad
 
 
 class RunOutput:
@@ -26,6 +28,7 @@ class RunOutput:
         put_row: Callable[[NDArray], None],
         statistics: RunStatistics,
         note: Note,
+        loads: LoadWatch,
     ) -> None:
         """Holds the listeners; one that raises an error is dropped.
 
@@ -35,11 +38,13 @@ class RunOutput:
             put_row: Takes a row for the log.
             statistics: Counts latencies and starts.
             note: Called with events.
+            loads: Judges the forces that no contact explains.
         """
         self._rows: FrameRecorder = setup.rows
         self._maker: FrameMaker = setup.maker
         self._sinks, self._opened = list(sinks), tuple(sinks)
         self._put_row, self._statistics, self._note = put_row, statistics, note
+        self._loads = loads
 
     def arrived(self, arrival_s: float) -> None:
         """Counts a frame that arrived, for the rate shown."""
@@ -71,8 +76,9 @@ class RunOutput:
                 self._note("start", "the filter started anew", step.number, 1)
         if spread is not None:
             self._rows.spread(row, spread)
+        load = self._loads.push(ready, row)
         if self._sinks:
-            self._show(ready, row, latency, lost)
+            self._show(ready, row, load, (latency, lost))
         if step.estimate is not None:
             self._rows.innovation(row, step.estimate)
         self._put_row(row)
@@ -85,8 +91,8 @@ class RunOutput:
             except Exception as error:  # the results are still to be written
                 self._note("viewer", f"a listener failed at the end ({error})", None, 1)
 
-    def _show(self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int) -> None:
-        shown = self._maker.frame(ready, row, latency_s, lost)
+    def _show(self, ready: ReadyFrame, row: NDArray, load: RunningLoad, counted: tuple[float, int]) -> None:
+        shown = self._maker.frame(ready, row, *counted, load)
         for sink in list(self._sinks):
             try:
                 sink.take(shown)

@@ -25,6 +25,7 @@ from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.report import LIVE_FILE, ReportFile, frame_report
 from mbkf.stream.run.setup import LiveSetup, prepare, prepare_sensors
 from mbkf.stream.run.statistics import RunStatistics
+from mbkf.stream.run.unexplained import LoadWatch
 from mbkf.stream.source import FrameSource
 from mbkf.trial.live.filter import live_settings
 from mbkf.trial.live.log import LiveLog
@@ -132,12 +133,12 @@ class LiveSession:
             OSError: Nothing can be written to the folder.
         """
         setup, note, statistics = self.setup, self._events.note, RunStatistics()
-        failure = Failure()
+        failure, loads = Failure(), LoadWatch(setup.live, setup.stream.rate_hz, note)
         log, report = self._begun(setup)
 
         def report_running() -> None:
             with suppress(OSError):  # the disk is full; the next one may have room
-                report.write(self._report(RUNNING, receiver.counts(), statistics))
+                report.write(self._report(RUNNING, receiver.counts(), statistics, unexplained=loads.plain()))
 
         writer = LogWriter(log, self._disk_failed, report_running, partial(failure.of, "writing the log"))
         receiver = Receiver(
@@ -149,7 +150,7 @@ class LiveSession:
             self._subject.mass_kg,
             partial(failure.of, "reading the stream"),
         )
-        output = RunOutput(setup, sinks, writer.put_row, statistics, note)
+        output = RunOutput(setup, sinks, writer.put_row, statistics, note, loads)
         loop = FilterLoop(setup, receiver, output, statistics, note, failure)
         with single_threaded(), low_latency():
             receiver.start()
@@ -175,6 +176,7 @@ class LiveSession:
             receiver.counts(loop.until),
             statistics,
             unlogged,
+            unexplained=loads.plain(),
             ended_by=ended_by,
             frames_written=logged,
             frames_not_written=unlogged,

@@ -34,12 +34,15 @@ class Unexplained:
     loads: tuple[UnexplainedLoad, ...]
 
 
-def unexplained_loads(balance: LoadBalance, times_s: Array) -> Unexplained:
+def unexplained_loads(
+    balance: LoadBalance, times_s: Array, known: Sequence[UnexplainedLoad] = ()
+) -> Unexplained:
     """Forces that the contacts of a trial do not explain.
 
     Args:
         balance: Positions and contacts.
         times_s: (T,) times of the frames.
+        known: Forces judged before; one at the same time keeps its cause.
     """
     trial = Contradictions(balance)
     half = trial.windows[-1]
@@ -51,9 +54,12 @@ def unexplained_loads(balance: LoadBalance, times_s: Array) -> Unexplained:
     for first, after in stretches:
         acts[first:after] = True
     course = balance.course(trial.edges, trial.missing(trial.edges))
+    spans = [(float(times_s[first]), float(times_s[after - 1])) for first, after in stretches]
+    before = [_known(known, span) for span in spans]
+    found = causes(trial, stretches) if None in before else []
     loads = [
-        _load(trial, course[first:after], (float(times_s[first]), float(times_s[after - 1])), found)
-        for (first, after), found in zip(stretches, causes(trial, stretches), strict=True)
+        _load(trial, course[first:after], span, cause or found[k])
+        for k, ((first, after), span, cause) in enumerate(zip(stretches, spans, before, strict=True))
     ]
     return Unexplained(force_n, acts, tuple(loads))
 
@@ -68,6 +74,15 @@ def _stretches(trial: Contradictions) -> Sequence[tuple[int, int]]:
             level |= acts
     level &= ~(vertical[0] | vertical[1])
     return sorted(run for mask in (*vertical, level) for run in runs(mask))
+
+
+def _known(known: Sequence[UnexplainedLoad], span_s: tuple[float, float]) -> Found | None:
+    """The cause of the force judged before at a time, from when to when."""
+    causes = [one for one in known if one.cause and one.from_s <= span_s[1] and one.to_s >= span_s[0]]
+    if not causes:
+        return None
+    longest = max(causes, key=lambda one: min(one.to_s, span_s[1]) - max(one.from_s, span_s[0]))
+    return Found(longest.cause, longest.hint)
 
 
 def _load(trial: Contradictions, course: Array, span_s: tuple[float, float], found: Found) -> UnexplainedLoad:

@@ -23,6 +23,7 @@ from mbkf.filters.torque.report import TorqueReport
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.records import PlateReadings
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.inertial_sensor import InertialSensor
@@ -54,6 +55,7 @@ class FilterInputs:
         spread_m: (M,) spread of one reading where noise stays for a while; None: white noise.
         remarks: Remarks on plate readings that were refused.
         other_contacts: Parts besides the feet bear load somewhere in the trial.
+        contradictions: Unexplained forces by the motion of markers alone, with their causes.
         body: Errors of the estimates because the person's body is not known exactly; None where they are not reported.
     """
 
@@ -69,6 +71,7 @@ class FilterInputs:
     spread_m: Array | None = None
     remarks: tuple[str, ...] = ()
     other_contacts: bool = False
+    contradictions: tuple[UnexplainedLoad, ...] = ()
     body: BodyErrors | None = None
 
 

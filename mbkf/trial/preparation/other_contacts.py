@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.filters.estimate import Recording
-from mbkf.sensors.contact.offline import assign_feet
+from mbkf.io.unexplained import UnexplainedLoad
+from mbkf.model.body import Body
+from mbkf.sensors.contact.offline import FootLoads, assign_feet
 from mbkf.sensors.supports.block import BEARING
 from mbkf.sensors.supports.search import other_contacts
+from mbkf.trial.loads.balance import LoadBalance
+from mbkf.trial.loads.unexplained import unexplained_loads
 from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.markers_alone import Motion
+
+EVERYWHERE = ("mass", "clock")
+"""Causes that hold throughout a trial."""
 
 
 def with_other_contacts(
@@ -33,9 +41,39 @@ def with_other_contacts(
     loads = assign_feet(model, q, times_s, rate_hz, inputs.plates)
     plates = recording.plates
     read = np.full(len(plates), plates.shape[1] > 0) & ~np.isnan(plates).any(axis=(1, 2))
-    found = other_contacts(model, q, v, rate_hz, loads, read)
-    inputs = replace(inputs, remarks=(*inputs.remarks, *found.remarks))
+    judged = contradictions(model, q, times_s, rate_hz, loads, read)
+    found = other_contacts(model, q, v, rate_hz, loads, read, _doubted(judged, times_s))
+    inputs = replace(inputs, remarks=(*inputs.remarks, *found.remarks), contradictions=judged)
     if not found.flags.any():
         return inputs, recording
     readings = {**recording.readings, BEARING: found.flags.astype(float)}
     return replace(inputs, other_contacts=True), replace(recording, readings=readings)
+
+
+def contradictions(
+    model: Body, q: Array, times_s: Array, rate_hz: float, loads: FootLoads, read: BoolArray
+) -> tuple[UnexplainedLoad, ...]:
+    """Unexplained forces by the motion of markers alone: causes show best before a filter has made readings agree.
+
+    Args:
+        model: The body.
+        q: (T, nq) configurations from markers alone.
+        times_s: (T,) times of the frames.
+        rate_hz: Frame rate.
+        loads: Loads of the feet by the plates.
+        read: (T,) frames in which all plates were recorded.
+    """
+    judged = read & ~loads.unread.any(axis=1)
+    balance = LoadBalance.of(model, q, rate_hz, loads.wrench[..., :3], np.zeros((len(q), 3)), judged)
+    return unexplained_loads(balance, times_s).loads
+
+
+def _doubted(judged: Sequence[UnexplainedLoad], times_s: Array) -> BoolArray:
+    """(T,) frames in which a wrong mass, unequal clocks or a foot beside its plate explains a missing force."""
+    found = np.zeros(len(times_s), dtype=bool)
+    for one in judged:
+        if one.cause in EVERYWHERE:
+            return ~found
+        if one.cause:
+            found |= (times_s >= one.from_s) & (times_s <= one.to_s)
+    return found

@@ -112,6 +112,7 @@ class Live {
     if (quiet > 1) this.tell(`no frames for ${quiet.toFixed(0)} s`, "bad");
     else if (this.paused) this.tell("paused", "wait");
     else if (!s.tracked) this.tell("body not tracked", "bad");
+    else if (s.unexplained) this.tell("unexplained force: loads are not to be used", "bad");
     else this.tell("live", "good");
   }
 

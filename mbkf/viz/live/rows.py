@@ -53,6 +53,7 @@ class DisplayRows:
         put, rows = self.layout.put, self.layout.blank(1)
         status = (
             frame.time_s, frame.number, 1e3 * frame.latency_s, frame.rate_hz, frame.lost, frame.tracked,
+            frame.unexplained,
         )  # fmt: skip
         put(rows, "status", np.array([status], dtype=float))
         measured = frame.measured_m

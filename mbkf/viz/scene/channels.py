@@ -32,7 +32,7 @@ RESOLUTION |= {name: one.plot.resolution for name, one in PLOTTED.items() if one
 FORCE_AXES = (("vertical", "Vertical", "", 2), ("x", "", " along x", 0), ("y", "", " along y", 1))
 """Components of a force: name, words before and after its kind, world axis."""
 
-STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
+STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked", "unexplained")
 """The first numbers of a row."""
 
 

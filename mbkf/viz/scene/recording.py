@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.io.contacts import bearing
 from mbkf.io.results import PLOTTED, Reconstruction
@@ -81,7 +81,10 @@ def _rows(r: Reconstruction, model: HumanModel, layout: Layout, shown: slice) ->
     rows = layout.blank(len(frames))
     tracked = r.tracked[shown]
     blank = np.full(len(frames), np.nan)
-    status = np.column_stack([r.times_s[shown], frames, 1e3 * r.step_seconds[shown], blank, blank, tracked])
+    acts = _unexplained(r)[shown]
+    status = np.column_stack(
+        [r.times_s[shown], frames, 1e3 * r.step_seconds[shown], blank, blank, tracked, acts]
+    )
     layout.put(rows, "status", status)
     layout.put(rows, "segments", segment_poses(model, np.where(tracked[:, None], r.q[shown], np.nan)))
     state = marker_states(r.measured_m, r.hidden, r.rejected)[shown]
@@ -99,6 +102,14 @@ def _rows(r: Reconstruction, model: HumanModel, layout: Layout, shown: slice) ->
         if values is not None:
             layout.put(rows, part, values[shown])
     return rows
+
+
+def _unexplained(r: Reconstruction) -> BoolArray:
+    """(T,) frames in which an unexplained force acts."""
+    found = np.zeros(r.frames, dtype=bool)
+    for one in r.unexplained:
+        found |= (r.times_s >= one.from_s) & (r.times_s <= one.to_s)
+    return found
 
 
 def pack(rows: Array, resolution: Array | float = 0.0) -> dict[str, object]:

@@ -12,6 +12,7 @@ from mbkf.stream.run.loop import FilterLoop
 from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.setup import prepare
 from mbkf.stream.run.statistics import RunStatistics
+from mbkf.stream.run.unexplained import LoadWatch
 from tests.captures import made_capture
 from tests.stream.scripted import SETTINGS, Collected, ScriptedSource, frames_of
 
@@ -32,7 +33,8 @@ def test_every_frame_is_answered_once(subject):
     source = ScriptedSource(stream, frames[:20] + frames[22:])
     receiver = Receiver(source, stream, setup.columns, lambda _: None, events.note)
     kept, failing = Collected([]), Failing([])
-    output = RunOutput(setup, [kept, failing], rows.append, statistics, events.note)
+    loads = LoadWatch(setup.live, stream.rate_hz, events.note)
+    output = RunOutput(setup, [kept, failing], rows.append, statistics, events.note, loads)
     loop = FilterLoop(setup, receiver, output, statistics, events.note, Failure())
     receiver.start()
     assert loop.run(threading.Event(), None) == "the source ended"
@@ -54,7 +56,8 @@ def test_latency_counts_from_the_arrival_of_the_last_frame_that_an_answer_knows(
     setup = prepare(stream, subject, settings, patient=True, note=events.note)
     receiver = Receiver(ScriptedSource(stream, frames), stream, setup.columns, lambda _: None, events.note)
     kept = Collected([])
-    output = RunOutput(setup, [kept], rows.append, statistics, events.note)
+    loads = LoadWatch(setup.live, stream.rate_hz, events.note)
+    output = RunOutput(setup, [kept], rows.append, statistics, events.note, loads)
     receiver.start()
     assert FilterLoop(setup, receiver, output, statistics, events.note, Failure()).run(
         threading.Event(), None

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.trial.loads.balance import stances
 from mbkf.trial.loads.unexplained import unexplained_loads
 from tests.bodies_in_balance import MASS_KG, RATE_HZ, UP, WEIGHT_N, moving, times_of, unloaded
@@ -52,6 +53,17 @@ def test_a_force_that_comes_and_goes_with_a_foot_is_that_foots(foot, cause):
     found = causes_in(replace(balance, feet_n=feet))
     assert [one for one, _ in found] == [cause]
     assert "1.7 times" in found[0][1]
+
+
+def test_a_cause_found_before_is_kept():
+    balance = unloaded(moving(6.0), 0.3 * WEIGHT_N * UP, 2.0, 4.0)
+    at = UnexplainedLoad(1.0, 3.0, (0.0, 0.0, 1.0), 1.0, 0.1, "right_foot", "beside")
+    (load,) = unexplained_loads(balance, times_of(balance), [at]).loads
+    assert (load.cause, load.hint) == ("right_foot", "beside")
+    (load,) = unexplained_loads(
+        balance, times_of(balance), [replace(at, to_s=1.5), replace(at, cause="")]
+    ).loads
+    assert load.cause == ""
 
 
 def test_a_load_during_a_part_of_a_stance_is_no_foots():

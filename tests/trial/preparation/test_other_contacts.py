@@ -87,6 +87,18 @@ def test_a_seat_is_found_in_what_instruments_read():
     assert np.abs(flags[:, SEAT] - true).sum() <= 0.1 * seated().motion.rate_hz
 
 
+@pytest.mark.parametrize("factor", [0.85, 1.1])
+def test_a_wrong_mass_is_named_and_opens_no_contact(factor):
+    """A body that is stated too heavy seems to be held up by its torso."""
+    recorded, *_ = prepared("squat")
+    person = replace(trial("squat").subject, mass_kg=factor * trial("squat").subject.mass_kg)
+    inputs, recording = trial_inputs(recorded.markers, recorded.plates, person, SETTINGS)
+    alone = markers_alone(inputs, recording)
+    found, read = with_other_contacts(inputs, recording, recorded.markers.times_s, alone)
+    assert {one.cause for one in found.contradictions} == {"mass"}
+    assert not found.other_contacts and read is recording and found.remarks == inputs.remarks
+
+
 def test_what_blocks_of_ones_own_read_stays():
     _, inputs, recording, _ = prepared("sit_to_stand")
     own = replace(recording, readings={"mine": np.arange(len(recording))})

@@ -45,7 +45,9 @@ def test_a_row_tells_what_the_result_of_the_same_frame_tells(rows):
         assert_near(part(rows, row, "angles"), r.angles[k], 1e-9)
         assert_near(part(rows, row, "moments"), r.moments[k], 1e-9)
     assert_near(part(rows, row, "force")[:6], r.foot_wrench[39, :, :3].ravel(), 1e-12)
-    assert_near(part(rows, row, "status"), [0.39, 39, 1.5, 100.0, 2, 1], 1e-12)
+    assert_near(part(rows, row, "status"), [0.39, 39, 1.5, 100.0, 2, 1, 0], 1e-12)
+    stated = rows.row(replace(frame(39), unexplained=True))
+    assert part(rows, stated, "status")[-1] == 1
     assert (part(rows, row, "state") == 0).all()
 
 

@@ -1,0 +1,124 @@
+"""Unexplained loads of a live run: judged in every answered frame, noted as an event, listed in live.json."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.filters.record import UNASKED
+from mbkf.io.unexplained import UnexplainedLoad
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact, KeptContact
+from mbkf.stream.receiving.alignment import Note, ReadyFrame
+from mbkf.trial.live.filter import LiveInputs
+from mbkf.trial.loads.balance import centres_of_mass
+from mbkf.trial.loads.running import RunningBalance, RunningLoad
+
+MOST = 100
+"""Number of loads that are listed."""
+
+HINT = "no contact gives it; torques and reactions are not to be used"
+
+
+@dataclass
+class _Stated:
+    """A load while it is stated."""
+
+    from_s: float
+    to_s: float
+    vector_n: Array
+
+
+class LoadWatch:
+    """Judges the frames of a run, one after another."""
+
+    def __init__(self, live: LiveInputs, rate_hz: float, note: Note) -> None:
+        """Makes it.
+
+        Args:
+            live: The filter's inputs.
+            rate_hz: The stream's rate.
+            note: Called with the beginning of a load.
+        """
+        inputs = live.inputs
+        self._model, self._rate_hz, self._note = inputs.sensor.model, rate_hz, note
+        self._running = RunningBalance(self._model.mass_kg, rate_hz)
+        self._feet = ContactDetector(self._model, inputs.plates, inputs.dt_s) if inputs.plates else None
+        self._memory: KeptContact | None = None if self._feet is None else self._feet.begin()
+        self._first: int | None = None
+        self._loads: list[_Stated] = []
+        self._acts, self._unlisted = False, 0
+
+    def push(self, ready: ReadyFrame, row: NDArray) -> RunningLoad:
+        """The judgement of an answered frame.
+
+        Args:
+            ready: Its readings.
+            row: (1,) the log's row of it.
+        """
+        if self._first is None:
+            self._first = ready.number
+        found = row[0]
+        if found["started"]:
+            self._running.cut()
+        contacts_n, judged = self._contacts(ready, row)
+        known = np.array([bool(found["known"])])
+        centre = centres_of_mass(self._model, found["q"][None], known)[0] if known[0] else np.full(3, np.nan)
+        load = self._running.push(centre, contacts_n, judged)
+        self._listed(load, (ready.number - self._first) / self._rate_hz, ready.number)
+        return load
+
+    def plain(self) -> list[dict[str, object]]:
+        """Loads stated so far, for live.json."""
+        weight_n = self._model.mass_kg * GRAVITY_M_S2
+        found: list[dict[str, object]] = []
+        for one in list(self._loads):
+            load = self._load(one)
+            found.append(
+                {
+                    "from_s": load.from_s,
+                    "to_s": load.to_s,
+                    "force_n": load.force_n,
+                    "direction": load.direction,
+                    "share_of_weight": load.force_n / weight_n,
+                }
+            )
+        return found
+
+    def _contacts(self, ready: ReadyFrame, row: NDArray) -> tuple[Array, bool]:
+        """(3,) sum of the forces of all contacts, and whether plates read every loaded foot."""
+        found = row[0]
+        if self._feet is None or not found["known"]:
+            return np.full(3, np.nan), False
+        others = np.nan_to_num(found["support"][:, :3]).sum(axis=0)
+        if found["footing"][0] != UNASKED:
+            judged = bool(found["tracked"]) and not (found["footing"] == Contact.UNMEASURED).any()
+            return np.asarray(found["wrench"][:, :3].sum(axis=0) + others), judged
+        assert self._memory is not None
+        decision = self._feet.decide(self._memory, found["q"], found["v"], found["a"], ready.plates)
+        self._memory = decision.memory
+        judged = bool(found["tracked"]) and Contact.UNMEASURED not in decision.contacts
+        wrench = decision.wrench if decision.shared is None else decision.shared.wrench
+        return np.asarray(wrench[:, :3].sum(axis=0) + others), judged
+
+    def _listed(self, load: RunningLoad, time_s: float, number: int) -> None:
+        """Lists a load, and notes where it begins."""
+        if load.acts and not self._acts:
+            one = _Stated(time_s, time_s, load.force_n)
+            self._note("unexplained", self._load(one).sentence_now, number, 1)
+            if len(self._loads) < MOST:
+                self._loads.append(one)
+        elif load.acts and self._loads:
+            latest = self._loads[-1]
+            latest.to_s = time_s
+            if np.linalg.norm(np.nan_to_num(load.force_n)) > np.linalg.norm(latest.vector_n):
+                latest.vector_n = load.force_n
+        self._acts = load.acts
+
+    def _load(self, one: _Stated) -> UnexplainedLoad:
+        x, y, z = (float(component) for component in one.vector_n)
+        share = float(np.linalg.norm(one.vector_n)) / (self._model.mass_kg * GRAVITY_M_S2)
+        return UnexplainedLoad(one.from_s, one.to_s, (x, y, z), float("nan"), share, "", HINT)
