@@ -90,8 +90,9 @@ def page(sets: Sets) -> Iterator[str]:
     yield (
         "A 95 % interval is calibrated where it holds the truth in 95 % of the samples, and sharp where it is narrow. "
         "Both are shown for persons made from bodies of OpenSim, whose joints are not placed and turned as ours, and "
-        "for synthetic persons made from our own body. All are scaled from standing, a walk and a squat and followed "
-        "by the smoothed dynamic filter. Settings may have been chosen on the shared adult and child and on our "
+        "for synthetic persons made from our own body, draws from the spreads that scaling and filters count on. "
+        "All are scaled from standing, a walk and a squat and followed by the smoothed dynamic filter. Settings may "
+        "have been chosen on the shared adult and child and on our "
         f"persons {_listed(CHOSEN_ON)}. The persons shown here as *own* are {_listed(SHOWN_ON)}: no setting was chosen "
         "on them. They have two models of skin that the filter does not know ({doc}`benchmarks`). {doc}`real_truth` "
         "has real captures beside outside references."
