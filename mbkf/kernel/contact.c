@@ -50,6 +50,18 @@ static int both_on(Scene *scene, const Plate *plate, double slack)
     return hypot(hypot(velocity[0][0], velocity[0][1]), velocity[0][2]) < slack * limits->parted_m_s;
 }
 
+/* rules.swings_over */
+static int swings_over(Scene *scene, int foot)
+{
+    double floor_m_s[2], speed[FEET];
+    movement_velocity(scene->feet, scene->before, floor_m_s);
+    for (int f = 0; f < FEET; f++) {
+        double (*sole)[3] = scene->motion.sole[f];
+        speed[f] = speed_of(&scene->motion, f, sole[lowest_of(sole, SOLE)], floor_m_s);
+    }
+    return speed[foot] > speed[1 - foot] + scene->feet->limits.parted_m_s;
+}
+
 /* ContactDetector._owner and rules.nearer_foot */
 static int owner_of(Scene *scene, const Plate *plate, const double *pressed, int before)
 {
@@ -62,7 +74,11 @@ static int owner_of(Scene *scene, const Plate *plate, const double *pressed, int
     int nearest = away[RIGHT] <= away[LEFT] ? RIGHT : LEFT;
     if ((before == RIGHT || before == LEFT) && away[before] <= away[nearest] + limits->keep_m)
         nearest = before;
-    return away[nearest] <= limits->reach_m ? nearest : NONE;
+    if (!(away[nearest] <= limits->reach_m))
+        return NONE;
+    if (nearest == 1 - before && away[before] <= limits->reach_m && swings_over(scene, nearest))
+        return before;
+    return nearest;
 }
 
 /* Assigns plates to feet and sums their readings, those below a load apart; returns flags of the decision. */

@@ -33,12 +33,14 @@ from mbkf.sensors.contact.rules import (
     LEAVE_SLACK,
     LEFT,
     NEITHER,
+    REACH_M,
     RIGHT,
     SOLE_ENDS,
     STAND_AFTER_S,
     least_load,
     nearer_foot,
     stand_together,
+    swings_over,
 )
 from mbkf.sensors.contact.soles import distance_to_sole, share_along
 from mbkf.sensors.contact.stances import free_stance, shared_between
@@ -68,6 +70,7 @@ class ContactDetector:
         self._areas = PlateAreas(plates)
         self._model, self._feet, self._still = model, FeetOnBody(model), np.zeros(model.nv)
         floor_m = min(self.surfaces_m, default=np.nan)
+        self._dt_s = dt_s
         self._elsewhere = UnmeasuredFeet(self._areas, floor_m, dt_s)
         self._compiled = CompiledContact.where_built(
             model,
@@ -111,7 +114,7 @@ class ContactDetector:
         wrench, contacts = np.zeros((2, 6)), [Contact.AIR, Contact.AIR]
         for k in loaded:
             point = pressed_at(plate_wrench[k].tolist(), self.surfaces_m[k])
-            owner = foot_of_plate[k] = self._owner(k, point, feet, memory.foot_of_plate[k])
+            owner = foot_of_plate[k] = self._owner(k, point, feet, memory)
             pressed[k] = Pressed(*point, owner)
             for foot in _FEET_OF[owner]:
                 wrench[foot] += plate_wrench[k]
@@ -179,14 +182,21 @@ class ContactDetector:
             return Planted((self._model.roles.toes or self._model.roles.feet)[foot], pressed, flat=True)
         return Planted(self._model.roles.feet[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
 
-    def _owner(self, k: int, point: tuple[float, float], feet: FeetMotion, before: int) -> int:
-        """Foot or feet on plate k with this centre of pressure; ``before`` is its foot in the frame before."""
-        right, left = (min(sole, key=lambda point: point[2]) for sole in feet.soles)
-        if all(self._areas.over(k, x, y) for x, y, _ in (right, left)):
+    def _owner(self, k: int, point: tuple[float, float], feet: FeetMotion, memory: ContactMemory) -> int:
+        """Foot or feet on plate k with this centre of pressure; the memory is from the frame before."""
+        before = memory.foot_of_plate[k]
+        lowest = right, left = [min(sole, key=lambda point: point[2]) for sole in feet.soles]
+        if all(self._areas.over(k, x, y) for x, y, _ in lowest):
             speed = dist(feet.velocity(RIGHT, right), feet.velocity(LEFT, left))
             if stand_together(right[2] - left[2], speed, LEAVE_SLACK if before == BOTH else 1.0):
                 return BOTH
-        return nearer_foot([distance_to_sole(*point, sole) for sole in feet.soles], before)
+        away_m = [distance_to_sole(*point, sole) for sole in feet.soles]
+        nearest = nearer_foot(away_m, before)
+        if before not in (RIGHT, LEFT) or nearest in (before, NEITHER) or away_m[before] > REACH_M:
+            return nearest
+        floor_m_s = memory.movement.floor_m_s(self._dt_s)
+        speeds = [feet.speed(foot, lowest[foot], floor_m_s) for foot in (RIGHT, LEFT)]
+        return before if swings_over(speeds[nearest], speeds[before]) else nearest
 
 
 def _lowest_balls(

@@ -66,6 +66,18 @@ def nearer_foot(away_m: Sequence[float], before: int = NEITHER) -> int:
     return nearest if away_m[nearest] <= REACH_M else NEITHER
 
 
+def swings_over(speed_m_s: float, keeper_m_s: float) -> bool:
+    """True for a foot that swings over a plate on which the other stands: causally, the plate stays with that one.
+
+    Where feet cross or pass close to each other, the sole that swings comes nearer to the centre of pressure.
+
+    Args:
+        speed_m_s: Speed of its sole's lowest point against the floor.
+        keeper_m_s: That of the foot that the plate belonged to in the frame before.
+    """
+    return speed_m_s > keeper_m_s + PARTED_M_S
+
+
 # 3: two feet on one plate.
 
 LEVEL_M = 0.09

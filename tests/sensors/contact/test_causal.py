@@ -168,6 +168,26 @@ def test_feet_that_pass_each_other_do_not_share_and_feet_on_a_belt_do():
     assert owner(together, belt + passing(1.2 * LEAVE_SLACK * PARTED_M_S)).foot_of_plate != (2,)
 
 
+@pytest.mark.parametrize("belt_m_s", [0.0, -1.5])
+def test_a_plate_stays_with_its_foot_while_the_other_swings_over(belt_m_s):
+    """The pressure lies under the other sole; a foot at rest takes the plate there, one that swings does not."""
+    q = standing(MODEL)
+    middles = sole_points(MODEL, q[None])[0].mean(axis=1)
+    loads = half_weight(MODEL, middles)
+    feet = ContactDetector(MODEL, [plate(0.0, 0.0, outline=False)], DT)
+    belt, swings = STILL.copy(), STILL.copy()
+    belt[0] = belt_m_s
+    hip = MODEL.joint("left_thigh").v.start + 1
+    swings[hip] = 4.0 / MODEL.segment_jacobian(q, "left_foot", np.zeros(3))[0, hip]
+    memory = feet.begin()
+    for _ in range(40):
+        memory = feet.decide(memory, q, belt, STILL, loads[RIGHT : RIGHT + 1]).memory
+    assert memory.foot_of_plate == (RIGHT,)
+    beside = loads[LEFT : LEFT + 1]
+    assert feet.decide(memory, q, belt + swings, STILL, beside).memory.foot_of_plate == (RIGHT,)
+    assert feet.decide(memory, q, belt, STILL, beside).memory.foot_of_plate == (LEFT,)
+
+
 def test_a_foot_lifted_or_beside_the_plate_does_not_share_it():
     q = standing(MODEL)
     middles = sole_points(MODEL, q[None])[0].mean(axis=1)
