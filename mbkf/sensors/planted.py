@@ -21,6 +21,7 @@ from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Planted
+from mbkf.sensors.contact.rules import STANDING
 
 
 @dataclass(frozen=True)
@@ -34,18 +35,26 @@ class PlantedSettings:
         level_sd_rad: Of a flat sole's tilt from level per frame, for a foot that only keypoints show, rad.
     """
 
-    planted_speed_sd: float = 0.03
+    planted_speed_sd: float = 0.2
     planted_turn_sd: float = 0.2
     belt_speed_share: float = 0.1
     level_sd_rad: float = 0.3
 
 
 class PlantedDecision(NamedTuple):
-    """Feet and toes at rest on the floor, segments of feet with level soles, and the floor's velocity, m/s."""
+    """Feet at rest on the floor, and level ones.
+
+    Attributes:
+        still: Feet and toes at rest on the floor.
+        level: Segments of feet with level soles.
+        floor_m_s: The floor's horizontal velocity.
+        slides_m_s: By which each of ``still`` is predicted to be faster than a foot that stands.
+    """
 
     still: tuple[Planted, ...]
     level: tuple[str, ...]
     floor_m_s: tuple[float, float] = (0.0, 0.0)
+    slides_m_s: tuple[float, ...] = ()
 
 
 class PlantedFeet(Block[State, None, PlantedDecision, None]):
@@ -85,19 +94,30 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
             for foot, lost in enumerate(unmarked)
         ]
         still = tuple(one for one, lost in zip(found, unmarked, strict=True) if lost and one is not None)
+        slides = tuple(self._slides(at.state, one, contact.floor_m_s) for one in still)
         if not self.keypoints:
-            return PlantedDecision(still, (), contact.floor_m_s)
+            return PlantedDecision(still, (), contact.floor_m_s, slides)
         flat = [one.segment for one in found if one is not None and one.flat]
         level = tuple(name for name in flat if name in self._model.roles.feet)
-        return PlantedDecision(still, level, contact.floor_m_s)
+        return PlantedDecision(still, level, contact.floor_m_s, slides)
+
+    def _slides(self, state: State, planted: Planted, floor_m_s: tuple[float, float]) -> float:
+        """Speed beyond that of a foot that stands, m/s: its floor may be a belt whose velocity is not known yet."""
+        moves = self._model.segment_jacobian(state.q, planted.segment, planted.point_m)[:2] @ state.v
+        return max(math.dist(moves, floor_m_s) - STANDING.speed_m_s, 0.0)
 
     def linearise(self, at: OperatingPoint[State, None], decision: PlantedDecision) -> list[Rows]:
         """Rows on the velocity, and on the configuration for level soles."""
         s, state, floor = self.settings, at.state, decision.floor_m_s
-        sds = math.hypot(s.planted_speed_sd, s.belt_speed_share * math.hypot(*floor)), s.planted_turn_sd
+        own, turn_sd = (s.planted_speed_sd, s.belt_speed_share * math.hypot(*floor)), s.planted_turn_sd
         found = [
-            Rows(*standing_still(self._model, state.q, state.v, foot, *sds, floor), self.layout.v.start)
-            for foot in decision.still
+            Rows(
+                *standing_still(
+                    self._model, state.q, state.v, foot, math.hypot(*own, slides), turn_sd, floor
+                ),
+                self.layout.v.start,
+            )
+            for foot, slides in zip(decision.still, decision.slides_m_s, strict=True)
         ]
         level = decision.level
         return found + [Rows(*lying_level(self._model, state.q, name, s.level_sd_rad)) for name in level]

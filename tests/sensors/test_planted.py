@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mbkf.model.layout import Layout
-from mbkf.sensors.block import OperatingPoint
+from mbkf.sensors.block import Notes, OperatingPoint
 from mbkf.sensors.contact.records import Planted
+from mbkf.sensors.contact.rules import STANDING
 from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.planted import PlantedDecision, PlantedFeet, PlantedSettings, lying_level, standing_still
@@ -17,6 +18,7 @@ MODEL = reference_model()
 Q = moderate_pose(MODEL, np.random.default_rng(3))
 V = np.random.default_rng(4).normal(size=MODEL.nv)
 SOLES = MarkerSensor(MODEL, *sole_locals(MODEL))
+SOLE = [Planted(name, SOLES.positions(Q)[3 * k], flat=False) for k, name in enumerate(MODEL.roles.feet)]
 
 
 @pytest.mark.parametrize("foot", [0, 1])
@@ -57,11 +59,31 @@ def test_a_belt_is_followed_less_closely_than_a_floor():
     block.bind(Layout.of(MODEL.nv, q=MODEL.nv, v=MODEL.nv), MODEL)
     at = OperatingPoint(SimpleNamespace(q=Q, v=V), None)
     foot = Planted(MODEL.roles.feet[0], SOLES.positions(Q)[0], flat=False)
-    (floor,) = block.linearise(at, PlantedDecision((foot,), ()))
-    (belt,) = block.linearise(at, PlantedDecision((foot,), (), (-0.3, 0.4)))
+    (floor,) = block.linearise(at, PlantedDecision((foot,), (), slides_m_s=(0.0,)))
+    (belt,) = block.linearise(at, PlantedDecision((foot,), (), (-0.3, 0.4), (0.0,)))
     np.testing.assert_allclose(belt.jacobian, floor.jacobian * 0.03 / np.hypot(0.03, 0.05))
     away = np.hypot(0.03, 0.05) * (belt.innovation + belt.jacobian @ V)
     np.testing.assert_allclose(away, [-0.3, 0.4, 0.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("belt", [(0.0, 0.0), (-1.5, 0.2)])
+@pytest.mark.parametrize("slide", [0.0, 0.5, 2.0])
+def test_a_foot_that_is_faster_than_a_standing_one_is_held_by_its_excess(slide, belt):
+    """Against the floor that is known: the limits of a standing foot's speed count, the excess adds to the spread."""
+    block = PlantedFeet(MODEL, SimpleNamespace(planted=lambda contact, q, foot: SOLE[foot]))
+    block.bind(Layout.of(MODEL.nv, q=MODEL.nv, v=MODEL.nv), MODEL)
+    jacobian = MODEL.segment_jacobian(Q, SOLE[0].segment, SOLE[0].point_m)
+    speed = STANDING.speed_m_s + slide if slide else 0.9 * STANDING.speed_m_s
+    v = np.linalg.pinv(jacobian[:3]) @ [belt[0], belt[1] - speed, 0.0]
+    at = OperatingPoint(SimpleNamespace(q=Q, v=v), None)
+    hidden = np.array([MODEL.joint(MODEL.roles.feet[0]).v.start])
+    notes = Notes(unmarked=hidden, contact=SimpleNamespace(floor_m_s=belt))
+    decision = block.decide(at, None, None, notes)
+    assert decision.still == (SOLE[0],)
+    np.testing.assert_allclose(decision.slides_m_s, [slide], atol=1e-9)
+    (rows,) = block.linearise(at, decision)
+    own = block.settings.planted_speed_sd, block.settings.belt_speed_share * np.hypot(*belt)
+    np.testing.assert_allclose(rows.jacobian, jacobian[:3] / np.hypot(np.hypot(*own), slide), atol=1e-9)
 
 
 def test_smaller_spreads_weigh_more():
