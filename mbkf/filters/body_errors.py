@@ -9,7 +9,7 @@ Scaling leaves scale factors, marker places and displacements of the skin by fle
 H and H_p the derivatives of marker positions by q and p. These are consider parameters (S. F. Schmidt 1966): never
 estimated, their share of the error is carried along. Pose errors that hold whenever the posture is the same change
 while the body moves, so velocities and accelerations err by the rates of W δp along the motion. Generalised forces
-τ(x, k) err by ∂τ/∂x δx + ∂τ/∂k δk.
+τ(x, k) err by ∂τ/∂x δx + ∂τ/∂k δk, and by segment masses and centres of mass (:mod:`mbkf.filters.inertia_errors`).
 
 All is kept as B = (∂·/∂p) L, so that a covariance is B Bᵀ.
 """
@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.filters.inertia_errors import InertiaErrors
 from mbkf.filters.pose_errors import PoseErrors
 from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
@@ -56,15 +57,16 @@ RANK = 1e-12
 
 @dataclass(frozen=True)
 class BodyErrorRoots:
-    """Roots B of errors by the body at one instant; each has r columns, and B Bᵀ is its covariance.
+    """Roots B of errors by the body at one instant; B Bᵀ is the covariance of each.
 
-    Those of the motion have nv rows.
+    Those of the motion have nv rows and r columns. Those of loads have k further columns: segment masses and centres
+    of mass change no motion.
 
     Attributes:
         position: Of the configuration, in its tangent space.
         velocity: Of the velocity.
-        torque: Of the generalised forces.
-        wrench: (12, r) of the feet's wrenches; 0 for a foot whose plate reads it.
+        torque: (nv, r + k) of the generalised forces.
+        wrench: (12, r + k) of the feet's wrenches; 0 for a foot whose plate reads it.
     """
 
     position: Array
@@ -134,6 +136,7 @@ class BodyErrors:
         self._poses.onto(self._directions())
         directions, self._along = _principal(self._poses.sizes)
         self._varied = [NewtonEuler(one) for one in _varied(model, directions)]
+        self._inertia = InertiaErrors(model)
 
     def _directions(self) -> Array:
         """(r, n) orthonormal directions of L's columns in which nearly all of every dof's variance lies."""
@@ -194,6 +197,7 @@ class BodyErrors:
         by_q, by_v = balance.by_q - (2.0 / h**2) * balance.by_a, balance.by_v + balance.by_a @ rate
         torque = by_q @ here + by_v @ velocity + balance.by_a @ ((around[0] + around[1]) / h**2)
         torque += self._own_torques(q, v, a, loads, balance)
+        torque = np.hstack([torque, self._inertia.at(q, v, a)])
         wrench = self._unread(balance, torque[:ROOT], loads, contact)
         return BodyErrorRoots(here, velocity, torque + balance.by_wrench @ wrench, wrench)
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrors
+from mbkf.filters.inertia_errors import InertiaErrors
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import JointTorques, NewtonEuler
 
@@ -35,7 +36,7 @@ class MountErrors(BodyErrors):
             segments: S segments that carry sensors.
             turn_sd_rad: (S, 3) spread of each mount's turn about its segment's axes.
         """
-        self._model, self._balance = model, NewtonEuler(model)
+        self._model, self._balance, self._inertia = model, NewtonEuler(model), InertiaErrors(model)
         self._joints = [model.joint(name).joint_id for name in segments]
         self._turns = np.asarray(turn_sd_rad)
 

@@ -28,7 +28,7 @@ KEPT_BYTES = 60_000_000
 
 
 class ReadRoots(NamedTuple):
-    """Roots of the numbers that people read; each has r columns.
+    """Roots of the numbers that people read; each has as many columns as its part of the errors by the body.
 
     Attributes:
         angle: (A, r) of the clinical coordinates.

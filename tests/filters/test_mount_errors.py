@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from mbkf.filters.inertia_errors import InertiaErrors
 from mbkf.filters.mount_errors import MountErrors
 from tests.motions import moderate_pose, reference_model
 
@@ -29,9 +30,10 @@ def test_a_joint_without_sensors_does_not_err():
     assert np.abs(root[MODEL.joint("right_shank").v]).max() > 0.05
 
 
-def test_torques_follow_from_the_motion_alone():
+def test_torques_follow_from_the_motion_and_segment_masses_alone():
     errors = MountErrors(MODEL, SEGMENTS, np.full((4, 3), 0.05))
     rest = np.zeros(MODEL.nv)
     found = errors.at(Q, rest, rest, np.zeros((2, 6)), None)
-    assert found.torque.shape == (MODEL.nv, 12) and np.isfinite(found.torque).all()
+    assert np.isfinite(found.torque).all() and np.abs(found.torque[6:, :12]).max() > 0.1
+    np.testing.assert_array_equal(found.torque[:, 12:], InertiaErrors(MODEL).at(Q, rest, rest))
     np.testing.assert_allclose(found.position_variance, (found.position**2).sum(axis=1))

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from mbkf.model.inertia_spread import SIDES_ALIKE
 from mbkf.model.inertial_regressor import PER_OWN, PER_SEGMENT, InertialRegressor
-from mbkf.trial.inertia.prior import PLACE, PLACE_SD_M, SIDES_ALIKE, WHOLE_SD, inertia_prior
+from mbkf.trial.inertia.prior import PLACE, PLACE_SD_M, WHOLE_SD, inertia_prior
 from tests.motions import reference_model
 
 REGRESSOR = InertialRegressor(reference_model())
