@@ -208,7 +208,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
     from mbkf.trial.preparation.coverage import listed
 
     along = summary["progression"]
-    corrected = " after correction" if summary["filter"] != "kinematic" else ""
+    corrected = " after correction" if summary["filter"] == "torque" else ""
     unsmoothed = ", smoothing not counted" if summary["smoothed"] else ""
     realtime = summary["realtime_factor"]
     rows = [
@@ -222,7 +222,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
         ("frames with all loads measured", str(summary["measured_frames"])),
         (
             f"residual at the pelvis{corrected}",
-            _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m"),
+            _residual(summary),
         ),
         (
             "step median / 99 %",
@@ -272,3 +272,13 @@ def _checks(summary: Summary) -> list[str]:
 
 def _pair(first: float | None, second: float | None, unit: str, factor: float = 1.0) -> str:
     return " / ".join("–" if x is None else f"{factor * x:.1f}" for x in (first, second)) + f" {unit}"
+
+
+def _residual(summary: Summary) -> str:
+    """Force and moment, and both by body weight."""
+    force, moment = summary["residual_force_rms_n"], summary["residual_moment_rms_nm"]
+    found = _pair(force, moment, "N, N m")
+    share, lever_m = summary["residual_force_share"], summary["residual_lever_m"]
+    if share is None or lever_m is None:
+        return found
+    return f"{found} ({100.0 * share:.1f} % of body weight, {1e3 * lever_m:.0f} mm)"

@@ -108,6 +108,7 @@ class Summary(TypedDict):
         marker_rms_mm_by_name: The same by marker.
         hidden_marker_rms_mm, hidden_marker_max_mm: Distances of markers hidden on purpose.
         residual_force_rms_n, residual_moment_rms_nm: Residual at the pelvis in measured frames.
+        residual_force_share, residual_lever_m: The same over body weight: a share, and a lever.
         valid_frames: Frames in which every contact that bears load is measured, or estimated so that the torques it
             loads are known well enough (:mod:`mbkf.trial.results.validity`), and in which no unexplained force acts.
         measured_frames: Frames in which plates measure every contact.
@@ -153,6 +154,8 @@ class Summary(TypedDict):
     hidden_marker_max_mm: float | None
     residual_force_rms_n: float | None
     residual_moment_rms_nm: float | None
+    residual_force_share: float | None
+    residual_lever_m: float | None
     valid_frames: int
     measured_frames: int
     contacts: list[ContactTold]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.contacts import ContactInterval
@@ -40,6 +40,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
     change = np.full((0, 1, 6), np.nan) if r.plate_change is None else r.plate_change
     peaks, sd, sd_offset, sd_varying = _torques(r)
     computing = float(np.nansum(r.step_seconds))
+    weight_n = GRAVITY_M_S2 * float(r.subject.mass_kg)
+    force_n, moment_nm = (_rms_of_norm(one[r.measured]) for one in (r.residual_force_n, r.residual_moment_nm))
     return {
         "trial": r.trial,
         "protocol": r.protocol,
@@ -63,8 +65,10 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "marker_rms_mm_by_name": {name: _rms(seen_mm[:, m]) for m, name in enumerate(r.marker_names)},
         "hidden_marker_rms_mm": _rms(hidden_mm),
         "hidden_marker_max_mm": _largest(hidden_mm),
-        "residual_force_rms_n": _rms_of_norm(r.residual_force_n[r.measured]),
-        "residual_moment_rms_nm": _rms_of_norm(r.residual_moment_nm[r.measured]),
+        "residual_force_rms_n": force_n,
+        "residual_moment_rms_nm": moment_nm,
+        "residual_force_share": None if force_n is None else force_n / weight_n,
+        "residual_lever_m": None if moment_nm is None else moment_nm / weight_n,
         "valid_frames": int(r.valid.sum()),
         "measured_frames": int(r.measured.sum()),
         "contacts": [contact_summary(one) for one in r.contacts],

@@ -45,8 +45,11 @@ MOST_NAMED = 8
 MANY = 6
 """Number of remarks above which they stand in two columns."""
 
-CORRECTING = ("dynamic", "torque")
+CORRECTING = ("torque",)
 """Filters that impose Newton's law on their estimates: their residual is one after correction."""
+
+ESTIMATING = ("dynamic",)
+"""Filters that estimate the residual as a state."""
 
 GOOD, CARE, BAD, NONE = "good", "care", "bad", "none"
 
@@ -180,15 +183,22 @@ def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
         remark = "not known without frames in which plates measure every contact"
         return [Verdict(_residual(r, what), "–", NONE, remark) for what in ("force", "moment")]
     external = float(np.nanmax(np.linalg.norm(r.foot_wrench[r.measured, :, :3].sum(axis=1), axis=1)))
-    height = r.subject.height_m or 1.75
+    centre_m = CENTRE_OF_MASS_SHARE * (r.subject.height_m or 1.75)
     found = []
-    for what, rms, vectors, allowed, unit in (
-        ("force", force, r.residual_force_n, FORCE_SHARE * external, "N"),
-        ("moment", moment, r.residual_moment_nm, MOMENT_SHARE * external * CENTRE_OF_MASS_SHARE * height, "N m"),
+    weight_n = GRAVITY_M_S2 * r.subject.mass_kg
+    shares = (
+        f"{100.0 * force / weight_n:.1f} % of body weight",
+        f"a lever of {1e3 * moment / weight_n:.0f} mm",
+    )
+    for what, rms, vectors, allowed, unit, share in (
+        ("force", force, r.residual_force_n, FORCE_SHARE * external, "N", shares[0]),
+        ("moment", moment, r.residual_moment_nm, MOMENT_SHARE * external * centre_m, "N m", shares[1]),
     ):  # fmt: skip
         peak = float(np.nanmax(np.linalg.norm(vectors[r.measured], axis=1)))
-        remark = f"RMS at the pelvis; peak {peak:.1f} {unit}, in accepted practice below {allowed:.0f} {unit}"
-        if r.filter in CORRECTING:
+        remark = f"RMS at the pelvis, {share}; peak {peak:.1f} {unit}, in accepted practice below {allowed:.0f} {unit}"
+        if r.filter in ESTIMATING:
+            remark += "; the filter estimates it as a state"
+        elif r.filter in CORRECTING:
             remark += "; the filter makes it small in any case: see the checks above"
         kind = GOOD if peak <= allowed else CARE
         found.append(Verdict(_residual(r, what), f"{rms:.1f} {unit}", kind, remark))

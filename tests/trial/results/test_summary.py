@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
@@ -18,7 +19,8 @@ KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
     "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
-    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts", "unexplained",
+    "residual_force_rms_n", "residual_moment_rms_nm", "residual_force_share",
+    "residual_lever_m", "valid_frames", "measured_frames", "contacts", "unexplained",
     "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "torque_sd_offset_nm",
     "torque_sd_varying_nm", "nis_per_dof", "nis", "marker_noise_mm_by_name", "later_frames",
@@ -96,6 +98,8 @@ def test_residual_counts_measured_frames_only_as_a_norm():
     force[2], measured[2] = 1000.0, False
     summary = summarise(made_up(residual_force_n=force, measured=measured))
     assert summary["residual_force_rms_n"] == pytest.approx(5.0)
+    weight_n = GRAVITY_M_S2 * summary["mass_kg"]
+    assert summary["residual_force_share"] == pytest.approx(5.0 / weight_n)
     assert (summary["measured_frames"], summary["valid_frames"]) == (11, 12)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.trial.results.summary import summarise
 from mbkf.viz.report.quality import BAD, CARE, GOOD, NONE, quality_section, verdicts
@@ -18,7 +19,7 @@ def judged(r, **changes):
 def test_a_good_result_is_called_good():
     found = judged(walk())
     assert {v.kind for title, v in found.items() if title != "Markers missing"} == {GOOD}
-    assert found["Residual force after correction"].value == "1.7 N", "one newton in each of three axes"
+    assert found["Residual force"].value == "1.7 N", "one newton in each of three axes"
 
 
 @pytest.mark.parametrize(
@@ -32,7 +33,7 @@ def test_a_good_result_is_called_good():
         ({"nis_per_dof": 1.7}, "Innovation (NIS)", CARE),
         ({"nis_per_dof": 0.3}, "Innovation (NIS)", NONE),
         ({"nis_per_dof": None}, "Innovation (NIS)", NONE),
-        ({"residual_force_rms_n": None}, "Residual force after correction", NONE),
+        ({"residual_force_rms_n": None}, "Residual force", NONE),
     ],
 )
 def test_verdicts_follow_their_bounds(changes, title, kind):
@@ -63,9 +64,19 @@ def test_an_unexplained_force_is_bad_and_none_is_good():
 
 
 def test_only_a_filter_that_imposes_newtons_law_corrects():
-    found = judged(replace(walk(), filter="kinematic"))
-    assert "Residual force" in found and "small in any case" not in found["Residual force"].remark
-    assert "small in any case" in judged(walk())["Residual force after correction"].remark
+    found = {name: judged(replace(walk(), filter=name)) for name in ("kinematic", "torque", "dynamic")}
+    assert (
+        "Residual force" in found["kinematic"] and "small" not in found["kinematic"]["Residual force"].remark
+    )
+    assert "small in any case" in found["torque"]["Residual force after correction"].remark
+    assert "estimates it as a state" in found["dynamic"]["Residual force"].remark
+
+
+def test_residuals_are_stated_by_body_weight():
+    weight_n = GRAVITY_M_S2 * walk().subject.mass_kg
+    found = judged(walk(), residual_force_rms_n=0.05 * weight_n, residual_moment_rms_nm=0.03 * weight_n)
+    assert "5.0 % of body weight" in found["Residual force"].remark
+    assert "a lever of 30 mm" in found["Residual moment"].remark
 
 
 def test_one_large_residual_is_noticed():
@@ -73,23 +84,17 @@ def test_one_large_residual_is_noticed():
     force, moment = r.residual_force_n.copy(), r.residual_moment_nm.copy()
     force[50], moment[50] = 60.0, 20.0
     found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment))
-    assert (
-        found["Residual force after correction"].kind
-        == found["Residual moment after correction"].kind
-        == CARE
-    )
+    assert found["Residual force"].kind == found["Residual moment"].kind == CARE
     unseen = r.measured.copy()
     unseen[50] = False
     found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment, measured=unseen))
-    assert found["Residual force after correction"].kind == GOOD, (
-        "only frames with every contact measured are judged"
-    )
+    assert found["Residual force"].kind == GOOD, "only frames with every contact measured are judged"
 
 
 def test_a_body_that_does_not_fit_has_no_green_tick():
     found = judged(walk(), marker_rms_mm=38.0)
     assert GOOD not in {v.kind for v in found.values()}
-    assert "has no meaning" in found["Residual force after correction"].remark
+    assert "has no meaning" in found["Residual force"].remark
     page = quality_section(walk(), {**summarise(walk()), "marker_rms_mm": 38.0}, None)
     assert "✓" not in page
     assert 'class="tile bad"' in page
