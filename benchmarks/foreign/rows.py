@@ -21,17 +21,21 @@ class Bounds:
         shift_deg: Of the hip-flexion offset's standard deviation between motions.
         hip_mm: Of the hip centre.
         varying_deg: Of the RMS without the mean.
-        cover: Least and largest share inside 95 % intervals, of errors and of their varying part.
+        cover: Least and largest share inside 95 % intervals, of errors and of their varying part, and of moments.
+        moment: Of the moments' RMS, N m/kg.
+        moment_nees: Least and largest mean square of the moments' errors over their standard deviations.
     """
 
     shift_deg: float
     hip_mm: float
     varying_deg: float
     cover: tuple[float, float]
+    moment: float
+    moment_nees: tuple[float, float]
 
 
-CHOSEN_ON = Bounds(1.5, 12.0, 1.4, (0.90, 0.97))
-SHOWN_ON = Bounds(3.0, 15.0, 1.7, (0.88, 0.98))
+CHOSEN_ON = Bounds(1.5, 12.0, 1.4, (0.90, 0.97), 0.058, (0.7, 1.5))
+SHOWN_ON = Bounds(3.0, 15.0, 1.7, (0.88, 0.98), 0.075, (0.6, 1.7))
 
 
 def bounded_rows(name: str, score: Score, bounds: Bounds) -> list[Check]:
@@ -56,8 +60,9 @@ def bounded_rows(name: str, score: Score, bounds: Bounds) -> list[Check]:
         ),
         *within(f"{name}: legs, share in 95 % intervals", legs.cover, *bounds.cover),
         *within(f"{name}: legs, share in 95 % intervals, varying", legs.varying_cover, *bounds.cover),
-        information(f"{name}: moments of legs, RMS", score.moment, "N m/kg"),
-        information(f"{name}: moments of legs, share in 95 % intervals", score.moment_cover),
+        Check(f"{name}: moments of legs, RMS", score.moment, bounds.moment, "<=", "N m/kg"),
+        *within(f"{name}: moments of legs, share in 95 % intervals", score.moment_cover, *bounds.cover),
+        *within(f"{name}: moments of legs, NEES", score.moment_nees, *bounds.moment_nees),
     ]
     for group, one in score.groups.items():
         if group != "legs":

@@ -125,6 +125,7 @@ class Score:
         offsets: Mean errors of hip flexion.
         centres_mm: RMS distance of joint centres by joint.
         moment, moment_cover: RMS error of the legs' moments in N m/kg, and share inside the 95 % interval.
+        moment_nees: Mean square of their errors over stated standard deviations.
     """
 
     legs: AngleScore
@@ -134,6 +135,7 @@ class Score:
     centres_mm: dict[str, float]
     moment: float
     moment_cover: float
+    moment_nees: float
 
 
 def score(found: Sequence[Judged]) -> Score:
@@ -151,7 +153,7 @@ def score(found: Sequence[Judged]) -> Score:
     for one in found:
         for (joint, _), away in one.centres_m.items():
             centres[joint].append(1e3 * away)
-    error = _joined(one.error for one in moments)
+    error, sd = _joined(one.error for one in moments), _joined(one.sd for one in moments)
     return Score(
         angle_score(by_group["legs"]),
         {group: angle_score(held) for group, held in by_group.items()},
@@ -159,7 +161,8 @@ def score(found: Sequence[Judged]) -> Score:
         offset_score(one for one in angles if one.name in HIP_FLEXION),
         {joint: rms(np.concatenate(held)) for joint, held in centres.items()},
         rms(error),
-        cover(error, _joined(one.sd for one in moments)),
+        cover(error, sd),
+        float(np.nanmean((error / sd) ** 2)) if error.size else float("nan"),
     )
 
 

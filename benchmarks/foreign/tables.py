@@ -12,7 +12,7 @@ from benchmarks.foreign.score import HIP_FLEXION, Score
 
 COLUMNS = (
     "raw °", "offset °", "shift °", "range °", "varying °", "cover", "varying", "ECE", "sd °",
-    "hip", "knee", "ankle mm", "N m/kg", "cover",
+    "hip", "knee", "ankle mm", "N m/kg", "cover", "NEES",
 )  # fmt: skip
 GROUP_COLUMNS = ("raw °", "varying °", "cover", "varying", "ECE", "sd °")
 
@@ -31,7 +31,7 @@ def score_table(title: str, scores: dict[str, Score]) -> Table:
             name, f"{legs.raw:.2f}", f"{offsets.size:.1f}", f"{offsets.shift:.1f}", f"{offsets.widest:.1f}",
             f"{legs.varying:.2f}", f"{legs.cover:.2f}", f"{legs.varying_cover:.2f}", f"{one.angles.calibration:.3f}",
             f"{one.angles.sharpness:.2f}", *(f"{centres[joint]:.0f}" for joint in ("hip", "knee", "ankle")),
-            f"{one.moment:.3f}", f"{one.moment_cover:.2f}",
+            f"{one.moment:.3f}", f"{one.moment_cover:.2f}", f"{one.moment_nees:.2f}",
         )  # fmt: skip
     return table
 
