@@ -18,6 +18,7 @@ from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.root_residual import RootResidual
 from mbkf.synthesis.motion import TrueMotion
 from tests.motions import moderate_pose, protocol_sensor
 from tests.recordings import performer
@@ -28,6 +29,11 @@ LOAD = np.array([80.0, 40.0, 500.0, 60.0, 60.0, 20.0])
 
 MARKER_SD_M = 0.002
 
+RESIDUAL = RootResidual(GRAVITY_M_S2 * 70.0, DT).states()
+"""The state that the standard blocks add."""
+
+RESIDUAL_SD = np.repeat([20.0, 10.0], 3)
+
 SPREAD = (0.02, 0.3, 5.0)
 """How well positions, velocities and accelerations of a random state are known, SI units."""
 
@@ -35,7 +41,7 @@ SPREAD = (0.02, 0.3, 5.0)
 def random_covariance(model, rng):
     """A covariance (N, N) in which everything depends on everything, and nothing is better known than a third."""
     nv = model.nv
-    sd = np.concatenate([np.repeat(SPREAD, nv), np.tile(LOAD, 2) / 10.0])
+    sd = np.concatenate([np.repeat(SPREAD, nv), np.tile(LOAD, 2) / 10.0, RESIDUAL_SD])
     A = rng.normal(size=(len(sd), len(sd)))
     P = sd[:, None] * (A @ A.T / len(sd) + 0.1 * np.eye(len(sd))) * sd
     return 0.5 * (P + P.T)
@@ -47,7 +53,7 @@ def random_state(model, rng, q=None, spread=1.0):
     q = moderate_pose(model, rng) if q is None else model.integrate(q, spread * 0.1 * rng.normal(size=nv))
     v, a = spread * rng.normal(size=nv), 10.0 * spread * rng.normal(size=nv)
     w = rng.normal(size=12) * np.tile(LOAD, 2)
-    return DynamicState(q, v, a, w, random_covariance(model, rng))
+    return DynamicState(q, v, a, w, random_covariance(model, rng), rng.normal(size=6) * RESIDUAL_SD)
 
 
 def standing(model, height_m=0.0):
@@ -73,7 +79,7 @@ def plates_under(model, q):
     return tuple(plate(x, y, (0.25, 0.08), name=name) for name, (x, y, _) in zip("12", soles, strict=True))
 
 
-def singer(model, extras=(), held=None, settings=None, dt_s=DT):
+def singer(model, extras=RESIDUAL, held=None, settings=None, dt_s=DT):
     """A Singer plant with states that blocks add; ``held`` dofs stay where they are."""
     held = np.zeros(model.nv, dtype=bool) if held is None else held
     return SingerPlant(model, Layout.dynamic(model.nv, extras), dt_s, held, settings or SingerSettings())
@@ -165,8 +171,14 @@ def about(point):
 
 def at_rest(model, q, wrench):
     """A state that rests under a wrench (12,) or (2, 6), with a diagonal covariance."""
-    sd, still = np.concatenate([np.repeat(SPREAD, model.nv), np.tile(LOAD, 2)]), np.zeros(model.nv)
-    return DynamicState(q, still, still, np.asarray(wrench, dtype=float).ravel(), np.diag(sd**2))
+    sd, still = _state_sd(model), np.zeros(model.nv)
+    wrench = np.asarray(wrench, dtype=float).ravel()
+    return DynamicState(q, still, still, wrench, np.diag(sd**2), np.zeros(6))
+
+
+def _state_sd(model):
+    """Standard deviations of a state roughly known."""
+    return np.concatenate([np.repeat(SPREAD, model.nv), np.tile(LOAD, 2), RESIDUAL_SD])
 
 
 @dataclass(frozen=True)
@@ -199,12 +211,12 @@ class Trial:
 
     def state(self, t, rng=None):
         """The state at a frame and a covariance; with a generator, wrong by as much as that says."""
-        m, nv = self.motion, self.model.nv
-        sd = np.concatenate([np.repeat(SPREAD, nv), np.tile(LOAD, 2)])
+        m, nv, sd = self.motion, self.model.nv, _state_sd(self.model)
         step = np.zeros(len(sd)) if rng is None else sd * rng.normal(size=len(sd))
         q = self.model.integrate(m.q[t], step[:nv])
         v, a = m.v[t] + step[nv : 2 * nv], m.a[t] + step[2 * nv : 3 * nv]
-        return DynamicState(q, v, a, m.foot_wrench[t].ravel() + step[3 * nv :], np.diag(sd**2))
+        wrench, residual = step[3 * nv : -6], step[-6:]
+        return DynamicState(q, v, a, m.foot_wrench[t].ravel() + wrench, np.diag(sd**2), residual)
 
 
 SECONDS = {"squat": 2.0, "walk": 1.5, "jump": 2.5, "sit_to_stand": 2.6}

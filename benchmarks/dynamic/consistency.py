@@ -1,9 +1,9 @@
 """Consistency of the dynamic filter and smoother on motions made by the filter's own plant.
 
-Matched exactly: start, Singer accelerations, white markers, plates and residual, all with the noise the filter
-assumes. Truth obeys Newton's law: the residual is drawn, and the two wrenches follow from the motion, shared
-between the feet along a sine. A random walk cannot do that, so theirs is made wide enough (10 kN a frame) to be no
-information; the 12 innovations of their readings are then 0 by comparison, and NIS counts the others. Posture,
+Matched exactly: start, Singer accelerations, white markers and plates, and the residual with its decay, all with the
+noise the filter assumes. Truth obeys Newton's law: the residual is drawn, and the two wrenches follow from the motion,
+shared between the feet along a sine. A random walk cannot do that, so theirs is made wide enough (10 kN a frame) to be
+no information; the 12 innovations of their readings are then 0 by comparison, and NIS counts the others. Posture,
 limits and gate are made harmless, and feet are measured always. What remains is the filter's own linearisation.
 """
 
@@ -133,6 +133,9 @@ class OwnPlant:
         blocks = dynamic_blocks(self._sensor, noise, feet, DT_S, unobservable, SETTINGS)
         self.kalman = DynamicFilter(self._sensor, noise, DT_S, unobservable, SETTINGS, blocks)
         self.plant = cast("SingerPlant", self.kalman.plant)
+        (self.residual,) = self.plant.layout.extras
+        # as later frames read zero, too, the whole trial's process has half of the filter's variance
+        self.residual_sd = self.residual.start_sd / np.sqrt(2.0)
 
     @cached_property
     def _sensor(self) -> MarkerSensor:
@@ -143,16 +146,18 @@ class OwnPlant:
     def start(self) -> DynamicState:
         """What the filter starts from, before the first frame."""
         nv, accelerations = self.model.nv, self.plant.acceleration_sd
-        sd = np.concatenate([np.repeat([0.01, 0.1], nv), accelerations, np.full(12, _UNKNOWN_WRENCH)])
+        wrench, residual = np.full(12, _UNKNOWN_WRENCH), self.residual.start_sd
+        sd = np.concatenate([np.repeat([0.01, 0.1], nv), accelerations, wrench, residual])
         still = np.zeros(nv)
-        return DynamicState(self.q, still, still, np.zeros(12), np.diag(sd**2))
+        return DynamicState(self.q, still, still, np.zeros(12), np.diag(sd**2), np.zeros(6))
 
     def drawn(self, start: DynamicState, rng: np.random.Generator) -> DynamicState:
         """A true state before the first frame, drawn from the start's covariance."""
         sd = np.sqrt(np.diag(start.P))[: 3 * self.model.nv]
-        return self.kalman.plant.retract(
-            start, np.concatenate([sd * rng.normal(size=len(sd)), np.zeros(12)]), start.P
+        moved = np.concatenate(
+            [sd * rng.normal(size=len(sd)), np.zeros(12), self.residual_sd * rng.normal(size=6)]
         )
+        return self.kalman.plant.retract(start, moved, start.P)
 
     def moved(self, state: DynamicState, share: float, rng: np.random.Generator) -> DynamicState:
         """The plant's next true state with its noise.
@@ -163,14 +168,20 @@ class OwnPlant:
             rng: Source of the noise.
         """
         plant = self.plant
-        drawn = np.linalg.cholesky(plant.covariance) @ rng.normal(size=(3, self.model.nv))
-        noise = drawn * plant.acceleration_sd
+        per_noise = np.sqrt(np.diag(plant.covariance))
+        noise = np.outer(per_noise, plant.acceleration_sd * rng.normal(size=self.model.nv))
         planned = self.model.integrate(state.q, plant.dt_s * state.v + plant.c2 * state.a)
         q = self.model.integrate(planned, noise[0])
         v, a = state.v + plant.c1 * state.a + noise[1], plant.rho * state.a + noise[2]
         root = self.balance.root(q, v, a, np.zeros(12))
-        total = np.linalg.solve(-root.by_state[:, -6:], root.residual + self.law_sd * rng.normal(size=6))
-        return DynamicState(q, v, a, np.concatenate([share * total, (1.0 - share) * total]), state.P)
+        kept = np.exp(-2.0 * DT_S / SETTINGS.residual.residual_memory_s)
+        fresh = self.residual_sd * np.sqrt(1.0 - kept**2) * rng.normal(size=6)
+        residual = kept * state.extra + fresh
+        unbalanced = root.residual + residual + self.law_sd * rng.normal(size=6)
+        total = np.linalg.solve(-root.by_state[:, -6:], unbalanced)
+        return DynamicState(
+            q, v, a, np.concatenate([share * total, (1.0 - share) * total]), state.P, residual
+        )
 
     def readings(self, true: DynamicState, rng: np.random.Generator) -> Frame:
         """Markers and plates, noise of the latter about the soles."""
@@ -188,7 +199,9 @@ class OwnPlant:
         T = joint.by_state[6:]
         tau = self.balance.tau(true.q, true.v, true.a, true.w)[6:] - joint.tau[6:]
         rates = slice(nv, 2 * nv)
-        parts = ((e[:nv], P[:nv, :nv]), (e[rates], P[rates, rates]), (tau, T @ P @ T.T))
+        known = T.shape[1]
+        torques = (tau, T @ P[:known, :known] @ T.T)
+        parts = ((e[:nv], P[:nv, :nv]), (e[rates], P[rates, rates]), torques)
         q, v, t = [(x / np.sqrt(np.diag(C)), float(x @ np.linalg.solve(C, x)) / len(x)) for x, C in parts]
         return Judged((q[0], v[0], t[0]), (q[1], v[1], t[1]))
 

@@ -1,6 +1,7 @@
 """A plant of one's own: accelerations that fade in a correlation time of each joint, without touching the package.
 
-q' = q ⊕ (v Δt + a c₂),  v' = v + a c₁,  a' = ρ a,  with ρ = e^(−Δt/T), c₁ = T(1 − ρ), c₂ = T(Δt − c₁) dof by dof.
+q' = q ⊕ (v Δt + a c₂),  v' = v + a c₁,  a' = ρ a,
+with ρ = e^(−Δt/T), c₁ = Δt (1 + ρ)/2, c₂ = Δt² (2 + ρ)/6 dof by dof.
 Over a step the acceleration's noise, of variance σ²(1 − ρ²), rises from zero: it moves (q, v, a) by (Δt²/6, Δt/2, 1).
 """
 
@@ -21,8 +22,8 @@ class JointTimes(mbkf.Plant):
         T = np.full(body.nv, SLOW_S)
         for name, joint in body.joints.items():
             T[joint.v] = QUICK_S if name.endswith(QUICK) else SLOW_S
-        self.rho, self.c1 = np.exp(-dt_s / T), -T * np.expm1(-dt_s / T)
-        self.c2 = T * (dt_s - self.c1)
+        self.rho = np.exp(-dt_s / T)
+        self.c1, self.c2 = dt_s * (1.0 + self.rho) / 2.0, dt_s**2 * (2.0 + self.rho) / 6.0
         variance = np.where(held, 0.0, 4.0 * body.movement_sd) ** 2 * (1.0 - self.rho**2)
         rise, moving = np.array([dt_s**2 / 6.0, dt_s / 2.0, 1.0]), slice(layout.a.stop)
         self.Q = np.zeros((layout.size, layout.size))

@@ -57,8 +57,8 @@ class ErrorSettings:
     """
 
     new_share: float = 0.035
-    new_rates: tuple[float, float] = (0.09, 0.02)
-    smoothed_new_rates: tuple[float, float] = (0.1, 0.004)
+    new_rates: tuple[float, float] = (0.09, 0.025)
+    smoothed_new_rates: tuple[float, float] = (0.1, 0.014)
     skin_share: float = 0.65
     skin_rate_rad_s: float = 3.4
     sharing_scale: float = 1.3

@@ -24,6 +24,11 @@ UNSEEN_MOMENT = "unseen moment"
 """Name of the slice of the moment of what no instrument shows: N m about the root's origin, in its axes."""
 
 
+ROOT_RESIDUAL = "root residual"
+"""Name of the slice of the load at the root that nothing explains: force N, moment N m about the root's origin, in its
+axes."""
+
+
 class ExtraState(NamedTuple):
     """States that a block adds: a bias, a wrench at a chair, a length. They are random walks.
 

@@ -7,11 +7,12 @@ contact is in the state they vanish. They are read as zero. Torques of the joint
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.model.body import Body
-from mbkf.model.layout import SUPPORT, UNSEEN_MOMENT, Layout
+from mbkf.model.layout import ROOT_RESIDUAL, SUPPORT, UNSEEN_MOMENT, Layout
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.states import LoadedState
@@ -33,6 +34,18 @@ class NewtonEulerSettings:
     imu_residual_scale: float = 30.0
 
 
+LOADS_AT_ROOT = {UNSEEN_MOMENT: slice(3, 6), ROOT_RESIDUAL: slice(0, 6)}
+"""Added states that act at the root itself, and the rows of the law that they add to."""
+
+
+class _Load(NamedTuple):
+    """Rows of the law, and the slice of a load at the root in the state and among the added states."""
+
+    components: slice
+    state: slice
+    extra: slice
+
+
 class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     """Newton's law at the root, on a state (q, v, a, wrenches).
 
@@ -47,36 +60,44 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     def __init__(self, balance: NewtonEuler, settings: NewtonEulerSettings = NewtonEulerSettings()) -> None:
         self.balance, self.settings = balance, settings
         self._support: slice | None = None
-        self._unseen: slice | None = None
-        self._support_extra, self._unseen_extra = slice(0), slice(0)
+        self._support_extra = slice(0)
+        self._loads: list[_Load] = []
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the slices of the wrench of other contacts and of the unseen moment, if the state has them."""
+        """Keeps the slices of the wrench of other contacts and of loads at the root, if the state has them."""
         if SUPPORT in layout:
             self._support, self._support_extra = layout[SUPPORT], layout.extra_index(SUPPORT)
-        if UNSEEN_MOMENT in layout:
-            self._unseen, self._unseen_extra = layout[UNSEEN_MOMENT], layout.extra_index(UNSEEN_MOMENT)
+        self._loads = [
+            _Load(components, layout[name], layout.extra_index(name))
+            for name, components in LOADS_AT_ROOT.items()
+            if name in layout
+        ]
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
-        wrenches, support, unseen = state.w, self._support, self._unseen
+        wrenches, support = state.w, self._support
         if support is not None:
             # At the root a wrench counts alike wherever it acts: that of other parts adds to the right foot's.
             wrenches = wrenches.copy()
             wrenches[:6] += state.extra[self._support_extra]
         root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
         residual = root.residual
-        if support is None and unseen is None:
+        known = root.by_state.shape[1]
+        size = max(
+            [load.state.stop for load in self._loads], default=known if support is None else support.stop
+        )
+        if size == known:
             return Rows(root.by_state * sharp, -residual * self._sharp, readings=6)
-        rows = np.zeros((6, max(part.stop for part in (support, unseen) if part is not None)))
-        np.multiply(root.by_state, sharp, out=rows[:, : root.by_state.shape[1]])
+        rows = np.zeros((6, max(size, 0 if support is None else support.stop)))
+        np.multiply(root.by_state, sharp, out=rows[:, :known])
         if support is not None:
             np.multiply(root.by_state[:, -6:], sharp, out=rows[:, support])
-        if unseen is not None:
+        if self._loads:
             residual = residual.copy()
-            residual[3:] += state.extra[self._unseen_extra]
-            rows[3:, unseen] = np.diag(self._sharp[3:])
+        for load in self._loads:
+            residual[load.components] += state.extra[load.extra]
+            rows[load.components, load.state] = np.diag(self._sharp[load.components])
         return Rows(rows, -residual * self._sharp, readings=6)
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:

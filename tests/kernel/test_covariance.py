@@ -132,6 +132,7 @@ def test_the_prediction_is_phi_p_phi_and_noise(either_kernel, model, order):
     np.testing.assert_array_equal(predicted.a, plant.rho * state.a)
     Q = np.zeros((N, N))
     Q[: 3 * nv, : 3 * nv] = np.kron(plant.covariance, np.diag(sd**2))
+    Q[-6:, -6:] = np.diag(plant.layout.walk_variance(DT))
     phi = plant.transition(state)
     expected = phi @ P @ phi.T + Q
     scale = np.sqrt(np.diag(expected))

@@ -5,6 +5,7 @@ from functools import cache, partial
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import mbkf
 from mbkf.errors import InvalidInput, NotObservable, ShapeError
@@ -13,6 +14,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import NO_SLIDES
 from mbkf.model.human import HumanModel
 from mbkf.scaling.correction import correct_markers
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.live.filter import live_inputs
@@ -160,7 +162,7 @@ def test_a_block_of_ones_own_may_bring_a_state():
     blocks = [*mbkf.standard_blocks(person, trial.markers.names, trial.plates, 100.0), Barometer()]
     _, found = followed(blocks, readings={"height": heights})
     state = found[-1].posterior.record.state
-    assert state.extra[0] == pytest.approx(0.3, abs=0.01)
+    assert state.extra[-1] == pytest.approx(0.3, abs=0.01)
     assert abs(found[-1].q[2] - plain[-1].q[2]) < 0.005
 
 
@@ -222,6 +224,28 @@ def test_a_reading_that_the_person_cannot_make_is_one_that_was_not_made(nonsense
         np.testing.assert_array_equal(refused.wrenches, missing.wrenches)
 
 
+def squatting(model, depth, lean):
+    """Hips bent by 105° and knees by 100° at a depth of 1, the pelvis turned forward, soles flat on one place."""
+    bent = np.zeros(model.nv)
+    bent[4] = lean
+    turned = {"thigh": np.radians(-105.0) * depth, "shank": np.radians(100.0) * depth}
+    turned["foot"] = -lean - sum(turned.values())
+    for segment, turn in turned.items():
+        for side in ("right", "left"):
+            dofs = model.joint(f"{side}_{segment}").v
+            bent[dofs.start + (dofs.stop - dofs.start > 1)] = turn
+    q = model.integrate(model.neutral(), bent)
+    q[:3] -= sole_points(model, q[None])[0].mean(axis=(0, 1))
+    return q
+
+
+def balanced(model, depth):
+    """A squat whose centre of mass is above the middle of the soles."""
+    return squatting(
+        model, depth, brentq(lambda lean: model.centre_of_mass(squatting(model, depth, lean))[0], -0.5, 1.5)
+    )
+
+
 @cache
 def deep_squat():
     """A person whose skin moves by a centimetre at 60°, the poses of a squat to 105°, and its exact markers."""
@@ -232,12 +256,7 @@ def deep_squat():
     sensor = MarkerSensor(model, segments, np.array([marker.position_m for marker in person.markers]))
     poses, places = [], []
     for depth in np.sin(np.linspace(0.0, np.pi, 80)):
-        bent = np.zeros(model.nv)
-        for segment, deg in (("thigh", -105.0), ("shank", 100.0)):
-            for side in ("right", "left"):
-                dofs = model.joint(f"{side}_{segment}").v
-                bent[dofs.start + (dofs.stop - dofs.start > 1)] = np.radians(deg) * depth
-        q = model.integrate(model.neutral(), bent)
+        q = balanced(model, depth)
         moved = np.einsum("md,mdi->mi", skin.shares(q), slides)
         axes = model.placements(q)[0][sensor.joint_ids]
         poses.append(q)

@@ -33,6 +33,7 @@ from mbkf.sensors.newton_euler import NewtonEulerLaw
 from mbkf.sensors.planted import PlantedFeet
 from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.root_residual import RootResidual
 from mbkf.sensors.supports.block import Supports
 from mbkf.sensors.unobserved import UnobservedJoints
 
@@ -67,13 +68,15 @@ def dynamic_blocks(
         other_contacts: Parts besides the feet bear load in some frames.
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
+    weight_n = GRAVITY_M_S2 * model.mass_kg
     dilution = None if spread_m is None else prior_dilution(sensor, noise_m, spread_m)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
     blocks: list[AnyBlock] = [
         Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),
         NewtonEulerLaw(NewtonEuler(model), s.law),
+        *([RootResidual(weight_n, dt_s, s.residual)] if s.residual.residual_share > 0.0 else []),
         *([Supports(model, dt_s, s.supports)] if other_contacts else []),
-        FootContact(detector, GRAVITY_M_S2 * model.mass_kg, dt_s, s.contact),
+        FootContact(detector, weight_n, dt_s, s.contact),
         UnobservedJoints.of(movement, s.unobserved),
         PlantedFeet(model, detector, s.planted, spread_m is not None),
     ]

@@ -1,10 +1,14 @@
 """Plant of the dynamic filter: decaying accelerations (Singer 1970) and foot wrenches that are random walks.
 
-Each dof's acceleration is a first-order Gauss–Markov process, ȧ = −a/T + jerk noise, with a stationary standard
-deviation σ_a; T → ∞ with σ_a²/T fixed is the constant-acceleration plant:
+Each dof's acceleration is a first-order Gauss–Markov process with a stationary standard deviation σ_a and time T, whose
+jerk is constant within a frame:
 
-    q' = q ⊕ (v Δt + a c₂),  v' = v + a c₁,  a' = ρ a,  w' = w
-    ρ = e^(−Δt/T),  c₁ = T(1 − ρ),  c₂ = T(Δt − c₁)
+    a' = ρ a + n,  v' = v + (a + a') Δt/2,  q' = q ⊕ (v Δt + (2 a + a') Δt²/6),  w' = w,  ρ = e^(−Δt/T)
+
+that is v' = v + a c₁ + n Δt/2 and q' = q ⊕ (v Δt + a c₂ + n Δt²/6) with c₁ = Δt (1 + ρ)/2, c₂ = Δt² (2 + ρ)/6 and
+n ~ N(0, (1 − ρ²) σ_a²). One noise moves all three: positions, velocities and accelerations are one trajectory. Jerk
+that is white within the frame, Singer's own, lets v leave the integral of a by 0.2 σ_a Δt in every frame, so that an
+acceleration that Newton's law demands departs from the motion that the markers show.
 
 σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. The process noise of the
 wrenches depends on the contact of the feet and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
@@ -15,7 +19,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.plant import Plant
@@ -48,7 +51,7 @@ class SingerSettings:
     activity_rate: float = 5.0
     activity_memory_s: float = 0.05
     busy_shares: tuple[float, float] = (2.0, 8.0)
-    decay_s: float = 0.04
+    decay_s: float = 0.06
 
 
 @dataclass(frozen=True)
@@ -124,9 +127,9 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         s, self.settings = settings, settings
         self.acceleration_sd = np.where(held, 0.0, s.acceleration_scale * model.movement_sd)
         self.rho = float(np.exp(-dt_s / s.decay_s))
-        self.c1 = -s.decay_s * float(np.expm1(-dt_s / s.decay_s))
-        self.c2 = s.decay_s * (dt_s - self.c1)
-        self.covariance = _singer_noise(dt_s, s.decay_s)
+        self.c1, self.c2 = dt_s * (1.0 + self.rho) / 2.0, dt_s**2 * (2.0 + self.rho) / 6.0
+        per_noise = np.array([dt_s**2 / 6.0, dt_s / 2.0, 1.0])
+        self.covariance = (1.0 - self.rho**2) * np.outer(per_noise, per_noise)
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
         self._busiest = self.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
@@ -192,14 +195,3 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         Q, moving = np.zeros((self.layout.size, self.layout.size)), slice(self.layout.a.stop)
         Q[moving, moving] = np.kron(self.covariance, np.diag(sd * sd))
         return Q
-
-
-def _singer_noise(dt_s: float, decay_s: float) -> Array:
-    """(3, 3) ∫ e^(Fs) G Gᵀ e^(Fᵀs) ds over Δt for unit stationary variance (Van Loan 1978)."""
-    F = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0 / decay_s]])
-    blocks = np.zeros((6, 6))
-    blocks[:3, :3], blocks[3:, 3:] = -F, F.T
-    blocks[2, 5] = 2.0 / decay_s
-    exponential = expm(blocks * dt_s)
-    noise = exponential[3:, 3:].T @ exponential[:3, 3:]
-    return 0.5 * (noise + noise.T)

@@ -15,6 +15,7 @@ from mbkf.sensors.mean_posture import MeanPostureSettings
 from mbkf.sensors.newton_euler import NewtonEulerSettings
 from mbkf.sensors.planted import PlantedSettings
 from mbkf.sensors.posture import PostureSettings
+from mbkf.sensors.root_residual import RootResidualSettings
 from mbkf.sensors.supports.block import SupportSettings
 from mbkf.sensors.unobserved import UnobservedSettings
 
@@ -27,6 +28,7 @@ class DynamicSettings:
         motion: Process noise.
         markers: Noise and gate of the markers.
         law: How exactly Newton's law holds.
+        residual: Load at the pelvis that nothing explains.
         contact: Noise of plates and of feet that stand elsewhere.
         supports: When other parts than the feet bear.
         unobserved: Damping of joints that nothing observes.
@@ -42,6 +44,7 @@ class DynamicSettings:
     motion: SingerSettings = field(default_factory=SingerSettings)
     markers: MarkerSettings = field(default_factory=MarkerSettings)
     law: NewtonEulerSettings = field(default_factory=NewtonEulerSettings)
+    residual: RootResidualSettings = field(default_factory=RootResidualSettings)
     contact: FootContactSettings = field(default_factory=FootContactSettings)
     supports: SupportSettings = field(default_factory=SupportSettings)
     unobserved: UnobservedSettings = field(default_factory=UnobservedSettings)

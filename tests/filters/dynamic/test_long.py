@@ -59,7 +59,7 @@ def followed_slider(steps):
     rows = [hostile_rows(rng) for _ in range(256)]
     markers = [np.array([[10.0 ** rng.uniform(-2, 10)]]) for _ in range(256)]
     wander = np.repeat([3000.0, 300.0, 3000.0, 300.0], 3) ** 2 * 0.01
-    plant = singer(Slider(), settings=SingerSettings(decay_s=0.05))
+    plant = singer(Slider(), [], settings=SingerSettings(decay_s=0.05))
     kinds, blind = rng.integers(0, 256, steps), 0
     state = DynamicState(
         np.zeros(1), np.zeros(1), np.zeros(1), np.zeros(12), np.diag([1e4, 1e-8, 1e6] + [1e6] * 12)

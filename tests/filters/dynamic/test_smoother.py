@@ -4,10 +4,11 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from mbkf.filters.dynamic.smoother import smooth
-from tests.dynamics import follow, trial
+from tests.dynamics import DT, follow, trial
 from tests.motions import angle_errors, assert_near, worst
 
 pytestmark = pytest.mark.slow
@@ -29,8 +30,9 @@ def smoothed(name, rounds=ROUNDS):
 
 
 def residual_n(run, states):
-    """RMS force of the residual."""
-    found = [run.kalman.balance.root(s.q, s.v, s.a, s.w).residual[:3] for s in states]
+    """RMS force by which states break Newton's law with the residual that they state."""
+    root = run.kalman.balance.root
+    found = [(root(s.q, s.v, s.a, s.w).residual + s.extra)[:3] for s in states]
     return float(np.sqrt(np.mean(np.square(found))))
 
 
@@ -52,6 +54,27 @@ def test_rounds_restore_newtons_law(name):
     assert residuals[-1] < 0.3 * residuals[0]
     assert residuals[-1] < 2.5
     assert residuals[-1] < residual_n(run, run.states)
+
+
+@each_motion
+def test_velocities_are_the_trapezoids_of_accelerations(name):
+    """Positions, velocities and accelerations are one trajectory, to the rounding of the smoother."""
+    states = smoothed(name)
+    v, a = np.array([s.v for s in states]), np.array([s.a for s in states])
+    apart = np.diff(v, axis=0) - 0.5 * DT * (a[1:] + a[:-1])
+    assert worst(apart) < 1e-6 * worst(DT * a)
+
+
+@each_motion
+def test_stated_powers_are_the_change_of_stated_energy(name):
+    """Of generalised forces, gravity's apart, by the stated a, and of kinetic and potential energy at q and v."""
+    run, model = run_of(name), trial(name).model
+    data, nothing = model.pin_model.createData(), np.zeros(12)
+    states = smoothed(name)
+    energy = np.array([pin.computeMechanicalEnergy(model.pin_model, data, s.q, s.v) for s in states])
+    power = np.array([run.kalman.balance.tau(s.q, s.v, s.a, nothing) @ s.v for s in states])
+    misfit_w_kg = (np.diff(energy) / DT - 0.5 * (power[1:] + power[:-1])) / model.mass_kg
+    assert np.sqrt(np.mean(misfit_w_kg**2)) < 0.1
 
 
 @each_motion

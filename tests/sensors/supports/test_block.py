@@ -8,7 +8,7 @@ import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.model.layout import SUPPORT
+from mbkf.model.layout import ROOT_RESIDUAL, SUPPORT
 from mbkf.sensors.block import Frame, Notes
 from mbkf.sensors.supports.block import BEARING, Supports, SupportSettings
 from tests.dynamics import DT, about, prepared_at, random_covariance, singer, standing
@@ -32,7 +32,7 @@ def scene(**changes):
     rng = np.random.default_rng(0)
     P = np.zeros((plant.layout.size, plant.layout.size))
     n = plant.layout[SUPPORT].start
-    P[:n, :n] = random_covariance(MODEL, rng)
+    P[:n, :n] = random_covariance(MODEL, rng)[:n, :n]
     P[n:, n:] = 4.0 * np.eye(6)
     still = np.zeros(MODEL.nv)
     state = DynamicState(standing(MODEL), still, still, np.zeros(12), P, LOAD)
@@ -162,10 +162,13 @@ def test_a_filter_that_asks_for_contacts_that_never_come_is_the_plain_one():
         found = [one.start(recording(), 0, None)]
         for t in range(1, 15):
             found.append(one.step(found[-1], recording(), t))
+        assert one.kalman.layout.extra_index(ROOT_RESIDUAL) == slice(0, 6)
         runs.append((one, found))
     (plain, before), (asking, after) = runs
     for one, two in zip(before, after, strict=True):
-        np.testing.assert_allclose(two.record.state.extra, 0.0, atol=1e-3)
+        residual, support = np.split(two.record.state.extra, [6])
+        np.testing.assert_allclose(residual, one.record.state.extra, atol=1e-3)
+        np.testing.assert_allclose(support, 0.0, atol=1e-3)
         for name, scale in (("q", 1e-6), ("v", 1e-5), ("a", 1e-3), ("wrench", 1e-4)):
             np.testing.assert_allclose(getattr(two, name), getattr(one, name), rtol=0, atol=scale)
         assert one.support is None

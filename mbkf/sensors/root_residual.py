@@ -1,0 +1,65 @@
+"""Root residual, as a block: the load that rigid segments and known contacts leave unexplained.
+
+    dr/dt = −r/τ + noise, standing at r ~ N(0, diag(σ_F² I₃, σ_M² I₃))      a state, in the root's axes
+    0 = [ID(q, v, a) − Σ J_fᵀ w_f]₁…₆ + r + ε                               :mod:`mbkf.sensors.newton_euler`
+
+Soft tissue that bounces, wrong segment masses and drifting plates act for tenths of a second. As white noise alone,
+they would be averaged away, and the accelerations would leave the positions instead. The decay is a reading of zero in
+every frame, whose spread σ √(τ / 2Δt) leaves a random walk of 2σ²/τ the variance σ² in the filter. Later frames read
+zero, too: over a whole trial the process has the variance σ²/2 and the correlation e^(−2|t|/τ).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.model.layout import ROOT_RESIDUAL, ExtraState
+from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
+from mbkf.sensors.states import LoadedState
+
+
+@dataclass(frozen=True)
+class RootResidualSettings:
+    """Size and duration of the root residual.
+
+    Attributes:
+        residual_share: σ_F of each component, as a share of body weight; 0 leaves the residual out of the state.
+        residual_lever_m: σ_M of each component, as a lever of body weight.
+        residual_memory_s: τ.
+    """
+
+    residual_share: float = 0.05
+    residual_lever_m: float = 0.03
+    residual_memory_s: float = 0.2
+
+
+class RootResidual(Block[LoadedState, None, Notes, None]):
+    """A state of six, force N and moment N m about the root's origin, and its decay."""
+
+    prior = True
+
+    def __init__(
+        self, weight_n: float, dt_s: float, settings: RootResidualSettings = RootResidualSettings()
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            weight_n: Body weight.
+            dt_s: Time between frames.
+            settings: Size and duration.
+        """
+        s = self.settings = settings
+        self._start_sd = weight_n * np.repeat([s.residual_share, s.residual_lever_m], 3)
+        self._walk = self._start_sd * (2.0 / s.residual_memory_s) ** 0.5
+        self._sharp = 1.0 / (self._start_sd * (0.5 * s.residual_memory_s / dt_s) ** 0.5)
+
+    def states(self) -> list[ExtraState]:
+        """The residual, in the root's axes."""
+        return [ExtraState(ROOT_RESIDUAL, np.zeros(6), self._start_sd, self._walk)]
+
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
+        """Six rows on the residual."""
+        residual = at.state.extra[self.layout.extra_index(ROOT_RESIDUAL)]
+        return Rows(np.diag(self._sharp), -residual * self._sharp, self.layout[ROOT_RESIDUAL].start)
