@@ -62,9 +62,9 @@ class Processor(Enum):
         words = np.frombuffer(data, dtype="<u2").reshape(-1, 2)
         joined = (words[:, 0].astype(np.uint32) << 16) | words[:, 1]
         exponent = (joined >> 23) & 0xFF
-        # An exponent of zero is zero; the others reach from 2^-128, below the normal numbers of IEEE.
-        values = np.where(exponent > 2, joined, 0).astype(np.uint32).view(np.float32) / 4.0
-        return np.where(exponent == 0, 0.0, values).astype(np.float64)
+        # Exponents of 1 and 2 lie below the normal numbers of IEEE, and that of 255 is a number as the others.
+        values = np.where(exponent > 2, joined - np.uint32(2 << 23), 0).astype(np.uint32).view(np.float32)
+        return values.astype(np.float64)
 
 
 @dataclass(frozen=True)

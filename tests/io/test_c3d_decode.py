@@ -108,6 +108,13 @@ def test_words_of_the_header_that_overran_are_put_right(tmp_path):
     assert len(found.points) == LONG and "the file has 66000" in found.notes[0]
 
 
+def test_the_largest_and_the_smallest_number_of_a_vax():
+    words = [0x7FFF, 0xFFFF, 0xFFFF, 0xFFFF, 0x0180, 0, 0x0100, 0, 0x0080, 0, 0, 0]
+    largest = (2.0 - 2.0**-23) * 2.0**126
+    found = Processor.DEC.floats(np.array(words, "<u2").tobytes())
+    np.testing.assert_array_equal(found, [largest, -largest, 2.0**-126, 0.0, 0.0, 0.0])
+
+
 @settings(max_examples=300, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.integers(1, 12), st.booleans())
 def test_a_damaged_file_is_read_or_refused_in_our_own_words(tmp_path_factory, seed, kind, count, inside):
