@@ -12,23 +12,28 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import ShapeError
 from mbkf.io import fields
+from mbkf.io.packed_triangle import packed, unpacked
 from mbkf.io.toml import Entries
 
 MOST_SPREAD = 2.0
 """Largest standard deviation of a scale factor, and of a marker's place in m."""
+
+LARGEST_SD = 1e3
+"""Bound of a number that is taken for a standard deviation at all."""
 
 DIGITS = 6
 """Significant digits of a number in a subject file."""
 
 
 class CovarianceTable(TypedDict):
-    """The table ``[covariance]`` of a subject file: names, and the rows of L's lower triangle."""
+    """The table ``[covariance]`` of a subject file: names, standard deviations, and L's lower triangle over them."""
 
     factors: list[str]
     markers: list[str]
     centres: list[str]
     flexions: int
-    root: list[list[float]]
+    sd: list[float]
+    packed_root: str
 
 
 @dataclass(frozen=True)
@@ -124,11 +129,14 @@ class BodyCovariance:
         return rows
 
     def as_table(self) -> CovarianceTable:
-        """The table of a subject file: names, and the lower triangle row by row."""
-        rows = [[float(f"{x:.{DIGITS}g}") for x in row[: n + 1]] for n, row in enumerate(self.root)]
-        names = (list(self.factors), list(self.markers))
+        """The table of a subject file: names, standard deviations, and L packed."""
         return CovarianceTable(
-            factors=names[0], markers=names[1], centres=list(self.centres), flexions=self.flexions, root=rows
+            factors=list(self.factors),
+            markers=list(self.markers),
+            centres=list(self.centres),
+            flexions=self.flexions,
+            sd=[float(f"{x:.{DIGITS}g}") for x in np.linalg.norm(self.root, axis=1)],
+            packed_root=packed(self.root),
         )
 
 
@@ -136,13 +144,11 @@ def read_covariance(read: Entries) -> BodyCovariance:
     """The record of a table that :meth:`BodyCovariance.as_table` made.
 
     Raises:
-        FileFormatError: An entry is missing, row n does not have n + 1 finite numbers, or no person varies so much.
+        FileFormatError: An entry is missing, the text is damaged, row n does not have n + 1 finite numbers, or no
+            person varies so much.
         ShapeError: The number of rows is not that of the names' parameters.
     """
-    rows = read.need(_ROOT)
-    root = np.zeros((len(rows), len(rows)))
-    for n, row in enumerate(rows):
-        root[n, : n + 1] = row
+    root = _read_root(read)
     flexions = int(read.get(_FLEXIONS) or 0)
     found = BodyCovariance(read.need(_FACTORS), read.need(_MARKERS), root, flexions, read.get(_CENTRES) or ())
     spreads = np.sqrt((root * root).sum(axis=1))
@@ -152,8 +158,31 @@ def read_covariance(read: Entries) -> BodyCovariance:
             [*found.factors, *found.centres, *np.tile(np.repeat(found.markers, 3), 1 + found.flexions)],
         )
         reason = f"the standard deviation of {names[k]} is {spreads[k]:.3g}, more than {MOST_SPREAD:g}"
-        raise read.fault(reason, _ROOT.key)
+        raise read.fault(reason, _SD.key if _SD.key in read.table else _ROOT.key)
     return found
+
+
+def _read_root(read: Entries) -> Array:
+    """(s, s) L, packed or, as older versions wrote it, row by row.
+
+    Raises:
+        FileFormatError: It is missing or damaged.
+    """
+    text = read.get(_PACKED)
+    if text is not None:
+        sd = read.need(_SD)
+        root = unpacked(text, sd)
+        if root is None:
+            reason = f"{_PACKED.key} is damaged, or not of {len(sd)} rows as sd has; scale the person again"
+            raise read.fault(reason, _PACKED.key)
+        return root
+    rows = read.get(_ROOT)
+    if rows is None:
+        raise read.fault(f"{_PACKED.key} is missing; scale the person again, or take the table out")
+    root = np.zeros((len(rows), len(rows)))
+    for n, row in enumerate(rows):
+        root[n, : n + 1] = row
+    return root
 
 
 def _triangle(value: object) -> list[list[float]] | None:
@@ -172,12 +201,12 @@ _FACTORS = fields.texts("factors", "names of the scale factors", required=True)
 _MARKERS = fields.texts("markers", "names of the markers", required=True)
 _CENTRES = fields.texts("centres", "names of the displacements of joint centres")
 _FLEXIONS = fields.number("flexions", "number of flexions whose displacements are learnt", (0.0, 8.0))
-_ROOT = fields.Field(
-    "root",
-    "rows of L, whose square L Lᵀ is the covariance",
-    "rows, the n-th of n finite numbers",
-    _triangle,
-    True,
+_SD = fields.numbers(
+    "sd", "standard deviations of factors, joint centres (m), places and displacements (m)", None, LARGEST_SD
 )
-COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _CENTRES, _FLEXIONS, _ROOT)
+_PACKED = fields.text("packed_root", "L, whose square L Lᵀ is the covariance, packed", empty=True)
+_ROOT = fields.Field(
+    "root", "L of older files, row by row", "rows, the n-th of n finite numbers", _triangle, False
+)
+COVARIANCE = fields.record("covariance", _FACTORS, _MARKERS, _CENTRES, _FLEXIONS, _SD, _PACKED, _ROOT)
 """Entries of the covariance in a subject file."""

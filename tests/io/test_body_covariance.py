@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError, ShapeError
 from mbkf.io.body_covariance import COVARIANCE, DIGITS, BodyCovariance, read_covariance
+from mbkf.io.packed_triangle import packed
 from mbkf.io.subject import read_subject, write_subject
 from mbkf.io.toml import Entries, Origin
 from tests.io.reconstructions import made_up
@@ -36,10 +37,18 @@ def read(table):
 @given(NAMES, NAMES, st.integers(0, 99), st.integers(0, 2))
 @settings(max_examples=30, deadline=None)
 def test_it_is_read_back_to_the_digits_written(factors, markers, seed, flexions):
-    known, _ = made(factors, markers, seed, flexions=flexions)
+    known, covariance = made(factors, markers, seed, flexions=flexions)
     found = read(known.as_table())
     assert (found.factors, found.markers, found.flexions) == (known.factors, known.markers, flexions)
-    np.testing.assert_allclose(found.root, known.root, rtol=10.0 ** (1 - DIGITS))
+    sd = np.sqrt(np.diag(covariance))
+    np.testing.assert_allclose(np.linalg.norm(found.root, axis=1), sd, rtol=10.0 ** (1 - DIGITS))
+    assert (np.abs(found.root - known.root) <= 1e-5 * sd[:, None]).all()
+
+
+def test_files_of_older_versions_have_the_rows_themselves():
+    known, _ = made(["a"], ["A"])
+    rows = [row[: n + 1].tolist() for n, row in enumerate(known.root)]
+    np.testing.assert_array_equal(read({"factors": ["a"], "markers": ["A"], "root": rows}).root, known.root)
 
 
 @pytest.mark.parametrize("rank", [None, 3, 0])
@@ -91,6 +100,13 @@ def test_displacements_that_scaling_did_not_learn_have_the_spread_of_the_body_fi
         ({"root": [[1.0]], "markers": ["A"]}, ShapeError, "root"),
         ({"root": [["x"]]}, FileFormatError, "root must be rows"),
         ({"root": [[3.0]]}, FileFormatError, "the standard deviation of a is 3, more than 2"),
+        ({"sd": [1.0], "packed_root": "x"}, FileFormatError, "packed_root is damaged, or not of 1 rows"),
+        ({"packed_root": packed(np.eye(1))}, FileFormatError, "sd is missing"),
+        (
+            {"sd": [3.0], "packed_root": packed(np.eye(1))},
+            FileFormatError,
+            "the standard deviation of a is 3, more than 2",
+        ),
         ({"factor": ["a"]}, FileFormatError, "unknown covariance entry 'factor'; did you mean factors"),
     ],
 )
@@ -109,7 +125,13 @@ def test_subject_files_have_it_or_not(tmp_path):
     known, _ = made(["head"], ["A", "B"])
     write_subject(replace(subject, covariance=known), path)
     np.testing.assert_allclose(read_subject(path).covariance.root, known.root, rtol=1e-5)
-    text = path.read_text(encoding="utf-8").replace(f"{known.root[1, 1]:.6g}]", "]")
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(FileFormatError, match="covariance: root must be rows"):
+    text = path.read_text(encoding="utf-8")
+    start = text.index("packed_root")
+    path.write_text(text[: start + 30] + "!" + text[start + 31 :], encoding="utf-8")
+    with pytest.raises(FileFormatError, match="covariance: packed_root is damaged, or not of 7 rows"):
         read_subject(path)
+
+
+def test_a_table_without_a_root_is_refused():
+    with pytest.raises(FileFormatError, match="packed_root is missing; scale the person again"):
+        read({"factors": ["a"], "markers": []})
