@@ -10,12 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Generic, TypeVar
 
 import numpy as np
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
+from mbkf.numerics.elimination import RowBlock, eliminate, row_blocks
 
 State = TypeVar("State")
 
@@ -42,8 +44,11 @@ class ArrowEquations:
 
     def schur_complement(self) -> Array:
         """(s, s) information of the shared unknowns once the frames are eliminated."""
-        eliminated = np.linalg.solve(self.frames, self.border)
-        return self.corner - np.einsum("tni,tnj->ij", self.border, eliminated, optimize=True)
+        return self.corner - eliminate(self.frames, self.border, self.frame_gradient, self._blocks).complement
+
+    @cached_property
+    def _blocks(self) -> list[RowBlock]:
+        return row_blocks(self.frames, self.border)
 
     def step(self, damping: float) -> tuple[Array, Array]:
         """Damped step: (N, n) of the frames and (s,) of the shared unknowns (Marquardt's diagonal scaling).
@@ -51,20 +56,13 @@ class ArrowEquations:
         Raises:
             numpy.linalg.LinAlgError: The damped matrix is not positive definite, or not finite.
         """
-        count, (frames, own, _) = len(self.corner), self.frames.shape
-        if not count:
+        if not len(self.corner):
             damped = zip(_damped(self.frames, damping), self.frame_gradient, strict=True)
             return -np.array([_solved(*one) for one in damped]), np.zeros(0)
-        roots = np.linalg.cholesky(_damped(self.frames, damping))
-        inverses = np.array([lapack.dtrtri(root.T)[0].T for root in roots])
-        # L⁻¹ [border, gradient] of each frame L Lᵀ, whose products are those of the Schur complement
-        half = inverses @ np.concatenate([self.border, self.frame_gradient[:, :, None]], axis=2)
-        flat = half.reshape(frames * own, count + 1)
-        product = flat.T @ flat
-        reduced = _damped(self.corner, damping) - product[:count, :count]
-        shared = -_solved(reduced, self.corner_gradient - product[:count, count])
-        step = inverses.swapaxes(1, 2) @ (half @ np.append(shared, 1.0))[:, :, None]
-        return -step[:, :, 0], shared
+        eliminated = eliminate(_damped(self.frames, damping), self.border, self.frame_gradient, self._blocks)
+        reduced = _damped(self.corner, damping) - eliminated.complement
+        shared = -_solved(reduced, self.corner_gradient - eliminated.pull)
+        return -eliminated.own_step(shared), shared
 
 
 def _solved(matrix: Array, right: Array) -> Array:

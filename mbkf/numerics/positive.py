@@ -1,8 +1,9 @@
-"""The nearest covariance to a matrix that rounding has spoilt."""
+"""Positive definite matrices: their inverse, and the nearest one to a covariance that rounding has spoilt."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import lapack
 
 from mbkf.conventions import Array
 
@@ -20,3 +21,18 @@ def made_positive(covariance: Array) -> Array:
     values, vectors = np.linalg.eigh(0.5 * (correlation + correlation.T))
     positive = (vectors * np.maximum(values, 1e-12)) @ vectors.T * scale * scale[:, None]
     return np.asfortranarray(0.5 * (positive + positive.T))
+
+
+def inverse(matrix: Array) -> Array:
+    """Inverse (n, n) of a symmetric positive definite matrix, by Cholesky: half the time of the general one.
+
+    A matrix that rounding has made indefinite gets the general inverse.
+
+    Raises:
+        numpy.linalg.LinAlgError: It is singular.
+    """
+    root, failed = lapack.dpotrf(matrix.T, lower=1)
+    if failed:
+        return np.asarray(np.linalg.inv(matrix))
+    found = np.asarray(lapack.dpotri(root, lower=1)[0])
+    return np.asarray(np.tril(found) + np.tril(found, -1).T)

@@ -13,6 +13,7 @@ from scipy.linalg import block_diag
 from mbkf.conventions import Array
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.model.joint_centres import centre_covariance, centre_names
+from mbkf.numerics.positive import inverse
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.sensors.flexed_skin import slide_covariance
 
@@ -33,7 +34,7 @@ def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovarian
     found = np.delete(np.arange(len(information)), e)
     to_places = problem.places_by_unknowns()
     covariance = np.zeros_like(information)
-    alone = np.linalg.inv(information[np.ix_(found, found)])
+    alone = inverse(information[np.ix_(found, found)])
     S = np.zeros((len(information), len(centres)))
     S[e] = np.eye(len(centres))
     S[found] = -to_places @ (alone @ information[np.ix_(found, e)])

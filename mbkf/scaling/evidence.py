@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.numerics.positive import inverse
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.scaling.records import ScalingPrior, ScalingState
 
@@ -78,9 +79,9 @@ def variance_factors(
     squares = np.ones(len(groups))
     for _ in range(ROUNDS):
         scaled = precision / (np.array(groups).T @ squares)[:, None]
-        covariance = np.linalg.inv(data + scaled)
+        covariance = inverse(data + scaled)
         u = covariance @ pull
-        determined = 1.0 - np.einsum("ij,ji->i", covariance, scaled)
+        determined = 1.0 - (covariance * scaled.T).sum(axis=1)
         squared = u * (precision @ u)
         squares = np.array(
             [

@@ -1,8 +1,8 @@
-"""From trials to a scaled subject: frames, first poses, Levenberg–Marquardt, local marker correction, report."""
+"""From trials to a scaled subject: frames, fits with spreads of everybody and of this person, checks, report."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 
 import numpy as np
@@ -15,19 +15,16 @@ from mbkf.model.body import Body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.model.sides import mirrored
-from mbkf.numerics.levenberg_marquardt import Solution, minimise
+from mbkf.numerics.levenberg_marquardt import Solution
+from mbkf.numerics.positive import inverse
 from mbkf.scaling.covariance import body_covariance
 from mbkf.scaling.evidence import learnt_prior
-from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
+from mbkf.scaling.frames import ScalingFrames, choose_frames
 from mbkf.scaling.problem import FACTOR_BOUNDS, KEYPOINT_POSTURE_FRAMES, ScalingProblem
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingSettings, ScalingState
+from mbkf.scaling.search import COARSE, FINE, Progress, first_poses, first_state, minimum
 from mbkf.scaling.verdict import DOUBTS_KEY, FitQuality, as_each_other
 from mbkf.sensors.flexed_skin import slide_covariance
-from mbkf.sensors.pose_fit import segment_by_segment
-
-MAX_ITERATIONS = 60
-FINE, COARSE = 1e-4, 3e-3
-"""Relative decreases of the cost below which a fit ends; the coarse one where the spread of the skin is learnt next."""
 
 MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
@@ -50,7 +47,7 @@ def scale_subject(
     mass_kg: float,
     height_m: float | None = None,
     settings: ScalingSettings | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Subject:
     """Scale factors and marker positions of a person from standing trials, moving trials or both.
 
@@ -74,8 +71,10 @@ def scale_subject(
         raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
     problem = scaling_problem(frames, len(static), protocol, height_m, settings)
-    start = problem.start(first_poses(problem))
-    solution = _minimise(problem, start, progress)
+    freed = problem.with_prior(with_skin(problem)) if dynamic and settings.skin else problem
+    tolerance = COARSE if freed.prior.flexions else FINE
+    start = first_state(problem) if freed.prior.flexions else problem.start(first_poses(problem))
+    solution = minimum(problem, start, progress, tolerance)
     dropped = problem.outliers(solution.state, settings.outlier_m)
     if dropped.sum() > 0.5 * problem.seen.sum():
         raise NotConverged(
@@ -83,17 +82,15 @@ def scale_subject(
             f"'{protocol.name}' is their protocol (--protocol), and their unit and axes (--unit, --up)"
         )
     if dropped.any():
-        problem = problem.without(dropped)
-        solution = _minimise(problem, solution.state, progress)
-    rigid, solution = _with_learnt_prior(problem, solution, progress)
-    exchanged = _exchanged(rigid, solution.state)  # skin that moves would hide them
-    freed = problem.with_prior(with_skin(problem)) if dynamic and settings.skin else problem
+        problem, freed = problem.without(dropped), freed.without(dropped)
+        solution = minimum(problem, solution.state, progress, tolerance)
+    rigid, learnt = _with_learnt_prior(problem, solution, progress, tolerance)
+    exchanged = _exchanged(rigid, learnt.state)  # skin that moves would hide them
     if freed.prior.flexions:
-        problem, solution = _with_learnt_prior(
-            freed, _minimise(freed, freed.start_from(solution.state), progress, COARSE), progress
-        )
+        moved = minimum(freed, freed.start_from(solution.state), progress, COARSE)
+        problem, solution = _with_learnt_prior(freed, moved, progress)
     else:
-        problem = rigid
+        problem, solution = rigid, learnt
     rms = float(np.sqrt(np.nanmean(np.linalg.norm(problem.errors_m(solution.state), axis=2) ** 2)))
     noise = float(np.sqrt((problem.noise_m**2).mean()))
     if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * noise):
@@ -127,12 +124,13 @@ def scale_subject(
 def _with_learnt_prior(
     problem: ScalingProblem,
     solution: Solution[ScalingState],
-    progress: Callable[[int, int], None] | None,
+    progress: Progress | None,
+    tolerance: float = FINE,
 ) -> tuple[ScalingProblem, Solution[ScalingState]]:
     """The problem with the prior that its solution teaches, and the solution of that."""
     learnt = learnt_prior(problem, solution.state, solution.equations.schur_complement())
     problem = problem.with_prior(learnt)
-    return problem, _minimise(problem, solution.state, progress)
+    return problem, minimum(problem, solution.state, progress, tolerance)
 
 
 def _check_size(mass_kg: float, height_m: float | None) -> None:
@@ -250,36 +248,6 @@ def _weights(frames: ScalingFrames, static_trials: int, settings: ScalingSetting
     )
 
 
-def first_poses(problem: ScalingProblem) -> Array:
-    """(N, nq) poses from the markers whose place is known beforehand, and all markers of a segment without any."""
-    state = problem.start(np.zeros((0, problem.posture.model.nq)))
-    sensor = problem.sensor(state)
-    anatomical = np.array([m.kind != "technical" for m in problem.markers])
-    tracked = {m.segment for m in problem.markers if m.kind != "technical"}
-    placed = anatomical | np.array([m.segment not in tracked for m in problem.markers])
-    enough = (placed & problem.seen).sum(axis=1) >= MIN_MARKERS
-    shown = placed | ~enough[:, None]
-    return segment_by_segment(sensor, np.where(shown[:, :, None], problem.measured_m, np.nan))
-
-
-def _minimise(
-    problem: ScalingProblem,
-    start: ScalingState,
-    progress: Callable[[int, int], None] | None,
-    tolerance: float = FINE,
-) -> Solution[ScalingState]:
-    report = None if progress is None else lambda done: progress(done, MAX_ITERATIONS)
-    return minimise(
-        start,
-        problem.linearise,
-        problem.cost,
-        problem.move,
-        tolerance=tolerance,
-        max_iterations=MAX_ITERATIONS,
-        on_iteration=report,
-    )
-
-
 def _subject(
     problem: ScalingProblem,
     solution: Solution[ScalingState],
@@ -357,7 +325,7 @@ def _report(
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)
     count = len(body.scale_factors)
-    errors = np.sqrt(np.diag(np.linalg.inv(solution.equations.schur_complement()))[:count])
+    errors = np.sqrt(np.diag(inverse(solution.equations.schur_complement()))[:count])
     markers = {}
     for i, marker in enumerate(problem.markers):
         column = errors_mm[:, i][~np.isnan(errors_mm[:, i])]

@@ -22,9 +22,10 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import Protocol
 from mbkf.numerics.levenberg_marquardt import minimise
-from mbkf.scaling.fit import first_poses, scaling_problem
+from mbkf.scaling.fit import scaling_problem
 from mbkf.scaling.frames import ScalingFrames, choose_frames
 from mbkf.scaling.records import ScalingSettings, ScalingState
+from mbkf.scaling.search import first_poses
 
 Indices = NDArray[np.intp]
 

@@ -15,9 +15,10 @@ divided by its standard deviation:
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from mbkf.conventions import Array, BoolArray, read_only
@@ -39,6 +40,10 @@ FACTOR_BOUNDS = (0.5, 1.6)
 KEYPOINT_POSTURE_FRAMES = 0.5
 """Number of independent observations of the posture in a moving trial of keypoints: these leave joints so much freedom
 that a squat would otherwise be scaled to look like standing."""
+
+MOST_TURNED_RAD = 1.0
+"""Greatest rotation of a joint in one step, rad. A joint that early steps turn more than once, as toes with a single
+marker, takes many steps to turn back."""
 
 OUTLYING_SD = 4.0
 """Least distance of an outlier in standard deviations of its noise: of three coordinates 0.1 % lie further."""
@@ -177,6 +182,18 @@ class ScalingProblem:
         other.seen = np.asarray(~np.isnan(other.measured_m).any(axis=2))
         return other
 
+    def of_frames(self, chosen: NDArray[np.intp]) -> ScalingProblem:
+        """The same problem with some of its frames.
+
+        Args:
+            chosen: Their numbers.
+        """
+        other = self.with_measurements(self.measured_m[chosen])
+        other.weights = FrameWeights(
+            *(getattr(self.weights, one.name)[chosen] for one in fields(FrameWeights))
+        )
+        return other
+
     def with_prior(self, prior: ScalingPrior) -> ScalingProblem:
         """The same problem with another prior."""
         other = copy(self)
@@ -205,7 +222,7 @@ class ScalingProblem:
         return float(away @ self._precision @ away)
 
     def move(self, state: ScalingState, own: Array, shared: Array) -> ScalingState:
-        """The state after a step; factors stay inside their bounds.
+        """The state after a step; factors stay inside their bounds, and a frame's joints turn by a radian at most.
 
         Args:
             state: Before the step.
@@ -213,6 +230,8 @@ class ScalingProblem:
             shared: (s,) step of factors, offsets and displacements.
         """
         model = self.posture.model
+        largest = np.abs(own[:, model.root.v.stop :]).max(axis=1, initial=0.0)
+        own = own * np.minimum(1.0, MOST_TURNED_RAD / np.maximum(largest, 1e-12))[:, None]
         count, end = len(state.factors), len(state.factors) + state.offsets_m.size
         return ScalingState(
             np.array([model.integrate(q, dq) for q, dq in zip(state.poses, own, strict=True)]),

@@ -1,9 +1,9 @@
-"""The nearest covariance: without negative eigenvalues, and the matrix itself where it has none."""
+"""The inverse is the general one; the nearest covariance has no negative eigenvalues."""
 
 import numpy as np
 import pytest
 
-from mbkf.numerics.positive import made_positive
+from mbkf.numerics.positive import inverse, made_positive
 
 SCALES = np.array([1e-4, 1.0, 1e3, 30.0])
 
@@ -29,3 +29,17 @@ def test_a_covariance_stays_what_it_is():
 def test_what_is_no_number_is_refused():
     with pytest.raises(np.linalg.LinAlgError):
         made_positive(np.full((3, 3), np.nan))
+
+
+@pytest.mark.parametrize("columns, shift", [(9, 0.0), (6, 0.0), (9, -6.0)])
+def test_the_inverse_is_the_general_one_of_indefinite_matrices_too(columns, shift):
+    A = np.random.default_rng(2).normal(size=(6, columns))
+    P = A @ A.T + shift * np.eye(6)
+    found = inverse(P)
+    np.testing.assert_allclose(found, np.linalg.inv(P), rtol=1e-8, atol=1e-10 * np.abs(found).max())
+    np.testing.assert_allclose(P @ found, np.eye(6), atol=1e-8)
+
+
+def test_a_singular_matrix_has_no_inverse():
+    with pytest.raises(np.linalg.LinAlgError):
+        inverse(np.zeros((3, 3)))

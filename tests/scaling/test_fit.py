@@ -9,7 +9,7 @@ from mbkf.errors import InvalidInput, NotConverged, NotObservable
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.scaling import fit
+from mbkf.scaling import search
 from mbkf.scaling.fit import factor_covariance, scale_subject
 from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.verdict import DOUBTS_KEY
@@ -330,7 +330,7 @@ def test_a_standing_trial_whose_names_go_round_is_no_person_though_it_fits(perso
 
 
 def test_a_fit_that_is_cut_short_is_told(person, monkeypatch):
-    monkeypatch.setattr(fit, "MAX_ITERATIONS", 1)
+    monkeypatch.setattr(search, "MAX_ITERATIONS", 1)
     found = scale_subject([person.standing()], [person.moving()], PROTOCOL, mass_kg=72.0)
     assert not found.report["converged"]
     assert found.report[DOUBTS_KEY][0] == "the fit did not converge"
