@@ -287,7 +287,7 @@ def test_a_deep_squat_is_followed_live_on_skin_that_moves_as_scaling_found(name)
     rigid = replace(person, markers=tuple(replace(m, slides_m=NO_SLIDES) for m in person.markers))
     known, neutral = angle_errors_deg(person, name), angle_errors_deg(rigid, name)
     assert np.abs(known).max() < 0.3
-    assert np.abs(neutral).max() > 3.0
+    assert np.abs(neutral).max() > 2.0
 
 
 def test_live_places_are_those_of_a_corrected_trial_on_the_average_of_its_postures():
