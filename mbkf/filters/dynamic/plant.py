@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.plant import Plant
@@ -43,6 +44,8 @@ class SingerSettings:
         activity_memory_s: Time over which that mean is taken.
         busy_shares: σ_a is at most this many times the table, for the pelvis's translation and for all else.
         decay_s: Time T in which an unobserved acceleration fades.
+        constant_jerk: True for one trajectory; False for jerk that is white within the frame, Singer's own, where
+            inertial sensors alone show the body: they read velocities and accelerations, each with errors that last.
     """
 
     acceleration_scale: float = 1.0
@@ -52,6 +55,7 @@ class SingerSettings:
     activity_memory_s: float = 0.05
     busy_shares: tuple[float, float] = (2.0, 8.0)
     decay_s: float = 0.06
+    constant_jerk: bool = True
 
 
 @dataclass(frozen=True)
@@ -127,9 +131,14 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         s, self.settings = settings, settings
         self.acceleration_sd = np.where(held, 0.0, s.acceleration_scale * model.movement_sd)
         self.rho = float(np.exp(-dt_s / s.decay_s))
-        self.c1, self.c2 = dt_s * (1.0 + self.rho) / 2.0, dt_s**2 * (2.0 + self.rho) / 6.0
-        per_noise = np.array([dt_s**2 / 6.0, dt_s / 2.0, 1.0])
-        self.covariance = (1.0 - self.rho**2) * np.outer(per_noise, per_noise)
+        if s.constant_jerk:
+            self.c1, self.c2 = dt_s * (1.0 + self.rho) / 2.0, dt_s**2 * (2.0 + self.rho) / 6.0
+            per_noise = np.array([dt_s**2 / 6.0, dt_s / 2.0, 1.0])
+            self.covariance = (1.0 - self.rho**2) * np.outer(per_noise, per_noise)
+        else:
+            self.c1 = -s.decay_s * float(np.expm1(-dt_s / s.decay_s))
+            self.c2 = s.decay_s * (dt_s - self.c1)
+            self.covariance = _white_jerk(dt_s, s.decay_s)
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
         self._busiest = self.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
@@ -195,3 +204,14 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         Q, moving = np.zeros((self.layout.size, self.layout.size)), slice(self.layout.a.stop)
         Q[moving, moving] = np.kron(self.covariance, np.diag(sd * sd))
         return Q
+
+
+def _white_jerk(dt_s: float, decay_s: float) -> Array:
+    """(3, 3) ∫ e^(Fs) G Gᵀ e^(Fᵀs) ds over Δt for unit stationary variance (Van Loan 1978)."""
+    F = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0 / decay_s]])
+    blocks = np.zeros((6, 6))
+    blocks[:3, :3], blocks[3:, 3:] = -F, F.T
+    blocks[2, 5] = 2.0 / decay_s
+    exponential = expm(blocks * dt_s)
+    noise = exponential[3:, 3:].T @ exponential[:3, 3:]
+    return 0.5 * (noise + noise.T)

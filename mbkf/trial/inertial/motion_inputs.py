@@ -45,6 +45,10 @@ MOST_HZ = 130.0
 """Sensors that are faster are averaged down to a whole part of their rate below this."""
 
 
+DECAY_S = 0.04
+"""Time in which an acceleration fades; its jerk is white within a frame."""
+
+
 @dataclass(frozen=True)
 class MotionSettings:
     """The filter on inertial sensors alone.
@@ -189,6 +193,7 @@ def worn_filter(
     """
     model, dt, unobservable = inputs.sensor.model, inputs.dt_s, inputs.unobservable
     s, posture = inputs.dynamic, PostureSensor(inputs.sensor.model)
+    s = replace(s, motion=replace(s.motion, constant_jerk=False, decay_s=DECAY_S))
     law = replace(
         s.law, residual_force_n=settings.residual_force_n, residual_moment_nm=settings.residual_moment_nm
     )

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.integrate
 import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -78,6 +79,21 @@ def test_the_acceleration_is_stationary(decay_s):
     plant = plant_of(decay_s)
     assert plant.rho == pytest.approx(np.exp(-DT / decay_s), rel=1e-12)
     assert plant.rho**2 + plant.covariance[2, 2] == pytest.approx(1.0, rel=1e-12)
+
+
+@decays
+def test_white_jerk_is_the_integral_of_the_linear_equation(decay_s):
+    """exp(F Δt), and ∫ e^(Fs) G Gᵀ e^(Fᵀs) ds with 2/T on the acceleration, by adaptive quadrature."""
+    plant = singer(MODEL, settings=SingerSettings(decay_s=decay_s, constant_jerk=False))
+    F = rates(decay_s)
+
+    def density(s):
+        column = scipy.linalg.expm(F * s)[:, 2]
+        return np.outer(column, column) * 2.0 / decay_s
+
+    numeric, _ = scipy.integrate.quad_vec(density, 0.0, DT, epsrel=1e-12, epsabs=0.0)
+    np.testing.assert_allclose(plant.covariance, numeric, rtol=1e-8)
+    assert_near(straight(plant), scipy.linalg.expm(DT * F), 1e-13)
 
 
 @given(st.floats(0.05, 1.0))
