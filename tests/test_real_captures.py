@@ -77,14 +77,19 @@ def test_rajagopal_walk(real_data):
 
 @pytest.mark.parametrize("smooth", [False, True])
 def test_rajagopal_walk_obeys_newton(smooth, real_data):
+    """With a residual of half of its expected size at most: a load of the body's own, soft tissue and masses."""
     folder = real_data / "rajagopal_walk_run"
     static, forces = folder / "static_walk_1.trc", folder / "grf_walk.mot"
     found = followed(folder / "motion_capture_walk.trc", 85.07, static, forces, smooth=smooth)
     summary = summarise(found)
     assert summary["marker_rms_mm"] <= 5.5
-    assert summary["residual_force_rms_n"] <= 5.0
-    assert summary["residual_moment_rms_nm"] <= 3.0
+    assert summary["residual_force_share"] <= 0.025
+    assert summary["residual_lever_m"] <= 0.015
     assert summary["plate_force_change_rms_n"] <= 2.0
+    if smooth:
+        # what forces and motion contradict shows in the residual, not between velocities and accelerations
+        apart = np.diff(found.v, axis=0) * found.rate_hz - 0.5 * (found.a[1:] + found.a[:-1])
+        assert np.nanmedian(np.linalg.norm(apart[:, :3], axis=1)) <= 1e-3
 
 
 def test_gaitalytics_overground(real_data):
