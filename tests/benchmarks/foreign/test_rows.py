@@ -13,7 +13,7 @@ from benchmarks.foreign.score import AngleScore, OffsetScore, Score
 GOOD = AngleScore(2.0, 1.0, 0.94, 0.94, 0.03, 2.0)
 SCORE = Score(
     GOOD, {"legs": GOOD, "lumbar": GOOD}, GOOD, OffsetScore(1.0, 1.0, 2.0),
-    dict.fromkeys(("hip", "knee", "ankle"), 9.0), 0.06, 0.9,
+    dict.fromkeys(("hip", "knee", "ankle"), 9.0), 0.05, 0.93, 1.0,
 )  # fmt: skip
 
 
@@ -40,6 +40,9 @@ def test_good_scores_pass() -> None:
         (replace(SCORE, legs=replace(GOOD, varying_cover=0.98)), "p: legs, share in 95 % intervals, varying, at most"),
         (replace(SCORE, groups={"lumbar": replace(GOOD, cover=0.8)}), "p: lumbar, share in 95 % intervals, at least"),
         (replace(SCORE, angles=replace(GOOD, calibration=0.06)), "p: expected calibration error of angles"),
+        (replace(SCORE, moment=0.1), "p: moments of legs, RMS"),
+        (replace(SCORE, moment_cover=0.8), "p: moments of legs, share in 95 % intervals, at least"),
+        (replace(SCORE, moment_nees=3.0), "p: moments of legs, NEES, at most"),
     ],
 )  # fmt: skip
 def test_each_number_outside_fails_its_row(score: Score, name: str) -> None:
