@@ -31,6 +31,7 @@ BOUNDS = {
     "trial/live/labels.py LiveLabels._unnamed": "each round takes one frame that waits",
     "trial/protocol/from_osim.py _Skeleton._in_segment": "goes up a tree, which check_body has checked",
     "trial/protocol/osim_bodies.py poses_at_zero": "each round places one body",
+    "model/skeleton.py joint_origin": "goes up a tree, which check_body has checked",
     "trial/results/validity.py joints_to_root": "goes up a tree, which check_body has checked",
 }
 """Function of each loop, and why it ends."""

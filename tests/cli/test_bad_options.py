@@ -118,7 +118,7 @@ def test_output_in_a_missing_parent_is_made(person, tmp_path, capsys):
         (None, ["no such file", "mbkf scale"]),
         (lambda text: "", ["scale_factors is missing"]),
         (lambda text: "\x00\xff", ["line 1: not a subject file"]),
-        (lambda text: text[: len(text) // 2], ["not a subject file", "Unclosed array"]),
+        (lambda text: text[: text.index("position_m = [") + 20], ["not a subject file", "Unclosed array"]),
         (
             lambda text: text.replace("position_m = [", "position_m = [nan, "),
             ["line", "position_m must be 3 numbers"],
