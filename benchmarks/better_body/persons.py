@@ -14,6 +14,7 @@ from mbkf.conventions import read_only
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
+from mbkf.model.human import reference_body
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling import fit
 from mbkf.scaling.problem import ScalingProblem
@@ -89,7 +90,7 @@ def with_true_lengths(from_trial: Trial) -> Subject:
 
     def knowing(*given: Any) -> ScalingProblem:
         problem = made(*given)
-        factors = np.array([from_trial.person.scale_factors[name] for name in problem.body.scale_factors])
+        factors = problem.body.scale(from_trial.person.scale_factors)
         exactly = KNOWN_SD**2 * np.eye(len(factors))
         return problem.with_prior(replace(problem.prior, factors=factors, factor_covariance=exactly))
 
@@ -101,8 +102,7 @@ def normalised(found: Subject, person: Subject) -> float:
     """Mean square of the factors' errors over their standard errors."""
     table = found.report["factors"]
     assert isinstance(table, dict)
-    away = [
-        (found.scale_factors[name] - person.scale_factors[name]) / one["standard_error"]
-        for name, one in table.items()
-    ]
+    body = reference_body(person)
+    true = dict(zip(body.scale_factors, body.scale(person.scale_factors), strict=True))
+    away = [(found.scale_factors[name] - true[name]) / one["standard_error"] for name, one in table.items()]
     return float(np.mean(np.square(away)))
