@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mbkf.conventions import BoolArray
 from mbkf.model.body import Body
 from mbkf.model.layout import ROOT_RESIDUAL, SUPPORT, UNSEEN_MOMENT, Layout
 from mbkf.model.newton_euler import NewtonEuler
@@ -27,11 +28,14 @@ class NewtonEulerSettings:
             they allow for errors of the segments' masses and inertias.
         imu_residual_scale: Factor on both while inertial sensors read and a limb has neither marker nor sensor: the
             errors of the sensors would throw that limb about.
+        stray_residual_scale: Factor on both while a loaded plate belongs to no foot and a foot is out of sight: the
+            load, up to a body's weight, acts on no segment, and the law would bend the motion for it.
     """
 
     residual_force_n: float = 2.0
     residual_moment_nm: float = 1.0
     imu_residual_scale: float = 30.0
+    stray_residual_scale: float = 300.0
 
 
 LOADS_AT_ROOT = {UNSEEN_MOMENT: slice(3, 6), ROOT_RESIDUAL: slice(0, 6)}
@@ -57,11 +61,26 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     kind = "law"
     quantities = 2
 
-    def __init__(self, balance: NewtonEuler, settings: NewtonEulerSettings = NewtonEulerSettings()) -> None:
+    def __init__(
+        self,
+        balance: NewtonEuler,
+        settings: NewtonEulerSettings = NewtonEulerSettings(),
+        unobservable: BoolArray | None = None,
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            balance: Newton–Euler equations.
+            settings: Standard deviations.
+            unobservable: (nv,) dofs that no marker of the capture moves with; None where all dofs are shown.
+        """
         self.balance, self.settings = balance, settings
         self._support: slice | None = None
         self._support_extra = slice(0)
         self._loads: list[_Load] = []
+        model = balance.model
+        self._feet = {model.joint(segment).v.start for segment in model.roles.feet}
+        self._unseen_foot = unobservable is not None and bool(unobservable[list(self._feet)].any())
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:
@@ -101,12 +120,14 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         return Rows(rows, -residual * self._sharp, readings=6)
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
-        """The prepared rows, loosened for a limb without marker and sensor while inertial sensors read."""
-        rows = at.prepared
-        if decision.imus is None or not len(decision.unobserved):
-            return rows
-        scale = self.settings.imu_residual_scale
-        return Rows(rows.jacobian / scale, rows.innovation / scale, readings=6)
+        """The prepared rows, loosened for limbs that only inertial sensors lead, and for loads on feet out of sight."""
+        rows, scale = at.prepared, 1.0
+        if decision.imus is not None and len(decision.unobserved):
+            scale = self.settings.imu_residual_scale
+        out_of_sight = self._unseen_foot or self._feet & {*decision.unobserved}
+        if decision.contact is not None and decision.contact.stray and out_of_sight:
+            scale = max(scale, self.settings.stray_residual_scale)
+        return rows if scale == 1.0 else Rows(rows.jacobian / scale, rows.innovation / scale, readings=6)
 
     def log_noise(self, decision: Notes) -> float:
         """Log det R of the six equations."""

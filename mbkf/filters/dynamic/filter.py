@@ -73,7 +73,7 @@ def dynamic_blocks(
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
     blocks: list[AnyBlock] = [
         Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),
-        NewtonEulerLaw(NewtonEuler(model), s.law),
+        NewtonEulerLaw(NewtonEuler(model), s.law, unobservable),
         *([RootResidual(weight_n, dt_s, s.residual)] if s.residual.residual_share > 0.0 else []),
         *([Supports(model, dt_s, s.supports)] if other_contacts else []),
         FootContact(detector, weight_n, dt_s, s.contact),
