@@ -28,8 +28,8 @@ class NewtonEulerSettings:
             they allow for errors of the segments' masses and inertias.
         imu_residual_scale: Factor on both while inertial sensors read and a limb has neither marker nor sensor: the
             errors of the sensors would throw that limb about.
-        stray_residual_scale: Factor on both while a loaded plate belongs to no foot and a foot is out of sight: the
-            load, up to a body's weight, acts on no segment, and the law would bend the motion for it.
+        stray_residual_scale: Factor on both while a loaded plate belongs to no foot and no marker of the capture shows
+            a foot: the load, up to a body's weight, acts on no segment, and the law would bend the motion for it.
     """
 
     residual_force_n: float = 2.0
@@ -79,8 +79,8 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         self._support_extra = slice(0)
         self._loads: list[_Load] = []
         model = balance.model
-        self._feet = {model.joint(segment).v.start for segment in model.roles.feet}
-        self._unseen_foot = unobservable is not None and bool(unobservable[list(self._feet)].any())
+        feet = [model.joint(segment).v.start for segment in model.roles.feet]
+        self._unseen_foot = unobservable is not None and bool(unobservable[feet].any())
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:
@@ -120,12 +120,11 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         return Rows(rows, -residual * self._sharp, readings=6)
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
-        """The prepared rows, loosened for limbs that only inertial sensors lead, and for loads on feet out of sight."""
+        """The prepared rows, loosened for limbs that only inertial sensors lead, and for loads on feet never seen."""
         rows, scale = at.prepared, 1.0
         if decision.imus is not None and len(decision.unobserved):
             scale = self.settings.imu_residual_scale
-        out_of_sight = self._unseen_foot or self._feet & {*decision.unobserved}
-        if decision.contact is not None and decision.contact.stray and out_of_sight:
+        if decision.contact is not None and decision.contact.stray and self._unseen_foot:
             scale = max(scale, self.settings.stray_residual_scale)
         return rows if scale == 1.0 else Rows(rows.jacobian / scale, rows.innovation / scale, readings=6)
 
