@@ -144,7 +144,7 @@ def _r(ours: Array, theirs: Array) -> float:
 
 
 def _residual_n(capture: Capture, subject: Subject, reference: Curves) -> float:
-    """The same for our marker filter, over the frames of the reference that plates read whole; NaN without one."""
+    """Residual of our marker filter in the reference's frames with a whole load on plates, N; NaN without a reference."""
     if not np.isfinite(reference.residual_n):
         return float("nan")
     found = reconstruct(capture, subject, settings=ReconstructSettings(filter="kinematic"))

@@ -35,7 +35,7 @@ LEAST_MOMENT_R, MOST_MOMENT = 0.85, 0.3
 
 @dataclass(frozen=True)
 class Agreement:
-    """How a coordinate of a trial agrees with its reference, right and left together.
+    """Agreement of a coordinate of a trial with its reference, right and left together.
 
     Attributes:
         offsets: Mean difference by side.

@@ -165,7 +165,7 @@ class BodyErrors:
         return self.pose_roots(q[None])[0]
 
     def pose_roots(self, poses: Array) -> list[Array]:
-        """The same at each of the configurations (N, nq)."""
+        """Roots (nv, r) of :meth:`pose_root`, one for each of the configurations (N, nq)."""
         return self._poses.roots(poses)
 
     def at(

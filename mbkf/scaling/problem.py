@@ -183,7 +183,7 @@ class ScalingProblem:
         return other
 
     def of_frames(self, chosen: NDArray[np.intp]) -> ScalingProblem:
-        """The same problem with some of its frames.
+        """A problem on some of these frames.
 
         Args:
             chosen: Their numbers.

@@ -103,12 +103,10 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
         residual = root.residual
         known = root.by_state.shape[1]
-        size = max(
-            [load.state.stop for load in self._loads], default=known if support is None else support.stop
-        )
-        if size == known:
+        added = [load.state for load in self._loads] + ([] if support is None else [support])
+        if not added:
             return Rows(root.by_state * sharp, -residual * self._sharp, readings=6)
-        rows = np.zeros((6, max(size, 0 if support is None else support.stop)))
+        rows = np.zeros((6, max(part.stop for part in added)))
         np.multiply(root.by_state, sharp, out=rows[:, :known])
         if support is not None:
             np.multiply(root.by_state[:, -6:], sharp, out=rows[:, support])

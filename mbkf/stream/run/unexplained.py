@@ -73,7 +73,6 @@ class LoadWatch:
 
     def plain(self) -> list[dict[str, object]]:
         """Loads stated so far, for live.json."""
-        weight_n = self._model.mass_kg * GRAVITY_M_S2
         found: list[dict[str, object]] = []
         for one in list(self._loads):
             load = self._load(one)
@@ -83,7 +82,7 @@ class LoadWatch:
                     "to_s": load.to_s,
                     "force_n": load.force_n,
                     "direction": load.direction,
-                    "share_of_weight": load.force_n / weight_n,
+                    "share_of_weight": load.share,
                 }
             )
         return found

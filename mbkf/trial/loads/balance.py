@@ -12,7 +12,7 @@ by. Velocities and accelerations of a filter do not enter.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -208,14 +208,3 @@ def centres_of_mass(model: Body, q: Array, known: BoolArray) -> Array:
 def _along(series: Array, weights: Array) -> Array:
     """(n, C) sums of the frames of each window of series (T, C), with weights."""
     return np.array([np.correlate(column, weights, "valid") for column in series.T]).T
-
-
-def stances(force_n: Array, rate_hz: float, least_s: float) -> Iterator[tuple[int, int]]:
-    """First frame and the frame after the last of each loading of a foot.
-
-    Args:
-        force_n: (T, 3) its force.
-        rate_hz: Frame rate.
-        least_s: Least duration.
-    """
-    return ((a, b) for a, b in runs(np.asarray(force_n.any(axis=1))) if b - a >= least_s * rate_hz)

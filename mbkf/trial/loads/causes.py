@@ -5,7 +5,7 @@ Each is tried by what it would change; it is the cause if nothing is left unexpl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -13,7 +13,8 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.unexplained import Cause
-from mbkf.trial.loads.balance import LoadBalance, Means, stances
+from mbkf.numerics.runs import runs
+from mbkf.trial.loads.balance import LoadBalance, Means
 from mbkf.trial.loads.flags import Contradictions
 
 MASS_RANGE = (0.5, 2.0)
@@ -162,3 +163,14 @@ def _touching(means: Means, stance: tuple[int, int]) -> BoolArray:
     """(n,) windows that hold frames of a stance."""
     begins = np.arange(len(means.judged))
     return np.asarray((begins < stance[1]) & (begins + means.frames > stance[0]))
+
+
+def stances(force_n: Array, rate_hz: float, least_s: float) -> Iterator[tuple[int, int]]:
+    """First frame and the frame after the last of each loading of a foot.
+
+    Args:
+        force_n: (T, 3) its force.
+        rate_hz: Frame rate.
+        least_s: Least duration.
+    """
+    return ((a, b) for a, b in runs(np.asarray(force_n.any(axis=1))) if b - a >= least_s * rate_hz)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.trial.loads.balance import LoadBalance, Window, stances
+from mbkf.trial.loads.balance import LoadBalance, Window
 from tests.bodies_in_balance import MASS_KG, RATE_HZ, UP, WEIGHT_N, moving, unloaded
 from tests.motions import assert_near, random_model, smooth_motion
 
@@ -109,9 +109,3 @@ def test_of_a_motion():
     assert_near(found.centre_m[3], model.centre_of_mass(q[3]), 1e-12)
     assert_near(found.feet_n[3], feet[3], 0.0)
     assert found.mass_kg == model.mass_kg and found.weight_n == pytest.approx(9.80665 * model.mass_kg)
-
-
-def test_stances_are_loadings_of_a_least_duration():
-    force = np.zeros((50, 3))
-    force[5:20, 2] = force[30:33, 2] = 100.0
-    assert list(stances(force, RATE_HZ, 0.1)) == [(5, 20)]

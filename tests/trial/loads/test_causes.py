@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.unexplained import UnexplainedLoad
-from mbkf.trial.loads.balance import stances
+from mbkf.trial.loads.causes import stances
 from mbkf.trial.loads.unexplained import unexplained_loads
 from tests.bodies_in_balance import MASS_KG, RATE_HZ, UP, WEIGHT_N, moving, times_of, unloaded
 
@@ -73,3 +73,9 @@ def test_a_load_during_a_part_of_a_stance_is_no_foots():
     assert [
         cause for cause, _ in causes_in(unloaded(balance, 0.5 * WEIGHT_N * UP, middle - 0.9, middle))
     ] == [""]
+
+
+def test_stances_are_loadings_of_a_least_duration():
+    force = np.zeros((50, 3))
+    force[5:20, 2] = force[30:33, 2] = 100.0
+    assert list(stances(force, RATE_HZ, 0.1)) == [(5, 20)]
