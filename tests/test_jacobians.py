@@ -61,6 +61,7 @@ ELSEWHERE = {
     "numerics.elimination.Eliminated.gradient": "numerics/test_elimination.py eliminate",
     "numerics.elimination.RowBlock.rows": "numerics/test_elimination.py row_blocks",
     "sensors.subject_sensor.FlexedMarkerSensor.reading": "sensors/test_subject_sensor.py",
+    "sensors.root_residual.DecayingLoad.linearise": "sensors/test_root_residual.py",
     "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.windows.slopes": "numerics/test_windows.py",
     "numerics.later_frames.LinearStep.transition": "numerics/test_later_frames.py",

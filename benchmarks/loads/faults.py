@@ -26,7 +26,7 @@ LEAST_STANCE_S, STANCE_N = 0.3, 20.0
 """Least duration and vertical force of a stance."""
 
 With = tuple[Capture, Subject, Array | None]
-"""Capture and person with a fault, and the (T, 3) force that nothing reads, N; None for wrong masses, clocks, plates."""
+"""Capture and person with a fault, and (T, 3) force that nothing reads, N; None for a wrong mass, clock or plate."""
 
 
 class Fault(Protocol):

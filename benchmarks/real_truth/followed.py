@@ -144,7 +144,7 @@ def _r(ours: Array, theirs: Array) -> float:
 
 
 def _residual_n(capture: Capture, subject: Subject, reference: Curves) -> float:
-    """Residual of our marker filter in the reference's frames with a whole load on plates, N; NaN without a reference."""
+    """Residual of our marker filter in frames of the reference with all load on plates, N; NaN without it."""
     if not np.isfinite(reference.residual_n):
         return float("nan")
     found = reconstruct(capture, subject, settings=ReconstructSettings(filter="kinematic"))

@@ -11,10 +11,12 @@ zero, too: over a whole trial the process has the variance σ²/2 and the correl
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.model.layout import ROOT_RESIDUAL, ExtraState
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.states import LoadedState
@@ -35,10 +37,42 @@ class RootResidualSettings:
     residual_memory_s: float = 0.2
 
 
-class RootResidual(Block[LoadedState, None, Notes, None]):
-    """A state of six, force N and moment N m about the root's origin, and its decay."""
+class DecayingLoad(Block[LoadedState, None, Notes, None]):
+    """A load at the root as a state, a random walk that is read as zero in every frame.
+
+    Attributes:
+        name: Its slice in the layout.
+        sd: (k,) standard deviation that the filter's variance stands at without other readings, N or N m.
+    """
 
     prior = True
+
+    @abstractmethod
+    def __init__(self, name: str, sd: Array, memory_s: float, dt_s: float) -> None:
+        """Makes the block.
+
+        Args:
+            name: Its slice in the layout, one of :data:`mbkf.sensors.newton_euler.LOADS_AT_ROOT`.
+            sd: (k,) standard deviation, N or N m.
+            memory_s: Time τ of the decay.
+            dt_s: Time between frames.
+        """
+        self.name, self.sd = name, sd
+        self._walk = sd * (2.0 / memory_s) ** 0.5
+        self._sharp = 1.0 / (sd * (0.5 * memory_s / dt_s) ** 0.5)
+
+    def states(self) -> list[ExtraState]:
+        """The load, in the root's axes."""
+        return [ExtraState(self.name, np.zeros(len(self.sd)), self.sd, self._walk)]
+
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
+        """Rows on the load, one a component."""
+        load = at.state.extra[self.layout.extra_index(self.name)]
+        return Rows(np.diag(self._sharp), -load * self._sharp, self.layout[self.name].start)
+
+
+class RootResidual(DecayingLoad):
+    """A state of six, force N and moment N m about the root's origin, and its decay."""
 
     def __init__(
         self, weight_n: float, dt_s: float, settings: RootResidualSettings = RootResidualSettings()
@@ -50,16 +84,6 @@ class RootResidual(Block[LoadedState, None, Notes, None]):
             dt_s: Time between frames.
             settings: Size and duration.
         """
-        s = self.settings = settings
-        self._start_sd = weight_n * np.repeat([s.residual_share, s.residual_lever_m], 3)
-        self._walk = self._start_sd * (2.0 / s.residual_memory_s) ** 0.5
-        self._sharp = 1.0 / (self._start_sd * (0.5 * s.residual_memory_s / dt_s) ** 0.5)
-
-    def states(self) -> list[ExtraState]:
-        """The residual, in the root's axes."""
-        return [ExtraState(ROOT_RESIDUAL, np.zeros(6), self._start_sd, self._walk)]
-
-    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
-        """Six rows on the residual."""
-        residual = at.state.extra[self.layout.extra_index(ROOT_RESIDUAL)]
-        return Rows(np.diag(self._sharp), -residual * self._sharp, self.layout[ROOT_RESIDUAL].start)
+        s = settings
+        sd = weight_n * np.repeat([s.residual_share, s.residual_lever_m], 3)
+        super().__init__(ROOT_RESIDUAL, sd, s.residual_memory_s, dt_s)

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.model.layout import UNSEEN_MOMENT, ExtraState
-from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
-from mbkf.sensors.states import LoadedState
+from mbkf.model.layout import UNSEEN_MOMENT
+from mbkf.sensors.root_residual import DecayingLoad
 
 
 @dataclass(frozen=True)
@@ -32,24 +31,9 @@ class UnseenMomentSettings:
     unseen_memory_s: float = 2.0
 
 
-class UnseenMoment(Block[LoadedState, None, Notes, None]):
-    """A state of three, and its decay."""
-
-    prior = True
+class UnseenMoment(DecayingLoad):
+    """A state of three, moment N m about the pelvis's origin in its axes, and its decay."""
 
     def __init__(self, dt_s: float, settings: UnseenMomentSettings = UnseenMomentSettings()) -> None:
         """Args: time between frames; size and duration."""
-        self.settings = settings
-        s = settings
-        self._walk = s.unseen_moment_nm * (2.0 / s.unseen_memory_s) ** 0.5
-        self._sd = s.unseen_moment_nm * (0.5 * s.unseen_memory_s / dt_s) ** 0.5
-
-    def states(self) -> list[ExtraState]:
-        """The moment, N m, in the pelvis's axes."""
-        start_sd = np.full(3, self.settings.unseen_moment_nm)
-        return [ExtraState(UNSEEN_MOMENT, np.zeros(3), start_sd, np.full(3, self._walk))]
-
-    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
-        """Three rows on the moment."""
-        moment = at.state.extra[self.layout.extra_index(UNSEEN_MOMENT)]
-        return Rows(np.eye(3) / self._sd, -moment / self._sd, self.layout[UNSEEN_MOMENT].start)
+        super().__init__(UNSEEN_MOMENT, np.full(3, settings.unseen_moment_nm), settings.unseen_memory_s, dt_s)
