@@ -21,6 +21,7 @@ from mbkf.filters.spread import ASKED, Spread
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.dimensions import shape_of
 from mbkf.io.estimates import TrackEstimates
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.quantities import quantities
 
 UNASKED = -9
@@ -37,10 +38,12 @@ class Track(TrackEstimates):
     Attributes:
         starts: Frames at which the filter was started or restarted.
         smoothed: Later frames corrected more than the uncorrected ones.
+        limb_doubts: Stretches in which a limb was in doubt; times in s since the first frame.
     """
 
     starts: tuple[int, ...]
     smoothed: bool
+    limb_doubts: tuple[LimbDoubt, ...] = ()
 
 
 class Field(NamedTuple):

@@ -26,6 +26,7 @@ from mbkf.io.dimensions import (
 )
 from mbkf.io.estimates import Estimates
 from mbkf.io.findings import Finding
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.quantities import LATER, Column, Plot, attribute, change, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
@@ -189,6 +190,11 @@ def _unexplained(text: str) -> tuple[UnexplainedLoad, ...]:
     return tuple(UnexplainedLoad(**{**one, "vector_n": tuple(one["vector_n"])}) for one in json.loads(text))
 
 
+def _limb_doubts(text: str) -> tuple[LimbDoubt, ...]:
+    found = json.loads(text)
+    return tuple(LimbDoubt(**{**one, "exchanged": tuple(map(tuple, one["exchanged"]))}) for one in found)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Quality:
     """Frames that count."""
@@ -210,6 +216,11 @@ class Quality:
     )
     unexplained: tuple[UnexplainedLoad, ...] = attribute(
         "stretches in which such a force acts; their frames are not valid", (), read=_unexplained
+    )
+    limb_doubts: tuple[LimbDoubt, ...] = attribute(
+        "stretches in which a limb fits its markers badly or lies beyond its ranges, mended or not",
+        (),
+        read=_limb_doubts,
     )
 
 

@@ -62,6 +62,21 @@ class ContactTold(TypedDict):
     how: str
 
 
+class LimbDoubtTold(TypedDict):
+    """A stretch in which a limb was in doubt, as in summaries (:class:`mbkf.io.limb_doubts.LimbDoubt`)."""
+
+    limb: str
+    kind: str
+    from_s: float
+    to_s: float
+    joint: str
+    beyond_rad: float
+    misfit_m: float
+    others_m: float
+    mended: bool
+    exchanged: list[list[str]]
+
+
 class UnexplainedTold(TypedDict):
     """A stretch of time in which the body moves as if a force acted on it that no contact gives.
 
@@ -114,6 +129,7 @@ class Summary(TypedDict):
         measured_frames: Frames in which plates measure every contact.
         contacts: Which part of the body bore load from when to when, how much, and how that is known.
         unexplained: Forces that no contact explains, from when to when, how much and whereto.
+        limb_doubts: Limbs that fit their markers badly or lie beyond their ranges, from when to when, mended or not.
         plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.
         torque_peak_nm_per_kg, torque_sd_nm, torque_sd_offset_nm, torque_sd_varying_nm: Flexion torques by joint, their
             standard deviations, and the two parts of these (:data:`mbkf.io.results.SdPart`).
@@ -160,6 +176,7 @@ class Summary(TypedDict):
     measured_frames: int
     contacts: list[ContactTold]
     unexplained: list[UnexplainedTold]
+    limb_doubts: list[LimbDoubtTold]
     plate_force_change_rms_n: float | None
     plate_moment_change_rms_nm: float | None
     torque_peak_nm_per_kg: dict[str, float | None]

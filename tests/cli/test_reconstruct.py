@@ -32,7 +32,7 @@ KEYS = {
     "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "residual_force_share",
-    "residual_lever_m", "valid_frames", "measured_frames", "contacts", "unexplained",
+    "residual_lever_m", "valid_frames", "measured_frames", "contacts", "unexplained", "limb_doubts",
     "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "torque_sd_offset_nm",
     "torque_sd_varying_nm", "nis_per_dof", "nis", "marker_noise_mm_by_name",

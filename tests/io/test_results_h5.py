@@ -9,6 +9,7 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.findings import Finding, not_judged
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import ARRAYS, QUANTITIES, Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
 from mbkf.io.unexplained import UnexplainedLoad
@@ -32,6 +33,12 @@ def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
             not_judged("x", "mm", 1.0, "y"),
         ),
         unexplained=(UnexplainedLoad(0.1, 0.4, (1.0, -2.0, 590.0), 8.0, 0.82, "mass", "weigh ü"),),
+        limb_doubts=(
+            LimbDoubt(
+                "left_thigh", "names exchanged", 0.1, 0.4, "left_thigh", 0.5, 0.03, 0.005, True, (("A", "ü"),)
+            ),
+            LimbDoubt("right_thigh", "fits badly", 0.1, 0.4),
+        ),
     )
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import compress
 from pathlib import Path
 
@@ -10,6 +12,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.record import Track
 from mbkf.io.contacts import bearing
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.result_groups import Measurements, Provenance, Quality
 from mbkf.io.results import Reconstruction
@@ -107,8 +110,15 @@ def assemble(
             valid=ground.accounted & located & known & ~judged.acts,
             unexplained_force_n=judged.force_n,
             unexplained=judged.loads,
+            limb_doubts=in_time(result.limb_doubts, times_s),
         ),
     )
+
+
+def in_time(doubts: Sequence[LimbDoubt], times_s: Array) -> tuple[LimbDoubt, ...]:
+    """Doubts since the first frame by the times of the trial."""
+    begin = float(times_s[0])
+    return tuple(replace(one, from_s=begin + one.from_s, to_s=begin + one.to_s) for one in doubts)
 
 
 def balance_of(model: Body, result: Track, rate_hz: float, ground: GroundReactions) -> LoadBalance:

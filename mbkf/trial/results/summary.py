@@ -8,8 +8,9 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.contacts import ContactInterval
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import Reconstruction, SdPart
-from mbkf.io.results_folder import ContactTold, StatedAxes, Summary, UnexplainedTold
+from mbkf.io.results_folder import ContactTold, LimbDoubtTold, StatedAxes, Summary, UnexplainedTold
 from mbkf.io.truth import Truth
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.human import HumanModel, reference_body
@@ -73,6 +74,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "measured_frames": int(r.measured.sum()),
         "contacts": [contact_summary(one) for one in r.contacts],
         "unexplained": [unexplained_summary(one) for one in r.unexplained],
+        "limb_doubts": [limb_doubt_summary(one) for one in r.limb_doubts],
         "plate_force_change_rms_n": _rms(change[..., :3]),
         "plate_moment_change_rms_nm": _rms(change[..., 3:]),
         "torque_peak_nm_per_kg": peaks,
@@ -117,6 +119,22 @@ def unexplained_summary(load: UnexplainedLoad) -> UnexplainedTold:
         "share_of_weight": load.share,
         "cause": load.cause,
         "hint": load.hint,
+    }
+
+
+def limb_doubt_summary(doubt: LimbDoubt) -> LimbDoubtTold:
+    """A limb in doubt as summaries have it."""
+    return {
+        "limb": doubt.limb,
+        "kind": doubt.kind,
+        "from_s": doubt.from_s,
+        "to_s": doubt.to_s,
+        "joint": doubt.joint,
+        "beyond_rad": doubt.beyond_rad,
+        "misfit_m": doubt.misfit_m,
+        "others_m": doubt.others_m,
+        "mended": doubt.mended,
+        "exchanged": [list(pair) for pair in doubt.exchanged],
     }
 
 

@@ -34,6 +34,7 @@ def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruct
     return (
         *messages(tuple(checks)),
         *unexplained_remarks(found.unexplained),
+        *(one.sentence for one in found.limb_doubts),
         *innovations.remarks(found),
         *((str(inferred["told"]),) if isinstance(inferred, dict) else ()),
         *(f"the subject file: {doubt}" for doubt in (doubts if isinstance(doubts, list) else ())),

@@ -1,0 +1,68 @@
+"""Doubts about limbs: stretches in which a limb fits its markers badly or lies beyond its ranges, mended or not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from mbkf.errors import InvalidInput
+
+DoubtKind = Literal["turned over", "names exchanged", "fits badly", "beyond its range"]
+"""Another pose fitted; markers had each other's names; or no better pose was found: by the markers, by the ranges."""
+
+
+@dataclass(frozen=True)
+class LimbDoubt:
+    """A stretch of time in which the estimate of a limb was in doubt.
+
+    Attributes:
+        limb: The limb by the first of its segments (``left_thigh``).
+        kind: One of :data:`DoubtKind`.
+        from_s, to_s: Times of its first and its last frame; of a limb that was mended, the frame before the mended one.
+        joint: The segment whose joint lies furthest beyond its range; empty where every joint is within it.
+        beyond_rad: How far, rad.
+        misfit_m: RMS distance of the limb's markers from the body, m.
+        others_m: RMS distance of all other markers, m.
+        mended: The limb was fitted anew, and the frames after ``to_s`` have the better pose.
+        exchanged: Pairs of markers whose names were put right to mend it.
+    """
+
+    limb: str
+    kind: DoubtKind
+    from_s: float
+    to_s: float
+    joint: str = ""
+    beyond_rad: float = 0.0
+    misfit_m: float = 0.0
+    others_m: float = 0.0
+    mended: bool = False
+    exchanged: tuple[tuple[str, str], ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuses an unknown kind.
+
+        Raises:
+            InvalidInput: It is unknown.
+        """
+        if self.kind not in get_args(DoubtKind):
+            raise InvalidInput(f"limb in doubt: unknown kind '{self.kind}'")
+
+    @property
+    def sentence(self) -> str:
+        """The doubt in words: times, evidence, meaning and remedy."""
+        evidence = [f"its markers lie {1e3 * self.misfit_m:.0f} mm (RMS) from the body"]
+        if self.joint:
+            evidence.append(f"{self.joint} is {np.degrees(self.beyond_rad):.0f}° beyond its range")
+        when = f"from {self.from_s:.2f} to {self.to_s:.2f} s"
+        return f"{self.limb} was in doubt {when}: {', '.join(evidence)}; {self._remedy}"
+
+    @property
+    def _remedy(self) -> str:
+        if self.exchanged:
+            pairs = ", ".join(f"{a} and {b}" for a, b in self.exchanged)
+            return f"the names of {pairs} were exchanged and are put right from there on"
+        if self.mended:
+            return "the limb was fitted anew from there on"
+        return "no better pose was found: check the names of its markers and the subject file"
