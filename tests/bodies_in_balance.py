@@ -35,3 +35,11 @@ def unloaded(balance, force_n, first_s=0.0, last_s=np.inf):
     acts = ((t >= first_s) & (t <= last_s))[:, None]
     share = balance.feet_n[..., 2] / balance.feet_n[..., 2].sum(axis=1, keepdims=True)
     return replace(balance, feet_n=balance.feet_n - share[..., None] * (acts * force_n)[:, None])
+
+
+def lagging(balance, frames):
+    """The balance with positions that are so many frames late, as those of a causal filter in quick motion."""
+    late = np.concatenate([balance.centre_m[:1].repeat(frames, axis=0), balance.centre_m])[
+        : len(balance.judged)
+    ]
+    return replace(balance, centre_m=late)

@@ -11,6 +11,7 @@ from benchmarks.checks import Check, Context, information
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.foreign.sets import made_persons
 from benchmarks.loads.judged import clean_rows, judged, violator_rows
+from benchmarks.loads.live import live_rows, streamed
 from benchmarks.loads.trials import clean_trials, violators
 from mbkf.errors import MissingDependency
 
@@ -24,6 +25,7 @@ def run(context: Context) -> list[Check]:
         except MissingDependency as missing:
             rows.append(information(f"persons of our own are left out: {missing}", float("nan")))
     with in_parallel() as mapper:
-        found = mapper(judged, violators(data, context.quick))
-        clean = mapper(judged, clean_trials(data, made, context.quick))
-    return [*rows, *violator_rows(found), *clean_rows(clean)]
+        bad, good = violators(data, context.quick), clean_trials(data, made, context.quick)
+        found, clean = mapper(judged, bad), mapper(judged, good)
+        live = live_rows(mapper(streamed, good), mapper(streamed, bad))
+    return [*rows, *violator_rows(found), *clean_rows(clean), *live]

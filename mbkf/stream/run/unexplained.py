@@ -20,6 +20,10 @@ from mbkf.trial.loads.running import RunningBalance, RunningLoad
 MOST = 100
 """Number of loads that are listed."""
 
+STRAY_SHARE, STRAY_S = 0.05, 0.3
+"""Where plates read so much more than the feet are given, as a share of body weight, for less than this time, a foot is
+on them that is not recognised yet; for longer, something else."""
+
 HINT = "no contact gives it; torques and reactions are not to be used"
 
 
@@ -48,6 +52,7 @@ class LoadWatch:
         self._running = RunningBalance(self._model.mass_kg, rate_hz)
         self._feet = ContactDetector(self._model, inputs.plates, inputs.dt_s) if inputs.plates else None
         self._memory: KeptContact | None = None if self._feet is None else self._feet.begin()
+        self._stray, self._most_stray = 0, round(STRAY_S * rate_hz)
         self._first: int | None = None
         self._loads: list[_Stated] = []
         self._acts, self._unlisted = False, 0
@@ -92,16 +97,23 @@ class LoadWatch:
         found = row[0]
         if self._feet is None or not found["known"]:
             return np.full(3, np.nan), False
-        others = np.nan_to_num(found["support"][:, :3]).sum(axis=0)
         if found["footing"][0] != UNASKED:
-            judged = bool(found["tracked"]) and not (found["footing"] == Contact.UNMEASURED).any()
-            return np.asarray(found["wrench"][:, :3].sum(axis=0) + others), judged
-        assert self._memory is not None
-        decision = self._feet.decide(self._memory, found["q"], found["v"], found["a"], ready.plates)
-        self._memory = decision.memory
-        judged = bool(found["tracked"]) and Contact.UNMEASURED not in decision.contacts
-        wrench = decision.wrench if decision.shared is None else decision.shared.wrench
-        return np.asarray(wrench[:, :3].sum(axis=0) + others), judged
+            on_feet_n, footing = found["wrench"][:, :3].sum(axis=0), tuple(found["footing"])
+        else:
+            assert self._memory is not None
+            decision = self._feet.decide(self._memory, found["q"], found["v"], found["a"], ready.plates)
+            self._memory, footing = decision.memory, decision.contacts
+            wrench = decision.wrench if decision.shared is None else decision.shared.wrench
+            on_feet_n = wrench[:, :3].sum(axis=0)
+        judged = bool(found["tracked"]) and Contact.UNMEASURED not in footing
+        others_n = np.nan_to_num(found["support"][:, :3]).sum(axis=0)
+        return self._with_stray(on_feet_n, np.nan_to_num(ready.plates[:, :3]).sum(axis=0)) + others_n, judged
+
+    def _with_stray(self, on_feet_n: Array, read_n: Array) -> Array:
+        """(3,) force on the feet: that of all plates while one of them has just been loaded by no foot."""
+        stray = read_n[2] - on_feet_n[2] > STRAY_SHARE * self._model.mass_kg * GRAVITY_M_S2
+        self._stray = self._stray + 1 if stray else 0
+        return np.asarray(read_n if 0 < self._stray <= self._most_stray else on_feet_n)
 
     def _listed(self, load: RunningLoad, time_s: float, number: int) -> None:
         """Lists a load, and notes where it begins."""

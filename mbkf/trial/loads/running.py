@@ -1,7 +1,10 @@
-"""Unexplained loads while a motion goes on: the windows of a trial, each ending now.
+"""Unexplained loads while a motion goes on: windows as those of a trial, each ending now.
 
-A force is stated as soon as its mean over one of the windows exceeds the window's limit, and until it is below half of
-all limits. A load above 9 % of body weight is stated within half a second after it begins.
+A causal estimate lags behind in quick motion, so that the missing force swings with the steps of a run, and a window
+that does not hold whole steps reads some of it. The impulse of a load is the same in every window that holds it. So a
+force is stated where the missing impulse exceeds that of a limit in all windows from its duration to half as much
+again: one of these holds whole steps, nearly. A load above 9 % of body weight is stated within half a second after it
+begins, one above 20 % within a third.
 """
 
 from __future__ import annotations
@@ -10,15 +13,32 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array
-from mbkf.trial.loads.balance import BRIDGE_S, GRAVITY, Window
-from mbkf.trial.loads.flags import LIMITS, READ_SHARE
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.trial.loads.balance import BRIDGE_S, GRAVITY, LoadBalance, Window
+from mbkf.trial.loads.flags import LIMITS, READ_SHARE, Limit
+
+RUNNING_LIMITS = (*LIMITS, Limit(0.25, 0.16))
+"""Limits of a trial, and a shorter one of the same impulse as the second: a large load is stated sooner."""
+
+HALF = 1
+"""The limit of half a second among these: its mean force is reported."""
+
+LONGER = (1.0, 1.1, 1.2, 1.3, 1.4, 1.5)
+"""Durations of windows over that of their limit."""
+
+SWINGS = 3.0
+"""A mean force over half a second that is above so many limits is stated, even if it comes and goes with steps: plates
+with another clock, or the wrong foot on a plate."""
 
 RELEASE = 0.5
-"""A force that was stated acts until all means are below this share of their limits."""
+"""A force that was stated acts until all impulses are below this share of their limits, that of one second left out."""
+
+QUIET_S = 0.1
+"""They have to be for so long."""
 
 HELD_S = 1.0
-"""A force that was stated stays so for this long where no plate reads a foot's load."""
+"""A force that was stated stays so for this long where no plate reads a foot's load, if it was stated for longer than
+:data:`~mbkf.trial.loads.balance.BRIDGE_S` before."""
 
 
 class RunningLoad(NamedTuple):
@@ -34,19 +54,28 @@ class RunningLoad(NamedTuple):
     acts: bool
 
 
+UNKNOWN_N = np.full(3, np.nan)
+
+
 class RunningBalance:
     """Takes frames in order, one by one."""
 
     def __init__(self, mass_kg: float, rate_hz: float) -> None:
         """Args: the body's mass, and the frame rate."""
         self._mass_kg, self._weight_n = mass_kg, mass_kg * GRAVITY_M_S2
-        self._windows = [Window.of(limit.duration_s, rate_hz) for limit in LIMITS]
-        self._limits_n = np.array([limit.share for limit in LIMITS]) * self._weight_n
-        self._most = max(len(window) for window in self._windows)
+        windows = [
+            Window.of(longer * limit.duration_s, rate_hz) for limit in RUNNING_LIMITS for longer in LONGER
+        ]
+        self._lengths = np.array([len(window) for window in windows])
+        self._most, self._least = int(self._lengths.max()), int(self._lengths.min())
+        self._by_position = np.array([np.pad(w.by_position, (self._most - len(w), 0)) for w in windows])
+        self._by_force = np.array([np.pad(w.by_force, (self._most - len(w), 0)) for w in windows])
+        limits_n = [limit.share * self._weight_n / longer for limit in RUNNING_LIMITS for longer in LONGER]
+        self._limits_n = np.array(limits_n)[:, None]
         self._kept = np.zeros((4 * self._most, 6))
-        self._first = self._after = 0
-        self._bridged, self._held = round(BRIDGE_S * rate_hz), round(HELD_S * rate_hz)
-        self._unread, self._acts, self._level = 0, False, False
+        self._first = self._after = self._most
+        self._bridged, self._held, self._rest = (round(s * rate_hz) for s in (BRIDGE_S, HELD_S, QUIET_S))
+        self._unread, self._acting, self._quiet, self._level = 0, 0, 0, False
 
     def push(self, centre_m: Array, contacts_n: Array, judged: bool) -> RunningLoad:
         """The next frame.
@@ -60,34 +89,63 @@ class RunningBalance:
         self._unread = 0 if judged else self._unread + 1
         if not np.isfinite(frame).all() or self._unread > self._bridged:
             self._first = self._after
-            self._acts = self._acts and self._unread <= self._held
-            return RunningLoad(np.full(3, np.nan), self._acts)
+            # A foot that comes down beside its plate lacks its load before it is seen to stand there.
+            return self._stated(UNKNOWN_N, self._unread <= self._held and self._acting > 2 * self._bridged)
         self._level = self._level or bool(np.abs(contacts_n[:2]).max() > READ_SHARE * self._weight_n)
         self._keep(frame)
-        known = [
-            self._missing(window) for window in self._windows if len(window) <= self._after - self._first
-        ]
-        if not known:
-            return RunningLoad(np.full(3, np.nan), self._acts)
-        sizes = np.abs(known)[:, slice(None) if self._level else slice(2, None)].max(axis=1)
-        limits = self._limits_n[-len(known) :]
-        self._acts = bool((sizes > (RELEASE if self._acts else 1.0) * limits).any())
-        return RunningLoad(known[-1], self._acts)
+        if self._after - self._first < self._least:
+            return self._stated(UNKNOWN_N, self._acting > 0)
+        return self._judged(judged)
 
     def cut(self) -> None:
         """Begins anew after a gap or a restart of the filter."""
         self._first = self._after
 
+    def _judged(self, new: bool) -> RunningLoad:
+        """The frame that was kept last; a force is stated anew only if ``new``."""
+        missing_n, fits = self._missing()
+        axes = slice(None) if self._level else slice(2, None)
+        shares = (missing_n[:, axes] / self._limits_n).reshape(len(RUNNING_LIMITS), len(LONGER), -1)
+        # Share of each limit that all of its windows exceed in one direction.
+        whole = np.maximum(shares.min(axis=1), -shares.max(axis=1)).max(axis=1)
+        swing = float(np.abs(shares[HALF, 0]).max())
+        goes_on = whole[HALF:].max() > RELEASE or swing > RELEASE * SWINGS
+        begins = new and goes_on and (whole.max() > 1.0 or swing > SWINGS)
+        half = HALF * len(LONGER)
+        self._quiet = 0 if goes_on or not fits[half] else self._quiet + 1
+        return self._stated(
+            missing_n[half] if fits[half] else UNKNOWN_N,
+            bool(begins or (self._acting > 0 and self._quiet <= self._rest)),
+        )
+
+    def _stated(self, force_n: Array, acts: bool) -> RunningLoad:
+        self._acting = self._acting + 1 if acts else 0
+        return RunningLoad(force_n, acts)
+
     def _keep(self, frame: Array) -> None:
         if self._after == len(self._kept):
             held = min(self._after - self._first, self._most)
-            self._kept[:held] = self._kept[self._after - held : self._after]
-            self._first, self._after = 0, held
+            self._kept[: self._most] = self._kept[self._after - self._most :]
+            self._first, self._after = self._most - held, self._most
         self._kept[self._after] = frame
         self._after += 1
 
-    def _missing(self, window: Window) -> Array:
-        """(3,) mean force over the window that ends now."""
-        held = self._kept[self._after - len(window) : self._after]
-        required = window.by_position @ held[:, :3] - GRAVITY
-        return np.asarray(self._mass_kg * required - window.by_force @ held[:, 3:])
+    def _missing(self) -> tuple[Array, BoolArray]:
+        """(w, 3) mean forces over all windows that end now, 0 over those (w,) that the frames kept do not fill."""
+        held = self._kept[self._after - self._most : self._after]
+        fits = self._lengths <= self._after - self._first
+        required = self._by_position @ held[:, :3] - GRAVITY
+        missing_n = self._mass_kg * required - self._by_force @ held[:, 3:]
+        return np.where(fits[:, None], missing_n, 0.0), fits
+
+
+def stated_frames(balance: LoadBalance) -> BoolArray:
+    """(T,) frames of a trial in which a live run would state a force.
+
+    Args:
+        balance: Positions and contacts of the trial.
+    """
+    running = RunningBalance(balance.mass_kg, balance.rate_hz)
+    centre_m = np.where(balance.judged[:, None], balance.centre_m, np.nan)
+    frames = zip(centre_m, balance.feet_n.sum(axis=1) + balance.others_n, balance.judged, strict=True)
+    return np.array([running.push(*frame).acts for frame in frames], dtype=bool)

@@ -13,6 +13,7 @@ from mbkf.numerics.runs import runs
 from mbkf.trial.loads.balance import LoadBalance
 from mbkf.trial.loads.causes import Found, causes
 from mbkf.trial.loads.flags import LIMITS, Contradictions
+from mbkf.trial.loads.running import stated_frames
 
 SPEED_SD_M_S, SCALE_SHARE = 0.03, 0.01
 """Standard deviations of the speed of the centre of mass from markers, and of plates' and body's weight. Clean trials
@@ -35,7 +36,7 @@ class Unexplained:
 
 
 def unexplained_loads(
-    balance: LoadBalance, times_s: Array, known: Sequence[UnexplainedLoad] = ()
+    balance: LoadBalance, times_s: Array, known: Sequence[UnexplainedLoad] = (), causal: bool = False
 ) -> Unexplained:
     """Forces that the contacts of a trial do not explain.
 
@@ -43,6 +44,8 @@ def unexplained_loads(
         balance: Positions and contacts.
         times_s: (T,) times of the frames.
         known: Forces judged before; one at the same time keeps its cause.
+        causal: The positions are those of a filter that knows no later frames, and lag behind in quick motion: a force
+            is stated only where a live run states one, too.
     """
     trial = Contradictions(balance)
     half = trial.windows[-1]
@@ -50,6 +53,9 @@ def unexplained_loads(
     if not trial.exceeded(trial.missing):
         return Unexplained(force_n, np.zeros(len(times_s), dtype=bool), ())
     stretches = _stretches(trial)
+    if causal:
+        late, stated = round(LIMITS[-1].duration_s * balance.rate_hz), stated_frames(balance)
+        stretches = [(first, after) for first, after in stretches if stated[first : after + late].any()]
     acts = np.zeros(len(times_s), dtype=bool)
     for first, after in stretches:
         acts[first:after] = True

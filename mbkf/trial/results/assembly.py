@@ -71,7 +71,7 @@ def assemble(
     known = torques_known(model, motion.coordinate_names, moments.moments_sd, source, bears)
     known &= torques_possible(torques.tau, ROOT_DOFS, model.mass_kg)
     balance = balance_of(model, result, measured.rate_hz, ground)
-    judged = unexplained_loads(balance, times_s, inputs.contradictions)
+    judged = unexplained_loads(balance, times_s, inputs.contradictions, causal=not result.smoothed)
     instrument = "marker" if measured.names else "sensor"
     of_track = track_warnings(result, motion.dof_names, inputs.unobservable, instrument)
     return Reconstruction.of(

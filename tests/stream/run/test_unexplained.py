@@ -33,16 +33,17 @@ class Standing:
         self.unseen = np.full((len(live.names), 3), np.nan)
         self.q, self.number = live.inputs.sensor.model.neutral(), 0
 
-    def frames(self, count, share, footing=(1, 1)):
-        """The judgements of so many frames."""
-        found = []
+    def frames(self, count, share, footing=(1, 1), read=0.0):
+        """The judgements of so many frames, in which plates read a share of the weight, too."""
+        found, plates = [], np.zeros((2, 6))
+        plates[1, 2] = read * self.weight_n
         for _ in range(count):
             row, _ = self.rows.row(self.number, self.unseen, None, 0.0)
             row["known"] = row["tracked"] = True
             row["q"], row["footing"], row["wrench"] = self.q, footing, 0.0
             row["v"] = row["a"] = 0.0
             row["wrench"][0, 0, 2] = share * self.weight_n
-            ready = ReadyFrame(self.number + 7, 0.0, self.unseen, np.zeros((0, 3)), np.zeros((2, 6)))
+            ready = ReadyFrame(self.number + 7, 0.0, self.unseen, np.zeros((0, 3)), plates)
             found.append(self.watch.push(ready, row))
             self.number += 1
         return found
@@ -69,6 +70,16 @@ def test_a_foot_beside_the_plates_is_not_judged(stream, subject):
     found = standing.frames(100, 0.4, footing=(1, -1))
     assert all(np.isnan(one.force_n).all() and not one.acts for one in found)
     assert standing.watch.plain() == [] and standing.notes == []
+
+
+def test_a_plate_that_has_just_been_stepped_on_counts_before_a_foot_is_recognised_there(stream, subject):
+    """For a third of a second: then something else lies on it."""
+    standing = Standing(stream, subject)
+    standing.frames(100, 1.0)
+    stepping = standing.frames(30, 0.1, read=1.0)
+    assert not any(one.acts for one in stepping)
+    assert not any(one.acts for one in standing.frames(100, 1.0))
+    assert standing.frames(60, 0.1, read=1.0)[-1].acts
 
 
 def test_a_filter_that_estimates_no_wrench_is_judged_by_the_plates(stream, subject):

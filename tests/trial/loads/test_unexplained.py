@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.trial.loads.unexplained import unexplained_loads
-from tests.bodies_in_balance import UP, WEIGHT_N, moving, times_of, unloaded
+from tests.bodies_in_balance import UP, WEIGHT_N, lagging, moving, times_of, unloaded
 from tests.motions import assert_near
 
 
@@ -59,3 +59,17 @@ def test_frames_whose_contacts_are_not_read_say_nothing():
     balance = unloaded(moving(), 0.8 * WEIGHT_N * UP, 1.5, 4.0)
     found = found_in(replace(balance, judged=np.zeros_like(balance.judged)))
     assert found.loads == () and not found.acts.any() and np.isnan(found.force_n).all()
+
+
+def test_causal_positions_that_lag_behind_in_a_run_are_no_load():
+    run = lagging(moving(8.0, 3.0, 0.045), 2)
+    assert found_in(run).acts.any()
+    found = unexplained_loads(run, times_of(run), causal=True)
+    assert found.loads == () and not found.acts.any()
+    assert_near(found.force_n, found_in(run).force_n, 0.0)
+
+
+def test_causal_results_keep_the_load_that_a_live_run_states():
+    seated = unloaded(moving(6.0), 0.8 * WEIGHT_N * UP, 1.5, 4.0)
+    found, causal = found_in(seated), unexplained_loads(seated, times_of(seated), causal=True)
+    assert causal.loads == found.loads and (causal.acts == found.acts).all()
