@@ -35,6 +35,7 @@ def _faults(body: BodyDescription) -> Iterator[str]:
     yield from _masses(body)
     yield from _clinical(body)
     yield from _sole(body)
+    yield from _levels(body)
     for shape in body.shapes:
         yield from (f"shape of {shape}: {fault}" for fault in _shape(body, shape))
 
@@ -119,6 +120,16 @@ def _clinical(body: BodyDescription) -> Iterator[str]:
         along = sorted(angle.axis for angle in joint.translations)
         if along != (["x", "y", "z"] if segment.parent == "world" else []):
             yield f"{where}: the root, and no other joint, has translations along x, y and z"
+
+
+def _levels(body: BodyDescription) -> Iterator[str]:
+    root = body.segments[0]
+    for level in body.levels:
+        if not 0.0 <= level.part_mass_kg < root.mass_kg:
+            yield (
+                f"level {level.name}: part_mass_kg is a part of the {root.mass_kg:g} kg of {root.name}, "
+                f"not {level.part_mass_kg:g} kg"
+            )
 
 
 def _sole(body: BodyDescription) -> Iterator[str]:

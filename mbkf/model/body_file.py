@@ -1,7 +1,7 @@
 """Reference bodies from files: those that come with mbkf, and a user's own.
 
 A body file is TOML; ``models/human18.toml`` shows every entry: segments and joints, inertias, scale factors,
-landmarks, the sole, roles, clinical coordinates, shapes, skin.
+landmarks, the sole, roles, clinical coordinates, shapes, skin, levels of the spine.
 
 The masses of the segments sum to the reference person's: Newton's law for the whole body relates the ground reactions
 to the movement of all of its mass. A body of the legs alone therefore carries head, arms and trunk as part of its
@@ -34,6 +34,7 @@ from mbkf.model.description import (
 )
 from mbkf.model.sides import mirrored
 from mbkf.model.spread_tables import joint_centres, segment_skin
+from mbkf.model.trunk_levels import trunk_levels
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
@@ -49,7 +50,7 @@ _ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title", "zero_sd_
 KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
-        "landmark", "sole", "clinical_joint", "shape", "bearing", "joint_centre", "skin",
+        "landmark", "sole", "clinical_joint", "shape", "bearing", "joint_centre", "skin", "level",
     ),
     "segment": _SEGMENT_KEYS,
     "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
@@ -64,6 +65,9 @@ KNOWN = {
     "bearing": ("name", "segment", "position_m", "radius_m", "lever_m"),
     "joint_centre": ("segment", "sd_mm"),
     "skin": ("segment", "flexions", "common_mm", "own_mm"),
+    "level": (
+        "name", "above", "position_m", "sd_mm", "part_mass_kg", "part_com_m", "part_inertia_kg_m2", "opensim",
+    ),
 }  # fmt: skip
 """Entries of a body's file."""
 
@@ -151,6 +155,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         bearings=_bearings(table.get("bearing", []), segments, path),
         joint_centres=joint_centres(table.get("joint_centre", []), names, path),
         skin=segment_skin(table.get("skin", []), names, path),
+        levels=trunk_levels(table.get("level", []), segments, path),
         text=kept,
     )
 

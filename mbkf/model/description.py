@@ -181,6 +181,38 @@ class JointCentre:
     sd_m: Array
 
 
+@dataclass(frozen=True)
+class TrunkLevel:
+    """A level of the spine inside the root segment, at which the trunk's net moment is stated.
+
+    The section cuts the root segment: its part above the level counts with the trunk and moves with the root.
+
+    Attributes:
+        name: Its name, e.g. "L5/S1".
+        above: The segment that all segments above the level hang on; its spherical joint hangs on the root.
+        position_m: (3,) middle of the section in the root's frame; None at the joint of the segment above.
+        sd_m: (3,) spread of that place among persons.
+        part_mass_kg: Mass of the root segment's part above the level; 0 without one.
+        part_com_m: (3,) its centre of mass in the root's frame.
+        part_inertia_kg_m2: (3,) its principal moments about that.
+        opensim: OpenSim's name of the coordinates of a joint at that level, e.g. "lumbar"; "" where it has none.
+    """
+
+    name: str
+    above: str
+    position_m: Array | None
+    sd_m: Array
+    part_mass_kg: float
+    part_com_m: Array
+    part_inertia_kg_m2: Array
+    opensim: str
+
+    @property
+    def column(self) -> str:
+        """Beginning of its columns in tables: OpenSim's name, else its own, e.g. "l5_s1"."""
+        return self.opensim or self.name.replace("/", "_").lower()
+
+
 @dataclass(frozen=True, eq=False)
 class BodyDescription:
     """A reference body; equal to itself only, so that results for it can be cached.
@@ -199,6 +231,7 @@ class BodyDescription:
         bearings: Parts that may bear load besides the feet, by name.
         joint_centres: Joint centres that differ from the scale factors' by a spread.
         skin: Movement of the skin, by segment; that of other segments does not depend on the posture.
+        levels: Levels of the spine at which the trunk's net moment is stated, from the highest one down.
         text: The file it was read from, word for word; "" for the bodies that come with mbkf.
     """
 
@@ -215,6 +248,7 @@ class BodyDescription:
     bearings: dict[str, Bearing]
     joint_centres: tuple[JointCentre, ...]
     skin: dict[str, SegmentSkin]
+    levels: tuple[TrunkLevel, ...] = ()
     text: str = ""
 
     @property

@@ -7,6 +7,7 @@ Pinocchio: J. Carpentier et al., IEEE/SICE Int. Symp. System Integration 2019, 6
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -139,6 +140,16 @@ class HumanModel(Body):
                 f"of the {model.nq} of the body '{body.name}'; scale the person again"
             )
         return model
+
+    def with_inertias(self, inertias: Sequence[pin.Inertia]) -> HumanModel:
+        """The same body with other inertias, by joint (index 0 is the world)."""
+        other = copy.copy(self)
+        for kept in ("_data", "_frames"):
+            other.__dict__.pop(kept, None)
+        other.pin_model, other._tree = pin.Model(self.pin_model), None
+        for joint, inertia in enumerate(inertias):
+            other.pin_model.inertias[joint] = inertia
+        return other
 
     @cached_property
     def _data(self) -> pin.Data:

@@ -1,0 +1,184 @@
+"""Net moment of the trunk at levels of the spine: the wrench through a section of the root segment.
+
+A section parts the body. The wrench by the lower part on the upper one follows from the motion of the upper part and
+the loads on it (top-down), or from the motion of the lower part and the loads on it (bottom-up). Both are
+Newton–Euler's equations of one part. The root's six equations are linear in the segments' inertias: with W the upper
+part's and r the whole body's, the residual,
+
+    top-down: W,    bottom-up: W − r.
+
+About the section's middle p the moment is m − p × f. It is given in the axes of the segment above, as a torque of its
+joint is. The root segment's part above the level moves with the root.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+
+from mbkf.conventions import Array
+from mbkf.model.body import Body
+from mbkf.model.description import TrunkLevel
+from mbkf.model.human import HumanModel
+from mbkf.model.newton_euler import ROOT, NewtonEuler
+from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.rotations import skew
+
+WAYS = ("top_down", "bottom_up")
+"""Ways to the moment, in the order of every array's axis."""
+
+
+@dataclass(frozen=True)
+class SectionState:
+    """Loads at the levels with their derivatives.
+
+    Attributes:
+        wrench: (2, L, 6) wrench on the upper part by way and level, about the root's origin in its axes, N and N m.
+        moment: (2, L, 3) moment about the level, axes of the segment above, N m.
+        by_state: (2, L, 3, N) derivative of the moment by q (in the tangent space), v, a and the feet's wrenches.
+        by_root: (L, 3, 6) moment about the level, axes of the segment above, by a wrench about the root's origin in its
+            axes.
+    """
+
+    wrench: Array
+    moment: Array
+    by_state: Array
+    by_root: Array
+
+
+class TrunkSections:
+    """Sections of a body at its levels, L of them; none where the body is no :class:`HumanModel`.
+
+    Attributes:
+        levels: The levels.
+        names: Their names.
+        places_m: (L, 3) their middles in the root's frame.
+    """
+
+    def __init__(self, model: Body) -> None:
+        self._model = model
+        self.levels = model.description.levels if isinstance(model, HumanModel) else ()
+        self.names = tuple(level.name for level in self.levels)
+        scale = model.axis_scale(model.description.segments[0])
+        joints = model.pin_model.jointPlacements
+        self.places_m = np.array(
+            [
+                joints[model.joint(level.above).joint_id].translation
+                if level.position_m is None
+                else scale * level.position_m
+                for level in self.levels
+            ]
+        ).reshape(-1, 3)
+        self._transport = [np.hstack([-skew(place), np.eye(3)]) for place in self.places_m]
+
+    @cached_property
+    def _upper(self) -> list[NewtonEuler]:
+        """Newton–Euler's equations of the part above each level."""
+        model = self._model
+        assert isinstance(model, HumanModel)
+        found = []
+        for k, level in enumerate(self.levels):
+            whole, joints = model.pin_model.inertias, self.joints_above(level)
+            kept = [one if j in joints else pin.Inertia.Zero() for j, one in enumerate(whole)]
+            kept[model.root.joint_id] = self.part(k)
+            found.append(NewtonEuler(model.with_inertias(kept)))
+        return found
+
+    def joints_above(self, level: TrunkLevel) -> set[int]:
+        """Joints whose segments hang on the segment above a level, that one's included."""
+        supports = self._model.supports
+        of_trunk = self._model.joint(level.above).v.start
+        return {int(j) for j in np.flatnonzero(supports[:, of_trunk])}
+
+    def bears_above(self, level: TrunkLevel) -> list[bool]:
+        """Of each of the body's bearings, whether it is a part above a level."""
+        joints = self.joints_above(level)
+        parts = self._model.description.bearings.values()
+        return [self._model.joint(part.segment).joint_id in joints for part in parts]
+
+    def part(self, k: int) -> pin.Inertia:
+        """The root segment's part above the k-th level, scaled to the person as the whole segment is."""
+        model, level = self._model, self.levels[k]
+        segment = model.description.segments[0]
+        k_m = model.pin_model.inertias[model.root.joint_id].mass / segment.mass_kg
+        size = model.scale[segment.length_index]
+        inertia = np.diag(k_m * size**2 * level.part_inertia_kg_m2)
+        return pin.Inertia(k_m * level.part_mass_kg, model.axis_scale(segment) * level.part_com_m, inertia)
+
+    def upper_wrenches(self, q: Array, v: Array, a: Array) -> list[Array]:
+        """(6,) wrench on the part above each level without loads on it, generalised forces of the root.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+        """
+        feet = np.zeros(2 * ROOT)
+        return [upper.tau(q, v, a, feet)[:ROOT].copy() for upper in self._upper]
+
+    def moments(self, q: Array, v: Array, a: Array, carried: Array, residual: Array) -> Array:
+        """(2, L, 3) moments about the levels by way, axes of the segment above, N m.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            carried: (L, 6) wrench of all loads on the part above each level about the world's origin.
+            residual: (6,) the root's residual, generalised forces in its axes.
+        """
+        J = self._model.spatial_jacobian(q)[:, :ROOT]
+        found = np.empty((len(WAYS), len(self.levels), 3))
+        upper = self.upper_wrenches(q, v, a)
+        for k, turned in enumerate(self.by_root(q)):
+            wrench = upper[k] - carried[k] @ J
+            found[:, k] = turned @ wrench, turned @ (wrench - residual)
+        return found
+
+    def state(
+        self, q: Array, v: Array, a: Array, carried: Array, residual: Array, by_state: Array
+    ) -> SectionState:
+        """Loads at the levels with their derivatives.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            carried: (L, 6) wrench of all loads on the part above each level about the world's origin.
+            residual: (6,) the root's residual, generalised forces in its axes.
+            by_state: (6, N) derivative of the residual.
+        """
+        count = len(self.levels)
+        wrenches, moment = np.empty((len(WAYS), count, ROOT)), np.empty((len(WAYS), count, 3))
+        rows = np.zeros((len(WAYS), count, 3, by_state.shape[1]))
+        by_root = self.by_root(q)
+        for k, turned in enumerate(by_root):
+            upper = self._upper[k].root(q, v, a, np.concatenate([carried[k], np.zeros(ROOT)]))
+            upper_rows = np.zeros(by_state.shape)
+            loads = 3 * self._model.nv  # the feet are below
+            upper_rows[:, :loads] = upper.by_state[:, :loads]
+            above = self._model.joint(self.levels[k].above).v
+            for way, (wrench, slope) in enumerate(
+                ((upper.residual, upper_rows), (upper.residual - residual, upper_rows - by_state))
+            ):
+                wrenches[way, k], moment[way, k] = wrench, turned @ wrench
+                rows[way, k] = turned @ slope
+                # axes of the segment above turn with its joint
+                rows[way, k][:, above] += skew(moment[way, k])
+        return SectionState(wrenches, moment, rows, by_root)
+
+    def by_root(self, q: Array) -> Array:
+        """(L, 3, 6) moments about the levels, axes of the segment above, by a wrench about the root's origin.
+
+        Args:
+            q: (nq,) configuration.
+        """
+        turns = {
+            name: quaternion_matrices(q[None, self._model.joint(name).q])[0]
+            for name in {level.above for level in self.levels}
+        }
+        return np.array(
+            [turns[level.above].T @ X for level, X in zip(self.levels, self._transport, strict=True)]
+        )
