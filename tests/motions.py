@@ -164,7 +164,7 @@ def track_of(q, v, a, **known):
     fields = {
         name: np.zeros(shape_of(one.axes, sizes), one.dtype)
         for name, one in quantities(Track).items()
-        if name not in ("q", "v", "a", "foot_contact", "covariance")
+        if name not in ("q", "v", "a", "foot_contact", "covariance", "level_sd", "level_offset")
     }
     for name in ("wrench", "wrench_sd", "support", "support_sd"):
         fields[name][:] = np.nan

@@ -25,6 +25,7 @@ TITLES = {
     "Moments": "moments",
     "Reactions": "feet",
     "SupportLoads": "other parts that may bear load",
+    "TrunkMoments": "moments of the trunk",
     "Quality": "frames that count",
 }
 """Headings of the groups."""

@@ -16,7 +16,7 @@ All is kept as B = (∂·/∂p) L, so that a covariance is B Bᵀ.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.filters.inertia_errors import InertiaErrors
 from mbkf.filters.pose_errors import PoseErrors
+from mbkf.filters.section_errors import SectionErrors
 from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
@@ -67,12 +68,22 @@ class BodyErrorRoots:
         velocity: Of the velocity.
         torque: (nv, r + k) of the generalised forces.
         wrench: (12, r + k) of the feet's wrenches; 0 for a foot whose plate reads it.
+        sections: Works out :attr:`level`; None where it is not known.
     """
 
     position: Array
     velocity: Array
     torque: Array
     wrench: Array
+    sections: Callable[[], Array] | None = field(default=None, repr=False, compare=False)
+
+    @cached_property
+    def level_variance(self) -> Array | None:
+        """(2, L, 3) of the trunk's moments by way and level; None where they are not known."""
+        if self.sections is None:
+            return None
+        root = self.sections()
+        return np.asarray(np.einsum("wlij,wlij->wli", root, root))
 
     @cached_property
     def position_variance(self) -> Array:
@@ -138,6 +149,11 @@ class BodyErrors:
         self._varied = [NewtonEuler(one) for one in _varied(model, directions)]
         self._inertia = InertiaErrors(model)
 
+    @cached_property
+    def _sections(self) -> SectionErrors:
+        varied = [balance.model for balance in self._varied]
+        return SectionErrors(self._model, varied, self._along / SIZE_STEP, self._inertia)
+
     def _directions(self) -> Array:
         """(r, n) orthonormal directions of L's columns in which nearly all of every dof's variance lies."""
         model, rng = self._model, np.random.default_rng(0)
@@ -193,13 +209,21 @@ class BodyErrors:
         rate = (turned - np.eye(model.nv)) / TURN_S
         loads = np.nan_to_num(wrenches).ravel()
         balance = self._balance.torques(q, v, a, loads)
+        residual, residual_slope = balance.tau[:ROOT].copy(), balance.by_state[:ROOT].copy()
         # The acceleration errs by (around₀ − 2 here + around₁) / h² + rate @ velocity.
         by_q, by_v = balance.by_q - (2.0 / h**2) * balance.by_a, balance.by_v + balance.by_a @ rate
         torque = by_q @ here + by_v @ velocity + balance.by_a @ ((around[0] + around[1]) / h**2)
         torque += self._own_torques(q, v, a, loads, balance)
         torque = np.hstack([torque, self._inertia.at(q, v, a)])
         wrench = self._unread(balance, torque[:ROOT], loads, contact)
-        return BodyErrorRoots(here, velocity, torque + balance.by_wrench @ wrench, wrench)
+        torque += balance.by_wrench @ wrench
+
+        def sections() -> Array:
+            acceleration = (around[0] - 2.0 * here + around[1]) / h**2 + rate @ velocity
+            motion = np.vstack([here, velocity, acceleration])
+            return self._sections.at((q, v, a), motion, torque[:ROOT], (residual, residual_slope))
+
+        return BodyErrorRoots(here, velocity, torque, wrench, sections)
 
     def _own_torques(self, q: Array, v: Array, a: Array, loads: Array, balance: JointTorques) -> Array:
         """(nv, r) of the generalised forces by factors and joint centres themselves, at a motion that is known.

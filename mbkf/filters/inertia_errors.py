@@ -68,4 +68,8 @@ class InertiaErrors:
             v: (nv,) velocity.
             a: (nv,) acceleration.
         """
-        return np.asarray(pin.computeJointTorqueRegressor(self._model, self._data, q, v, a) @ self.root)
+        return self.regressor(q, v, a) @ self.root
+
+    def regressor(self, q: Array, v: Array, a: Array) -> Array:
+        """(nv, 10 J) Y of a motion. Args: as for :meth:`at`."""
+        return np.asarray(pin.computeJointTorqueRegressor(self._model, self._data, q, v, a))

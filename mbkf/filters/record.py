@@ -162,6 +162,7 @@ class FrameRecorder:
         markers: int,
         body: BodyErrors | None = None,
         asked: Collection[str] = ASKED,
+        levels: bool = False,
     ) -> None:
         """Makes it.
 
@@ -170,13 +171,16 @@ class FrameRecorder:
             markers: Number of markers.
             body: What estimates err by because the person's body is not known exactly; None where that is not known.
             asked: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are stated; others are NaN.
+            levels: With torques, state those of the trunk's moments at the body's levels, too.
         """
         self.filter, self._body = filter, HeldErrors(body, filter.dt_s)
         self._asks_torques, self._asks_angles = (name in asked for name in ASKED)
+        self._asks_levels = levels and self._asks_torques
         model = filter.model
         sizes = {"marker": markers, "configuration": model.nq, "dof": model.nv}
         sizes |= {"coordinate": len(filter.clinical.names), "ball": len(filter.clinical.ball_turns)}
         sizes["part"] = len(model.description.bearings)
+        sizes["level"] = len(model.description.levels)
         self.dtype = record_dtype(sizes)
         self._empty = blank(self.dtype, 1).view(
             np.uint8
@@ -222,12 +226,23 @@ class FrameRecorder:
         row["support"] = np.nan if posterior.support is None else posterior.support
         row["support_sd"] = self.filter.support_sd(posterior)
         by_body = self._body.of(int(row["number"][0]), posterior)
+        if self._asks_levels:
+            self._levels(row, self.filter.level_variance(posterior), by_body())
         spread = replace(self.filter.spread(posterior, self._asks_torques), body=by_body())
         for field, name in (SPREAD_AT_ONCE | (TORQUE_SPREAD if self._asks_torques else {})).items():
             row[field] = getattr(spread, name)
         offset = spread.wrench_offset
         row["wrench_offset"], row["wrench_sd"] = offset, np.hypot(self.filter.wrench_sd(posterior), offset)
         return spread
+
+    @staticmethod
+    def _levels(row: NDArray, variance: Array | None, body: BodyErrorRoots | None) -> None:
+        """Standard deviations of the trunk's moments, by the filter and by the body."""
+        if variance is None:
+            return
+        offset = None if body is None else body.level_variance
+        offset = np.zeros(variance.shape) if offset is None else offset
+        row["level_sd"], row["level_offset"] = np.sqrt(np.maximum(variance, 0.0) + offset), np.sqrt(offset)
 
     def innovation(self, row: NDArray, posterior: Posterior) -> None:
         """Innovations of the frame."""

@@ -91,6 +91,10 @@ class StateReport(ABC, Generic[StateT]):
         motion, P = self.kalman.layout.motion, estimate.record.state.P
         return np.asarray(P[motion, motion])
 
+    def level_variance(self, estimate: Posterior) -> Array | None:
+        """(2, L, 3) variances of the trunk's moments at the body's levels by way; None where the filter has none."""
+        return None
+
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""
         return NO_WRENCH

@@ -49,7 +49,8 @@ def track(
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads), len(recording)
+    recorder = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads, levels=True)
+    frames = len(recording)
     changes = None if body is None else OffsetChanges(body, filter.clinical, filter.dt_s)
     rows = blank(recorder.dtype, frames)
     rows["number"] = np.arange(frames)

@@ -47,7 +47,7 @@ class TrackingFilter:
         model: The body; ``clinical``: its clinical coordinates.
         dt_s: Time between frames.
         restart_after_s: Time without enough readings after which the filter starts anew.
-        covariance, spread, wrench_sd, support_sd, smooth, predict: Methods of the report.
+        covariance, spread, wrench_sd, support_sd, level_variance, smooth, predict: Methods of the report.
     """
 
     def __init__(self, report: AnyReport, start: Start) -> None:
@@ -56,6 +56,7 @@ class TrackingFilter:
         self.restart_after_s, self._start, self._placed = start.restart_after_s, start, start.placed
         self.covariance, self.spread, self.smooth = report.covariance, report.spread, report.smooth
         self.wrench_sd, self.support_sd, self.predict = report.wrench_sd, report.support_sd, report.predict
+        self.level_variance = report.level_variance
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """An estimate at a frame that already knows its velocity.

@@ -44,6 +44,9 @@ AXES: Mapping[str, Axis] = {
     "kind": Axis("4", "kinds of readings", "reading_kind", READING_KINDS),
     "state": Axis("2n_v", "configuration and velocity in the tangent space"),
     "ball": Axis("N", "joints with three angles"),
+    "level": Axis("L", "levels of the spine", "level_names"),
+    "way": Axis("2", "from the part above the level, or below it", "way", ("top_down", "bottom_up")),
+    "turn": Axis("3", "axes of the trunk's coordinates", "turn", ("extension", "bending", "rotation")),
     "unknown": Axis("n", "scale factors and places of markers on the body", "subject_unknown"),
     "source": Axis("n", "independent sources of these", "subject_source"),
 }

@@ -18,6 +18,7 @@ from mbkf.io.dimensions import (
     CONFIGURATION,
     FORCE,
     METRE,
+    NEWTON_METRE,
     ONE,
     RATE,
     SECOND,
@@ -125,6 +126,13 @@ class TrackEstimates(Estimates):
     torque_sd: Array = quantity("time dof", FORCE, "of the generalised forces; NaN where not known")
     torque_offset: Array = offset("torque_sd")
     torque_change: Array = change("torque_sd", written=False)
+    level_sd: Array | None = quantity(
+        "time way level xyz",
+        NEWTON_METRE,
+        "of the trunk's moments at levels of the spine, axes of the trunk; NaN where not known",
+        None,
+    )
+    level_offset: Array | None = offset("level_sd")
     ball_covariance: Array = quantity(
         "time ball xyz xyz",
         Unit("rad^2"),

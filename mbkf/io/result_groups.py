@@ -186,6 +186,27 @@ class SupportLoads:
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class TrunkMoments:
+    """Net moments of the trunk at levels of the spine; no levels (L = 0) of a body without them."""
+
+    level_names: tuple[str, ...] = texts("levels of the spine, from the highest one down", (), axis="level")
+    level_columns: tuple[str, ...] = texts(
+        "beginning of the levels' columns in tables; that of a level at which OpenSim has a joint is OpenSim's",
+        (),
+    )
+    trunk_moments: Array | None = quantity(
+        "time way level turn",
+        NEWTON_METRE,
+        "net moment of the part below the level on the part above it, about its middle, conjugate to the trunk's "
+        "coordinates; bottom-up NaN where a load on the part below is not measured",
+        None,
+        section="trunk-levels",
+    )
+    trunk_moments_sd: Array | None = spread("trunk_moments", None)
+    trunk_moments_sd_offset: Array | None = offset("trunk_moments_sd")
+
+
 def _unexplained(text: str) -> tuple[UnexplainedLoad, ...]:
     return tuple(UnexplainedLoad(**{**one, "vector_n": tuple(one["vector_n"])}) for one in json.loads(text))
 
@@ -263,5 +284,16 @@ class Provenance:
     warnings: tuple[str, ...] = texts("remarks for the reader", ())
 
 
-GROUPS = (Provenance, Measurements, Estimates, Motion, Torques, Moments, Reactions, SupportLoads, Quality)
+GROUPS = (
+    Provenance,
+    Measurements,
+    Estimates,
+    Motion,
+    Torques,
+    Moments,
+    Reactions,
+    SupportLoads,
+    TrunkMoments,
+    Quality,
+)
 """The records that make a result, in the order of the page on files."""

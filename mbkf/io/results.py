@@ -15,6 +15,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.io.contacts import FEET, ContactInterval, Loads, Source, bearing
+from mbkf.io.dimensions import AXES
 from mbkf.io.estimates import Estimates
 from mbkf.io.quantities import check, quantities
 from mbkf.io.result_groups import (
@@ -27,9 +28,21 @@ from mbkf.io.result_groups import (
     Reactions,
     SupportLoads,
     Torques,
+    TrunkMoments,
 )
 
-Part = Provenance | Measurements | Estimates | Motion | Torques | Moments | Reactions | SupportLoads | Quality
+Part = (
+    Provenance
+    | Measurements
+    | Estimates
+    | Motion
+    | Torques
+    | Moments
+    | Reactions
+    | SupportLoads
+    | TrunkMoments
+    | Quality
+)
 
 SdPart = Literal["total", "offset", "change", "varying"]
 """Part of a standard deviation.
@@ -49,7 +62,16 @@ SMOOTHED, CAUSAL = "smoothed (all later frames known)", "causal (as live)"
 
 @dataclass(frozen=True, kw_only=True)
 class Reconstruction(
-    Quality, SupportLoads, Reactions, Moments, Torques, Motion, Estimates, Measurements, Provenance
+    Quality,
+    TrunkMoments,
+    SupportLoads,
+    Reactions,
+    Moments,
+    Torques,
+    Motion,
+    Estimates,
+    Measurements,
+    Provenance,
 ):
     """Result of a filter on one trial: the quantities of its parts (:mod:`mbkf.io.result_groups`).
 
@@ -171,6 +193,30 @@ class Reconstruction(
         known = same.get(part, part)
         return np.asarray(spread(self.moment_sd(name, known), self.angle_rate_sd(name, known)))
 
+    def trunk_moment(self, level: str, turn: str = "extension", way: str = "top_down") -> Array:
+        """(T,) net moment of the trunk at a level of the spine, N m; NaN in results that lack it.
+
+        Args:
+            level: The level, e.g. "L5/S1" (``level_names``).
+            turn: "extension", "bending" or "rotation": the axis of the trunk's coordinate of that name.
+            way: "top_down", from the motion of the part above the level and the loads on it, or "bottom_up", from those
+                of the part below.
+
+        Raises:
+            UnknownName: The level, turn or way does not exist.
+        """
+        return self._at_level("trunk_moments", level, turn, way)
+
+    def trunk_moment_sd(self, level: str, turn: str = "extension", way: str = "top_down") -> Array:
+        """(T,) standard deviation of :meth:`trunk_moment`, NaN where not known.
+
+        Args:
+            level: The level.
+            turn: The axis.
+            way: The way.
+        """
+        return self._at_level("trunk_moments_sd", level, turn, way)
+
     torque = moment
     torque_sd = moment_sd
 
@@ -193,6 +239,17 @@ class Reconstruction(
         )
         found = {"total": total, "offset": offset, "change": change}
         return found[part] if part in found else varying_sd(total, offset, change)
+
+    def _at_level(self, array: str, level: str, turn: str, way: str) -> Array:
+        place = []
+        for kind, label, known in (
+            ("way", way, AXES["way"].labels), ("level", level, self.level_names), ("turn", turn, AXES["turn"].labels),
+        ):  # fmt: skip
+            if label not in known:
+                raise UnknownName(kind, label, known)
+            place.append(known.index(label))
+        values: Array | None = getattr(self, array)
+        return np.full(self.frames, np.nan) if values is None else values[:, place[0], place[1], place[2]]
 
     def _coordinate(self, name: str) -> int:
         if name not in self.coordinate_names:

@@ -101,6 +101,22 @@ class UnexplainedTold(TypedDict):
     hint: str
 
 
+class TrunkTold(TypedDict):
+    """The trunk's extension moment at a level of the spine, over tracked frames.
+
+    Attributes:
+        peak_nm_per_kg, sd_nm: Largest size and mean standard deviation, top-down.
+        bottom_up_peak_nm_per_kg, bottom_up_sd_nm: The same, bottom-up.
+        difference_rms_nm_per_kg: Top-down minus bottom-up, RMS.
+    """
+
+    peak_nm_per_kg: float | None
+    sd_nm: float | None
+    bottom_up_peak_nm_per_kg: float | None
+    bottom_up_sd_nm: float | None
+    difference_rms_nm_per_kg: float | None
+
+
 class Summary(TypedDict):
     """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
 
@@ -133,6 +149,7 @@ class Summary(TypedDict):
         plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.
         torque_peak_nm_per_kg, torque_sd_nm, torque_sd_offset_nm, torque_sd_varying_nm: Flexion torques by joint, their
             standard deviations, and the two parts of these (:data:`mbkf.io.results.SdPart`).
+        trunk_moments: The trunk's extension moment by level of the spine.
         nis_per_dof: Normalised innovation squared per reading.
         nis: The same by kind of reading, and of Newton's law before correction.
         marker_noise_mm_by_name: Spread of one reading of each marker, as its innovations show it.
@@ -183,6 +200,7 @@ class Summary(TypedDict):
     torque_sd_nm: dict[str, float | None]
     torque_sd_offset_nm: dict[str, float | None]
     torque_sd_varying_nm: dict[str, float | None]
+    trunk_moments: dict[str, TrunkTold]
     nis_per_dof: float | None
     nis: dict[str, float]
     marker_noise_mm_by_name: dict[str, float | None]

@@ -10,7 +10,9 @@ columns that are never known are left out altogether; markers.trc keeps every fr
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -61,7 +63,9 @@ def write_opensim(reconstruction: Reconstruction, folder: Path, run_id: str = ""
 def opensim_table(reconstruction: Reconstruction, name: str) -> Table:
     """A table by the name of its file: the quantities that declare a column there; reactions begin with the loads.
 
-    Angles are in degrees, the pelvis's translations in m. Moments are named as OpenSim's inverse dynamics names them.
+    Angles are in degrees, the pelvis's translations in m. Moments are named as OpenSim's inverse dynamics names them;
+    those that bear the name of OpenSim's lumbar joint are the trunk's moments at that joint's level, and those at other
+    levels of the spine follow (:func:`_trunk_columns`).
     """
     r = reconstruction
     in_degrees = TITLES[name] == "Coordinates"
@@ -69,6 +73,8 @@ def opensim_table(reconstruction: Reconstruction, name: str) -> Table:
     for one in QUANTITIES.values():
         if one.column is not None and one.column.file == name:
             columns |= _columns(r, one, in_degrees)
+    if name == TORQUES_FILE:
+        columns = _trunk_columns(r, columns)
     values = np.column_stack(list(columns.values()))
     known = np.logical_or.reduce(np.isfinite(values[r.tracked]), axis=0)
     rows = r.tracked & np.isfinite(values[:, known]).all(axis=1)
@@ -82,7 +88,10 @@ def opensim_table(reconstruction: Reconstruction, name: str) -> Table:
 def _header(r: Reconstruction, name: str) -> dict[str, str]:
     """Entries of a table's header besides those of every table."""
     if name == TORQUES_FILE:
-        return {"AnglesRead": "model"}
+        levels = ", ".join(
+            f"{column} {level}" for column, level in zip(r.level_columns, r.level_names, strict=True)
+        )
+        return {"AnglesRead": "model", **({"TrunkLevels": levels} if levels else {})}
     if name == REACTIONS_FILE:
         loads, shown = r.loads, _shown(r)
         estimated = [loads.names[k] for k in shown if (loads.source[:, k] >= Source.SHARED).any()]
@@ -124,6 +133,30 @@ def _columns(r: Reconstruction, one: Quantity, in_degrees: bool) -> dict[str, Ar
         shown = {"side": words.get("foot", " ")[0], "load": "force" if unit == "N" else "moment", **words}
         degrees = in_degrees and unit == "rad"
         found[one.column.name.format(**shown)] = np.rad2deg(column) if degrees else column
+    return found
+
+
+def _trunk_columns(r: Reconstruction, columns: Mapping[str, Array]) -> dict[str, Array]:
+    """Columns of torques with the trunk's moments at levels of the spine; other columns stay as they are.
+
+    Bottom-up moments have columns where they are known in every frame in which the torques are: a table has no gaps.
+
+    Args:
+        r: The result.
+        columns: (T,) values by column.
+    """
+    found = dict(columns)
+    if r.trunk_moments is None:
+        return found
+    frames = np.isfinite(np.column_stack([np.zeros(r.frames), *columns.values()])).all(axis=1)
+    for (way, level, turn), values in zip(
+        product(AXES["way"].labels, r.level_columns, AXES["turn"].labels),
+        r.trunk_moments.reshape(r.frames, -1).T,
+        strict=True,
+    ):
+        measured = way == "bottom_up"
+        if not measured or np.isfinite(values[frames]).all():
+            found["_".join([level, *([way] if measured else []), turn, "moment"])] = values
     return found
 
 

@@ -35,7 +35,7 @@ KEYS = {
     "residual_lever_m", "valid_frames", "measured_frames", "contacts", "unexplained", "limb_doubts",
     "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "torque_sd_offset_nm",
-    "torque_sd_varying_nm", "nis_per_dof", "nis", "marker_noise_mm_by_name",
+    "torque_sd_varying_nm", "trunk_moments", "nis_per_dof", "nis", "marker_noise_mm_by_name",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
     "hidden_marker_max_mm", "truth", "axes", "warnings", "settings", "run_id",
 }  # fmt: skip

@@ -22,7 +22,7 @@ def case():
     rng = np.random.default_rng(4)
     model = random_model(rng)
     source, clinical = smooth_motion(model, rng), ClinicalAngles(model)
-    sizes = {"marker": 1, "part": 1, "configuration": model.nq, "dof": model.nv}
+    sizes = {"marker": 1, "part": 1, "level": 1, "configuration": model.nq, "dof": model.nv}
     sizes |= {"coordinate": len(clinical.names), "ball": len(clinical.ball_turns)}
     rows = blank(record_dtype(sizes), FRAMES)
     rows["number"], rows["known"] = np.arange(FRAMES), True

@@ -25,7 +25,7 @@ from mbkf.model.joint_centres import centre_names
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made_filter, recording, tracked
 
-SIZES = {"marker": 3, "configuration": 8, "dof": 7, "coordinate": 7, "part": 2, "ball": 4}
+SIZES = {"marker": 3, "configuration": 8, "dof": 7, "coordinate": 7, "part": 2, "ball": 4, "level": 2}
 
 
 def test_every_field_has_its_type_and_shape():
@@ -63,7 +63,7 @@ def test_a_blank_record_says_nothing():
 @pytest.mark.parametrize("name", ["kinematic", "dynamic"])
 def test_rows_one_by_one_are_the_whole_trial(name):
     tracking, found = estimates(name)
-    recorder = FrameRecorder(tracking, recording().markers_m.shape[1])
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], levels=True)
     rows = blank(recorder.dtype, len(found))
     for t, one in enumerate(found):
         row, spread = recorder.row(t, recording().markers_m[t], one, 0.001)

@@ -64,5 +64,23 @@ def made_up_whole(frames=12, **changes):
         "marker_nis": rng.random((frames, 2)),
         "marker_spread_m": rng.random((frames, 2)),
         "angles_lab": rng.normal(size=(frames, len(COORDINATES))),
+        **_trunk(frames),
     }
     return made_up(frames, **{**optional, **changes})
+
+
+def with_trunk(frames=12, **changes):
+    """One with moments of the trunk at two levels, of which OpenSim has a joint at the first."""
+    return made_up(frames, **{**_trunk(frames), **changes})
+
+
+def _trunk(frames):
+    rng = np.random.default_rng(2)
+    shape = (frames, 2, 2, 3)
+    return {
+        "level_names": ("T12/L1", "L5/S1"),
+        "level_columns": ("lumbar", "l5_s1"),
+        "trunk_moments": 50.0 * rng.normal(size=shape),
+        "trunk_moments_sd": rng.uniform(1.0, 9.0, shape),
+        "trunk_moments_sd_offset": np.ones(shape),
+    }

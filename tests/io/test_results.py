@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.errors import ShapeError, UnknownName
 from mbkf.io.results import ARRAYS, QUANTITIES, SdPart, varying_sd
-from tests.io.reconstructions import made_up, made_up_whole
+from tests.io.reconstructions import made_up, made_up_whole, with_trunk
 
 
 def test_every_array_is_read_only_and_has_its_shape_documented():
@@ -133,3 +133,22 @@ def test_offsets_that_are_not_told_are_zero_where_the_total_is_known():
 def test_rounding_never_makes_what_varies_imaginary():
     total, offset = np.array([5.0, 1.0]), np.array([4.0, 1.0 + 1e-12])
     np.testing.assert_array_equal(varying_sd(total, offset, np.zeros(2)), [3.0, 0.0])
+
+
+def test_moments_of_the_trunk_are_read_by_level_turn_and_way():
+    r = with_trunk()
+    np.testing.assert_array_equal(r.trunk_moment("L5/S1"), r.trunk_moments[:, 0, 1, 0])
+    np.testing.assert_array_equal(
+        r.trunk_moment("T12/L1", "rotation", "bottom_up"), r.trunk_moments[:, 1, 0, 2]
+    )
+    np.testing.assert_array_equal(r.trunk_moment_sd("L5/S1", "bending"), r.trunk_moments_sd[:, 0, 1, 1])
+    for wrong in (("L4/L5",), ("L5/S1", "flexion"), ("L5/S1", "bending", "sideways")):
+        with pytest.raises(UnknownName):
+            r.trunk_moment(*wrong)
+    with pytest.raises(UnknownName):
+        made_up().trunk_moment("L5/S1")
+
+
+def test_results_without_moments_of_the_trunk_have_nan_at_their_levels():
+    r = made_up(level_names=("L5/S1",))
+    assert np.isnan(r.trunk_moment("L5/S1")).all() and np.isnan(r.trunk_moment_sd("L5/S1")).all()

@@ -104,7 +104,7 @@ def test_how_many_frames_later_ones_left_alone_is_kept(tmp_path):
 
 def test_in_older_files_spreads_have_no_offset_and_the_body_no_covariance(tmp_path):
     offsets = {name: one.beside for name, one in QUANTITIES.items() if one.offset_of or one.change_of}
-    assert len(offsets) == 7 + 4
+    assert len(offsets) == 8 + 4
     write_h5(made_up_whole(sd_tau_offset=np.ones((12, 6))), tmp_path / "motion.h5")
     with unsealed(tmp_path / "motion.h5") as file:
         for name in offsets:

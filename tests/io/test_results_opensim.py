@@ -11,7 +11,7 @@ from mbkf.io.results_opensim import (
 )
 from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
-from tests.io.reconstructions import made_up, made_up_whole
+from tests.io.reconstructions import made_up, made_up_whole, with_trunk
 
 
 def to_world(vectors):
@@ -56,6 +56,29 @@ def test_torques_are_named_as_inverse_dynamics_names_them():
     table = opensim_table(made_up(), "torques.sto")
     assert table.names == ("pelvis_tilt_moment", "pelvis_tx_force", "hip_flexion_r_moment")
     assert not table.in_degrees
+
+
+def test_a_column_with_the_name_of_opensims_joint_is_the_moment_at_its_level():
+    """The coordinate's own moment is about the body's joint, which OpenSim's name would misstate."""
+    moments = np.column_stack([made_up().moments[:, :2], np.full(12, 7.0)])
+    r = with_trunk(coordinate_names=("pelvis_tilt", "pelvis_tx", "lumbar_extension"), moments=moments)
+    table = opensim_table(r, "torques.sto")
+    np.testing.assert_array_equal(table.column("lumbar_extension_moment"), r.trunk_moment("T12/L1"))
+    assert table.names[2] == "lumbar_extension_moment"
+    for turn in ("extension", "bending", "rotation"):
+        np.testing.assert_array_equal(table.column(f"l5_s1_{turn}_moment"), r.trunk_moment("L5/S1", turn))
+        up = r.trunk_moment("L5/S1", turn, "bottom_up")
+        np.testing.assert_array_equal(table.column(f"l5_s1_bottom_up_{turn}_moment"), up)
+    assert table.header["TrunkLevels"] == "lumbar T12/L1, l5_s1 L5/S1"
+
+
+def test_moments_that_are_not_known_throughout_cost_no_frame_of_the_table():
+    moments = np.array(with_trunk().trunk_moments)
+    moments[3:5, 1] = np.nan
+    table = opensim_table(with_trunk(trunk_moments=moments), "torques.sto")
+    assert len(table.times_s) == 12
+    assert "l5_s1_extension_moment" in table.names
+    assert not any("bottom_up" in name for name in table.names)
 
 
 def test_reactions_are_the_same_wrench_whether_loaded_or_not():

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.filter import DynamicFilter, DynamicStep
+from mbkf.filters.dynamic.level_rows import LevelRows
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.dynamic.support_loads import SupportLoads
@@ -65,7 +67,7 @@ class DynamicReport(StateReport[DynamicState]):
         self._plate_noise = WhiteNoise(kalman.settings.contact.plate_force_n, LEAST_PLATE_NOISE_N)
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
-        self._read: tuple[Posterior, StateVariances, bool] | None = None
+        self._read: tuple[Posterior, StateVariances, int] | None = None
         self._no_torques = np.zeros((0, kalman.layout.wrench.stop))
         self._smoothing: list[Array] = []  # memory that windows share
 
@@ -163,7 +165,8 @@ class DynamicReport(StateReport[DynamicState]):
         """Standard deviations; torques' from the whole state through Newton–Euler."""
         found = self._variances(estimate, torques)
         parts, q = ConfigurationParts(found.height, found.blocks), estimate.record.state.q
-        return Spread(self.reader, q, found.position, found.velocity, found.torque, lambda: parts)
+        torque = found.torque[: self.model.nv]
+        return Spread(self.reader, q, found.position, found.velocity, torque, lambda: parts)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
@@ -174,17 +177,18 @@ class DynamicReport(StateReport[DynamicState]):
         loads = self.loads.of(_step(estimate).decisions.notes.supports, estimate.record.state)
         return self.loads.sd(loads, self.errors(estimate) if loads is not None else None)
 
-    def _variances(self, estimate: Posterior, torques: bool = True) -> StateVariances:
+    def _variances(self, estimate: Posterior, torques: bool = True, levels: bool = False) -> StateVariances:
         """Variances of all quantities of an estimate; kept, since they are asked for one after the other.
 
         Args:
             estimate: The estimate.
             torques: False where those of the torques may be NaN.
+            levels: The trunk's moments follow the torques.
         """
-        if self._read is not None and self._read[0] is estimate and (self._read[2] or not torques):
+        if self._read is not None and self._read[0] is estimate and self._read[2] >= torques + levels:
             return self._read[1]
         q, dofs = estimate.record.state.q, self.reader.coordinates.dofs
-        by_state, shared = self._torques(estimate) if torques else (self._no_torques, None)
+        by_state, shared = self._torques(estimate, levels) if torques else (self._no_torques, None)
         rise = self.reader.rise_jacobian(q)
         found = state_variances(self.errors(estimate), by_state, rise, dofs)
         if not torques:
@@ -197,14 +201,38 @@ class DynamicReport(StateReport[DynamicState]):
             found.position[:] += anywhere
             found.height[:] += rise**2 @ anywhere
             np.einsum("bii->bi", found.blocks)[:] += anywhere[dofs]
-        self._read = estimate, found, torques
+        self._read = estimate, found, torques + levels
         return found
 
-    def _torques(self, estimate: Posterior) -> tuple[Array, Array | None]:
-        """(nv, n) derivative of the torques by the state, and the variance that sharing a load adds to them."""
+    def _torques(self, estimate: Posterior, levels: bool = False) -> tuple[Array, Array | None]:
+        """(nv, n) derivative of the torques by the state, and the variance that sharing a load adds to them.
+
+        Args:
+            estimate: The estimate.
+            levels: 6 L rows of the trunk's moments follow.
+        """
         state, balance = estimate.record.state, self.kalman.balance
         loads = self.loads.of(_step(estimate).decisions.notes.supports, state)
-        return self.loads.torques(balance, balance.torques(state.q, state.v, state.a, state.w), loads)
+        torque = balance.torques(state.q, state.v, state.a, state.w)
+        by_state, shared = self.loads.torques(balance, torque, loads)
+        if not levels:
+            return by_state, shared
+        rows, of_sharing = self._levels.at(state, loads, torque.tau, by_state)
+        both = np.asfortranarray(np.vstack([by_state, rows]))
+        return both, None if shared is None else np.concatenate([shared, of_sharing])
+
+    @cached_property
+    def _levels(self) -> LevelRows:
+        return LevelRows(self.model, self.loads)
+
+    def level_variance(self, estimate: Posterior) -> Array | None:
+        """(2, L, 3) variances of the trunk's moments at the body's levels by way; None where it has no levels.
+
+        Asked before :meth:`spread`, it costs a few more rows of the same products.
+        """
+        if not self._levels.sections.levels:
+            return None
+        return self._variances(estimate, levels=True).torque[self.model.nv :].reshape(self._levels.shape)
 
     def errors(self, estimate: Posterior) -> ErrorCovariance:
         """Errors of the whole state; the filter's own P where it knows how the noise is correlated."""

@@ -30,6 +30,7 @@ from mbkf.trial.results.progression import pelvis_frame
 from mbkf.trial.results.reactions import GroundReactions, ground_reactions
 from mbkf.trial.results.readings import angle_reading, zero_posture
 from mbkf.trial.results.summary import ROOT_DOFS
+from mbkf.trial.results.trunk import trunk_moments
 from mbkf.trial.results.validity import torques_known, torques_possible
 from mbkf.trial.results.warnings import track_warnings
 from mbkf.version import __version__
@@ -105,6 +106,7 @@ def assemble(
         moments,
         ground.loads,
         ground.supports,
+        trunk_moments(model, result, ground),
         Quality(
             measured=ground.measured & located,
             valid=ground.accounted & located & known & ~judged.acts,

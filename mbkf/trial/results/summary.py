@@ -8,9 +8,17 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.contacts import ContactInterval
+from mbkf.io.dimensions import AXES
 from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import Reconstruction, SdPart
-from mbkf.io.results_folder import ContactTold, LimbDoubtTold, StatedAxes, Summary, UnexplainedTold
+from mbkf.io.results_folder import (
+    ContactTold,
+    LimbDoubtTold,
+    StatedAxes,
+    Summary,
+    TrunkTold,
+    UnexplainedTold,
+)
 from mbkf.io.truth import Truth
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.human import HumanModel, reference_body
@@ -81,6 +89,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "torque_sd_nm": sd,
         "torque_sd_offset_nm": sd_offset,
         "torque_sd_varying_nm": sd_varying,
+        "trunk_moments": trunk_summary(r),
         "nis_per_dof": innovations.per_reading(r),
         "nis": innovations.by_kind(r),
         "marker_noise_mm_by_name": innovations.marker_noise_mm(r),
@@ -136,6 +145,24 @@ def limb_doubt_summary(doubt: LimbDoubt) -> LimbDoubtTold:
         "mended": doubt.mended,
         "exchanged": [list(pair) for pair in doubt.exchanged],
     }
+
+
+def trunk_summary(r: Reconstruction) -> dict[str, TrunkTold]:
+    """The trunk's extension moment by level of the spine, over tracked frames."""
+    per_kg, found = 1.0 / float(r.subject.mass_kg), {}
+    for level in r.level_names:
+        down, up = (r.trunk_moment(level, way=way)[r.tracked] for way in AXES["way"].labels)
+        sds = [_mean(r.trunk_moment_sd(level, way=way)[r.tracked]) for way in AXES["way"].labels]
+        peaks = [_largest(np.abs(one) * per_kg) for one in (down, up)]
+        told: TrunkTold = {
+            "peak_nm_per_kg": peaks[0],
+            "sd_nm": sds[0],
+            "bottom_up_peak_nm_per_kg": peaks[1],
+            "bottom_up_sd_nm": sds[1],
+            "difference_rms_nm_per_kg": _rms((down - up) * per_kg),
+        }
+        found[level] = told
+    return found
 
 
 def stated_axes(axes: str, source: str) -> StatedAxes:

@@ -23,6 +23,7 @@ from mbkf.viz.report.contacts import contact_section
 from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
+from mbkf.viz.report.trunk import trunk_section
 
 ANGLES_READ = {
     "model": "Angles are about the body's own axes, in the order of the ISB recommendations",
@@ -31,8 +32,8 @@ ANGLES_READ = {
 }
 
 NAVIGATION = (
-    ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("reactions", "Reactions"),
-    ("contacts", "Contacts"), ("settings", "Settings"),
+    ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("trunk", "Trunk"),
+    ("reactions", "Reactions"), ("contacts", "Contacts"), ("settings", "Settings"),
 )  # fmt: skip
 
 
@@ -54,7 +55,7 @@ def report_page(
     gait = find_gait(r, by_hand) if r.tracked.any() else None
     sections = [quality_section(r, summary, labels)]
     if r.tracked.any():
-        sections += [gait_section(gait, r.times_s), motion_section(r, gait)]
+        sections += [gait_section(gait, r.times_s), motion_section(r, gait), trunk_section(r)]
         sections += [reaction_section(r, gait), contact_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]

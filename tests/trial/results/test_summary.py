@@ -13,7 +13,7 @@ from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.model.human import HumanModel
 from mbkf.trial.results.summary import compare_with_truth, summarise
-from tests.io.reconstructions import made_up
+from tests.io.reconstructions import made_up, with_trunk
 
 KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
@@ -23,7 +23,7 @@ KEYS = {
     "residual_lever_m", "valid_frames", "measured_frames", "contacts", "unexplained", "limb_doubts",
     "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "torque_sd_offset_nm",
-    "torque_sd_varying_nm", "nis_per_dof", "nis", "marker_noise_mm_by_name", "later_frames",
+    "torque_sd_varying_nm", "trunk_moments", "nis_per_dof", "nis", "marker_noise_mm_by_name", "later_frames",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
     "hidden_marker_max_mm", "truth", "axes", "warnings", "settings",
 }  # fmt: skip
@@ -244,3 +244,26 @@ def test_axes_are_told_by_their_names():
         "mirrored": False,
         "source": "default",
     }
+
+
+def test_moments_of_the_trunk_are_stated_by_level_and_way():
+    moments = np.zeros((12, 2, 2, 3))
+    moments[3, 0, 1, 0], moments[:, 1, 1, 0] = -141.0, 70.5
+    tracked = np.ones(12, bool)
+    tracked[11] = False
+    moments[11] = 1e6
+    r = with_trunk(trunk_moments=moments, tracked=tracked, trunk_moments_sd=np.full(moments.shape, 4.0))
+    found = summarise(r)["trunk_moments"]
+    assert list(found) == ["T12/L1", "L5/S1"]
+    assert found["T12/L1"]["peak_nm_per_kg"] == 0.0
+    assert found["L5/S1"] == {
+        "peak_nm_per_kg": pytest.approx(2.0),
+        "sd_nm": pytest.approx(4.0),
+        "bottom_up_peak_nm_per_kg": pytest.approx(1.0),
+        "bottom_up_sd_nm": pytest.approx(4.0),
+        "difference_rms_nm_per_kg": pytest.approx(np.sqrt((10 + 9) / 11)),
+    }
+    moments[:, 1] = np.nan
+    alone = summarise(with_trunk(trunk_moments=moments))["trunk_moments"]["L5/S1"]
+    assert alone["bottom_up_peak_nm_per_kg"] is None and alone["difference_rms_nm_per_kg"] is None
+    assert summarise(made_up())["trunk_moments"] == {}

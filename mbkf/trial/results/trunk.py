@@ -1,0 +1,88 @@
+"""Net moments of the trunk at levels of the spine of a tracked trial, top-down and bottom-up."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.filters.record import Track
+from mbkf.io.contacts import bearing
+from mbkf.io.result_groups import TrunkMoments
+from mbkf.model.body import Body
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.newton_euler import ROOT
+from mbkf.model.trunk_sections import WAYS, TrunkSections
+from mbkf.trial.results.reactions import GroundReactions
+
+AXES = "yxz"
+"""Axes of a segment about which extension, bending and rotation turn."""
+
+
+def trunk_moments(model: Body, track: Track, ground: GroundReactions) -> TrunkMoments:
+    """The moments at the body's levels.
+
+    Bottom-up they are given where plates read the load of every loaded foot and no other part below the level bears:
+    elsewhere the loads below follow from the motion above, and would only say the same again.
+
+    Args:
+        model: The body.
+        track: The tracked trial.
+        ground: Loads on it, and the torques with them.
+    """
+    sections = TrunkSections(model)
+    if not sections.levels:
+        return TrunkMoments()
+    own, support = ClinicalAngles(model), np.nan_to_num(track.support)
+    residual = ground.torques.tau[:, :ROOT]
+    above = [np.array(sections.bears_above(level)) for level in sections.levels]
+    moments = np.full((len(track.q), len(WAYS), len(above), 3), np.nan)
+    followed = np.asarray(np.isfinite(np.hstack([track.a, residual])).all(axis=1))
+    for t in np.flatnonzero(followed):
+        carried = np.array([support[t, one].sum(axis=0) for one in above])
+        moments[t] = sections.moments(track.q[t], track.v[t], track.a[t], carried, residual[t])
+    bears = bearing(track.support)
+    for k, one in enumerate(above):
+        moments[~ground.judged | bears[:, ~one].any(axis=1), 1, k] = np.nan
+    sd, offset = _spreads(track, moments)
+    for k, level in enumerate(sections.levels):
+        B = _velocity_map(own, level.above, track.q, followed)
+        moments[:, :, k] = np.einsum("tij,twi->twj", B, moments[:, :, k])
+        for spread in (sd, offset):
+            spread[:, :, k] = np.sqrt(np.einsum("tij,twi->twj", B**2, spread[:, :, k] ** 2))
+    return TrunkMoments(
+        level_names=sections.names,
+        level_columns=tuple(level.column for level in sections.levels),
+        trunk_moments=moments,
+        trunk_moments_sd=sd,
+        trunk_moments_sd_offset=offset,
+    )
+
+
+def _spreads(track: Track, moments: Array) -> tuple[Array, Array]:
+    """Standard deviations of the moments, and the offset's part; NaN where a moment or its spread is not known."""
+    unknown = np.where(np.isnan(moments), np.nan, 0.0)
+    if track.level_sd is None or track.level_offset is None:
+        return np.full(moments.shape, np.nan), np.full(moments.shape, np.nan)
+    return track.level_sd + unknown, track.level_offset + unknown
+
+
+def _velocity_map(own: ClinicalAngles, segment: str, q: Array, followed: BoolArray) -> Array:
+    """(T, 3, 3) B of moments Bᵀ τ about extension, bending and rotation of a segment's joint; NaN where untracked.
+
+    Args:
+        own: The coordinates, in the body's own axes.
+        segment: The segment.
+        q: (T, nq) configurations.
+        followed: (T,) frames with an estimate.
+    """
+    model = own.model
+    (joint,) = (one for one in model.description.clinical_joints if one.distal == segment)
+    by_axis = {angle.axis: own.names.index(angle.name) for angle in joint.angles}
+    columns = [by_axis[axis] for axis in AXES]
+    B = np.full((len(q), 3, 3), np.nan)
+    known, angles = q[followed], own.angles(q[followed])
+    for i, dof in enumerate(range(*model.joint(segment).v.indices(model.nv))):
+        tau = np.zeros((len(known), model.nv))
+        tau[:, dof] = 1.0
+        B[followed, i] = own.moments(known, tau, angles)[:, columns]
+    return B
