@@ -2,7 +2,8 @@
 
 The stoop lifts (M. Millard, M. Sreenivasa, K. Mombaur, Front. Robot. AI 4 (2017)) have their feet on one plate; the
 second plate, under the box, is left to tell what the hands carry: what it no longer reads. The moment at L5/S1 is
-compared with the one that the authors worked out from the plate upwards.
+compared with the one that the authors worked out from the plate upwards; their own one from the trunk downwards, which
+does not know the box, differs from it by 0.54 to 0.61 N m/kg RMS.
 """
 
 from __future__ import annotations
@@ -11,16 +12,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 
 from benchmarks.checks import Check, Context, information, within
 from benchmarks.contact.shared import PASSES, rms
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.capture import read_capture
+from mbkf.io.dimensions import AXES
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.model.human import HumanModel
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
@@ -28,9 +28,7 @@ from mbkf.trial.scale import scale
 LIFTS = {"stoop1": "t169_f620f800", "stoop2": "t169_f1395f1590", "stoop3": "t169_f2101f2300"}
 STANDING, LIFTER_KG = "neu_t169_f250f350.c3d", 81.7
 BOX_N, BOX_SHARE, LIFTED_N = 147.0, 0.2, 40.0
-FOUND_S, LEAST_R, TORQUE_NM_KG = 0.2, 0.95, 0.35
-LUMBOSACRAL_M = np.array([0.011, 0.0, -0.177])
-"""L5/S1 in the pelvis of the reference body: M. P. Reed et al., SAE 1999-01-0959, in units of the pelvis's width."""
+FOUND_S, LEAST_R, TORQUE_NM_KG = 0.2, 0.95, 0.25
 
 PRONE = "KneeltoProne01_labelled.c3d"
 PRONE_FROM_S, SOLDIER_KG = 5.5, 80.0
@@ -67,13 +65,12 @@ def _lift_rows(folder: Path) -> Iterator[Check]:
             late = (int(np.argmax(held > 0.0)) - lifted) / found.rate_hz if held.any() else float("inf")
             yield Check(f"{title}: hands found", abs(late), FOUND_S, "<=", "s")
             reference = np.loadtxt(folder / "reference_l5s1" / f"{name}_l5s1Bu.csv", delimiter=",")[:, 2]
-            moment = lumbosacral_moment(found)[: len(reference)]
-            reference = reference[: len(moment)]
-            yield Check(
-                f"{title}: moment at L5/S1, r", float(np.corrcoef(moment, reference)[0, 1]), LEAST_R, ">="
-            )
-            off = rms(moment - reference) / subject.mass_kg
-            yield Check(f"{title}: moment at L5/S1, RMS", off, TORQUE_NM_KG, "<=", "N m/kg")
+            yield from lumbosacral_rows(title, found, reference, TORQUE_NM_KG)
+            other = found.moment("lumbar_extension")[: len(reference)] - reference[: found.frames]
+            off = rms(other) / subject.mass_kg
+            yield information(f"{title}: the moment at T12/L1 in its place, RMS", off, "N m/kg")
+        alone = reconstruct(trial, subject, settings=ReconstructSettings(other_contacts=False))
+        yield from lumbosacral_rows(f"{name}, box not looked for", alone, reference, None)
 
 
 def lift(folder: Path, name: str) -> tuple[Capture, Array]:
@@ -98,25 +95,31 @@ def lift(folder: Path, name: str) -> tuple[Capture, Array]:
     return Capture(trial.path, trial.markers, (plate,)), -read[:, 3]
 
 
-def lumbosacral_moment(found: Reconstruction) -> Array:
-    """(T,) moment that extends the trunk at L5/S1, about the world's y, by the trunk, the arms and what they hold.
+def lumbosacral_rows(title: str, found: Reconstruction, reference: Array, bound: float | None) -> list[Check]:
+    """Rows of the moment at L5/S1 both ways, against a reference (T,), N m.
 
     Args:
-        found: A reconstruction of a body that faces along x.
+        title: Beginning of the rows' names.
+        found: The result.
+        reference: The trunk's extension moment at L5/S1.
+        bound: Largest RMS, N m/kg; None for rows that are information.
     """
-    model = HumanModel.of(found.subject)
-    data, torso = model.pin_model.createData(), model.joint("torso").joint_id
-    pelvis = model.joint("pelvis").joint_id
-    place = LUMBOSACRAL_M * model.axis_scale(model.description.segment("pelvis"))
-    hands = [k for k, part in enumerate(found.support_names) if part.endswith("hand")]
-    carried = np.nan_to_num(found.support_wrench[:, hands]).sum(axis=1)
-    moments = np.full(len(found.q), np.nan)
-    for t in range(len(found.q)):
-        pin.rnea(model.pin_model, data, found.q[t], found.v[t], found.a[t])
-        upper = data.oMi[torso].act(data.f[torso])
-        force, moment = upper.linear - carried[t, :3], upper.angular - carried[t, 3:]
-        moments[t] = -(moment - np.cross(data.oMi[pelvis].act(place), force))[1]
-    return moments
+    rows = []
+    for way in AXES["way"].labels:
+        moment = found.trunk_moment("L5/S1", way=way)[: len(reference)]
+        error = moment - reference[: len(moment)]
+        off, name = rms(error) / found.subject.mass_kg, f"{title}: moment at L5/S1, {way.replace('_', '-')}"
+        unit = "N m/kg"
+        if bound is None:
+            rows.append(information(f"{name}, RMS", off, unit))
+            continue
+        like = float(np.corrcoef(moment, reference[: len(moment)])[0, 1])
+        rows.append(Check(f"{name}, r", like, LEAST_R, ">="))
+        rows.append(Check(f"{name}, RMS", off, bound, "<=", unit))
+        sd = found.trunk_moment_sd("L5/S1", way=way)[: len(reference)]
+        inside = 100.0 * float((np.abs(error) <= 1.96 * sd).mean())
+        rows.append(information(f"{name}, errors within their 95 % intervals", inside, "%"))
+    return rows
 
 
 def _prone_rows(folder: Path) -> Iterator[Check]:

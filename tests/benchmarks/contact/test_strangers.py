@@ -1,32 +1,35 @@
-"""The moment at L5/S1 is that of what is above it, whatever holds it."""
+"""Rows of the moment at L5/S1: error per kg and share inside the interval, both ways."""
 
 import numpy as np
+import pytest
 
-from benchmarks.contact.strangers import LUMBOSACRAL_M, lumbosacral_moment
-from mbkf.conventions import GRAVITY_M_S2
-from mbkf.model.human import HumanModel
-from mbkf.synthesis.person import body_of, synthesise_subject
-from tests.motions import assert_near
+from benchmarks.contact.strangers import lumbosacral_rows
+from tests.io.reconstructions import with_trunk
 
-
-class Still:
-    """A person who stands still in a posture, with something in the hands."""
-
-    def __init__(self, q, subject, names, wrench):
-        nv = HumanModel.of(subject).nv
-        self.q, self.v, self.a = q[None], np.zeros((1, nv)), np.zeros((1, nv))
-        self.subject, self.support_names, self.support_wrench = subject, names, wrench[None]
+REFERENCE = np.linspace(-40.0, 200.0, 12)
 
 
-def test_a_load_in_the_hand_adds_its_own_moment():
-    subject = synthesise_subject(0)
-    model = body_of(subject)
-    q = model.neutral()
-    none, load = np.zeros((1, 6)), np.array([[0.0, 0.0, -150.0, 0.0, 0.0, 0.0]])
-    point = np.array([0.4, 0.0, 1.0])
-    load[0, 3:] = np.cross(point, load[0, :3])
-    empty = lumbosacral_moment(Still(q, subject, ("right_hand",), none))
-    held = lumbosacral_moment(Still(q, subject, ("right_hand",), load))
-    reach = point[0] - (q[0] + LUMBOSACRAL_M[0] * model.axis_scale(model.description.segment("pelvis"))[0])
-    assert_near(held - empty, 150.0 * reach, 1e-9)
-    assert abs(empty[0]) < 0.2 * subject.mass_kg * GRAVITY_M_S2
+def off_by(down, up):
+    """A result whose moments at L5/S1 are the reference's, off by constants."""
+    moments = np.zeros((12, 2, 2, 3))
+    moments[:, 0, 1, 0], moments[:, 1, 1, 0] = REFERENCE + down, REFERENCE + up
+    return with_trunk(trunk_moments=moments, trunk_moments_sd=np.full(moments.shape, 5.0))
+
+
+def test_both_ways_are_judged_by_the_bound():
+    found = off_by(7.05, 21.15)
+    rows = {row.name: row for row in lumbosacral_rows("lift", found, REFERENCE, 0.25)}
+    down, up = (rows[f"lift: moment at L5/S1, {way}, RMS"] for way in ("top-down", "bottom-up"))
+    assert (down.value, up.value) == (pytest.approx(0.1), pytest.approx(0.3))
+    assert down.passed and not up.passed
+    inside = [
+        rows[f"lift: moment at L5/S1, {way}, errors within their 95 % intervals"].value
+        for way in ("top-down", "bottom-up")
+    ]
+    assert inside == [100.0, 0.0]
+
+
+def test_without_a_bound_rows_are_information():
+    rows = lumbosacral_rows("lift", off_by(0.0, 7.05), REFERENCE[:8], None)
+    assert [row.value for row in rows] == [pytest.approx(0.0), pytest.approx(0.1)]
+    assert len(rows) == 2
