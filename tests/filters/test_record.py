@@ -48,6 +48,7 @@ def test_arrays_of_a_trial_are_fields_of_the_record():
         "starts",
         "smoothed",
         "covariance",
+        "limb_doubts",
         *CHANGES,
     }
     assert made_of_it <= own
