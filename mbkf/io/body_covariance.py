@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypedDict
 
@@ -87,7 +88,11 @@ class BodyCovariance:
             flexions: D.
             centres: (E,) names of the displacements of joint centres.
         """
-        values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T))
+        covariance = 0.5 * (covariance + covariance.T)
+        with suppress(np.linalg.LinAlgError):
+            root = np.asarray(np.linalg.cholesky(covariance))
+            return cls(factors, markers, root, flexions, centres)
+        values, vectors = np.linalg.eigh(covariance)
         wide = vectors * np.sqrt(np.maximum(values, 0.0))
         lower = np.asarray(np.linalg.qr(wide.T, mode="r")).T
         return cls(factors, markers, lower * np.where(np.diag(lower) < 0.0, -1.0, 1.0), flexions, centres)

@@ -7,6 +7,7 @@ beyond its joint; the root's rows alone are full. The Schur complement is the su
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,45 @@ Indices = NDArray[np.intp]
 
 MOST = 0.8
 """Share of non-zero columns beyond which picking them costs more than the zeros do."""
+
+
+class Border(NamedTuple):
+    """Terms between own and shared unknowns: those of s columns are b columns, each by a factor that frames have.
+
+    Attributes:
+        columns: (N, n, b) the columns.
+        of: (s,) the column of each shared unknown.
+        factors: (N, s) its factor; None where all are 1.
+    """
+
+    columns: Array
+    of: Indices
+    factors: Array | None = None
+
+    @classmethod
+    def plain(cls, terms: Array) -> Border:
+        """Terms (N, n, s) of which each is a column by itself."""
+        return cls(terms, np.arange(terms.shape[2]))
+
+    @property
+    def terms(self) -> Array:
+        """(N, n, s) all terms."""
+        return self.spread(self.columns, np.arange(len(self.of)))
+
+    def spread(self, columns: Array, shared: Indices) -> Array:
+        """(N, r, c) terms of some shared unknowns (c,), of rows (N, r, b) of all columns."""
+        if self.factors is None and len(shared) == columns.shape[2]:
+            return columns
+        found = columns.take(self.of[shared], axis=2)
+        if self.factors is not None:
+            found *= self.factors[:, None, shared]
+        return found
+
+    @property
+    def acting(self) -> BoolArray:
+        """(n, s) True where a term is not zero in all frames."""
+        found = (self.columns != 0.0).any(axis=0)[:, self.of]
+        return np.asarray(found if self.factors is None else found & (self.factors != 0.0).any(axis=0))
 
 
 class RowBlock(NamedTuple):
@@ -61,12 +101,12 @@ class Eliminated(NamedTuple):
         return np.ascontiguousarray(back[:, ::-1])
 
 
-def eliminate(frames: Array, border: Array, frame_gradient: Array, blocks: list[RowBlock]) -> Eliminated:
+def eliminate(frames: Array, border: Border, frame_gradient: Array, blocks: list[RowBlock]) -> Eliminated:
     """Eliminates the frames.
 
     Args:
         frames: (N, n, n) matrices, positive definite.
-        border: (N, n, s) terms between own and shared unknowns.
+        border: Terms between own and shared unknowns.
         frame_gradient: (N, n) gradient.
         blocks: What :func:`row_blocks` found for the frames and the border.
 
@@ -76,10 +116,10 @@ def eliminate(frames: Array, border: Array, frame_gradient: Array, blocks: list[
     roots = np.linalg.cholesky(np.ascontiguousarray(frames[:, ::-1, ::-1]))
     inverses = np.array([lapack.dtrtri(root.T)[0].T for root in roots])
     gradient = (inverses @ frame_gradient[:, ::-1, None])[:, :, 0]
-    every, size = np.ascontiguousarray(inverses[:, :, ::-1]) @ border, border.shape[2]
+    every, size = np.ascontiguousarray(inverses[:, :, ::-1]) @ border.columns, len(border.of)
     complement, pull, halves = np.zeros((size, size)), np.zeros(size), []
     for rows, columns in blocks:
-        half = every[:, rows] if len(columns) == size else every[:, rows, columns]
+        half = border.spread(every[:, rows], columns)
         flat = half.reshape(-1, len(columns))
         pull[columns] += gradient[:, rows].reshape(-1) @ flat
         if len(columns) == size:
@@ -90,25 +130,31 @@ def eliminate(frames: Array, border: Array, frame_gradient: Array, blocks: list[
     return Eliminated(inverses, blocks, halves, gradient, complement, pull)
 
 
-def row_blocks(frames: Array, border: Array) -> list[RowBlock]:
+def row_blocks(frames: Array, border: Border) -> list[RowBlock]:
     """Blocks of rows of L⁻¹ border that are non-zero in the same columns.
 
     Args:
         frames: (N, n, n) matrices of the frames.
-        border: (N, n, s) terms between own and shared unknowns.
+        border: Terms between own and shared unknowns.
     """
-    inverse = _inverse_pattern(np.asarray((frames != 0.0).any(axis=0)[::-1, ::-1]))
-    acting = np.asarray((border != 0.0).any(axis=0)[::-1])
-    pattern = inverse @ acting
+    matrix, acting = (frames != 0.0).any(axis=0), border.acting
+    return list(_blocks(matrix.tobytes(), acting.tobytes(), *acting.shape))
+
+
+@lru_cache(maxsize=32)
+def _blocks(matrix: bytes, acting: bytes, own: int, shared: int) -> tuple[RowBlock, ...]:
+    """The blocks by the patterns (n, n) of the frames and (n, s) of the border, the same in most steps of a search."""
+    inverse = _inverse_pattern(np.frombuffer(matrix, dtype=bool).reshape(own, own)[::-1, ::-1])
+    pattern = inverse @ np.frombuffer(acting, dtype=bool).reshape(own, shared)[::-1]
     starts = np.flatnonzero(np.append(True, (pattern[1:] != pattern[:-1]).any(axis=1)))
     blocks = []
     for start, end in zip(starts, [*starts[1:], len(pattern)], strict=True):
         columns = np.flatnonzero(pattern[start])
-        if len(columns) > MOST * border.shape[2]:
-            columns = np.arange(border.shape[2])
+        if len(columns) > MOST * shared:
+            columns = np.arange(shared)
         if len(columns):
             blocks.append(RowBlock(slice(int(start), int(end)), columns))
-    return blocks
+    return tuple(blocks)
 
 
 def _inverse_pattern(matrix: BoolArray) -> BoolArray:

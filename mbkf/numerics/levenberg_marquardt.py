@@ -17,7 +17,7 @@ import numpy as np
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
-from mbkf.numerics.elimination import RowBlock, eliminate, row_blocks
+from mbkf.numerics.elimination import Border, RowBlock, eliminate, row_blocks
 
 State = TypeVar("State")
 
@@ -28,7 +28,7 @@ class ArrowEquations:
 
     Attributes:
         frames: (N, n, n) JᵀJ of each frame's own unknowns.
-        border: (N, n, s) JᵀJ between a frame's and the shared unknowns.
+        border: JᵀJ between a frame's n and the s shared unknowns.
         corner: (s, s) JᵀJ of the shared unknowns.
         frame_gradient: (N, n) Jᵀr of the frames.
         corner_gradient: (s,) Jᵀr of the shared unknowns.
@@ -36,7 +36,7 @@ class ArrowEquations:
     """
 
     frames: Array
-    border: Array
+    border: Border
     corner: Array
     frame_gradient: Array
     corner_gradient: Array

@@ -32,18 +32,26 @@ def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovarian
     count, centres = len(problem.body.scale_factors), centre_names(problem.body)
     e = np.arange(count, count + len(centres))
     found = np.delete(np.arange(len(information)), e)
-    to_places = problem.places_by_unknowns()
     covariance = np.zeros_like(information)
     alone = inverse(information[np.ix_(found, found)])
     S = np.zeros((len(information), len(centres)))
     S[e] = np.eye(len(centres))
-    S[found] = -to_places @ (alone @ information[np.ix_(found, e)])
-    covariance[np.ix_(found, found)] = to_places @ alone @ to_places.T
+    S[found] = -_in_places(problem, alone @ information[np.ix_(found, e)])
+    covariance[np.ix_(found, found)] = _in_places(problem, _in_places(problem, alone).T)
     covariance += S @ centre_covariance(problem.body) @ S.T
     names = tuple(marker.name for marker in problem.markers)
     return BodyCovariance.of(
         tuple(problem.body.scale_factors), names, covariance, problem.prior.flexions, centres
     )
+
+
+def _in_places(problem: ScalingProblem, rows: Array) -> Array:
+    """Rows (K + 3 M (1 + D), n) of (k, δ, c) as rows of (k, p, c): :meth:`ScalingProblem.places_by_unknowns` @ rows."""
+    by_factors = problem.places_by_factors()
+    count, found = by_factors.shape[2], rows.copy()
+    by_factors = by_factors.reshape(-1, count)
+    found[count : count + len(by_factors)] += by_factors @ rows[:count]
+    return found
 
 
 def corrected_covariance(

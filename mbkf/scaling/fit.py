@@ -84,13 +84,13 @@ def scale_subject(
     if dropped.any():
         problem, freed = problem.without(dropped), freed.without(dropped)
         solution = minimum(problem, solution.state, progress, tolerance)
-    rigid, learnt = _with_learnt_prior(problem, solution, progress, tolerance)
-    exchanged = _exchanged(rigid, learnt.state)  # skin that moves would hide them
     if freed.prior.flexions:
+        exchanged = _exchanged(problem, _nearly_learnt(problem, solution))  # skin that moves would hide them
         moved = minimum(freed, freed.start_from(solution.state), progress, COARSE)
         problem, solution = _with_learnt_prior(freed, moved, progress)
     else:
-        problem, solution = rigid, learnt
+        problem, solution = _with_learnt_prior(problem, solution, progress)
+        exchanged = _exchanged(problem, solution.state)
     rms = float(np.sqrt(np.nanmean(np.linalg.norm(problem.errors_m(solution.state), axis=2) ** 2)))
     noise = float(np.sqrt((problem.noise_m**2).mean()))
     if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * noise):
@@ -122,15 +122,19 @@ def scale_subject(
 
 
 def _with_learnt_prior(
-    problem: ScalingProblem,
-    solution: Solution[ScalingState],
-    progress: Progress | None,
-    tolerance: float = FINE,
+    problem: ScalingProblem, solution: Solution[ScalingState], progress: Progress | None
 ) -> tuple[ScalingProblem, Solution[ScalingState]]:
     """The problem with the prior that its solution teaches, and the solution of that."""
     learnt = learnt_prior(problem, solution.state, solution.equations.schur_complement())
     problem = problem.with_prior(learnt)
-    return problem, minimum(problem, solution.state, progress, tolerance)
+    return problem, minimum(problem, solution.state, progress)
+
+
+def _nearly_learnt(problem: ScalingProblem, solution: Solution[ScalingState]) -> ScalingState:
+    """The state one step from a solution towards that with the prior it teaches."""
+    learnt = learnt_prior(problem, solution.state, solution.equations.schur_complement())
+    problem = problem.with_prior(learnt)
+    return problem.move(solution.state, *problem.linearise(solution.state).step(0.0))
 
 
 def _check_size(mass_kg: float, height_m: float | None) -> None:

@@ -25,6 +25,7 @@ from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
+from mbkf.numerics.elimination import Border
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingSettings, ScalingState
 from mbkf.scaling.standing import UprightPosture
@@ -108,6 +109,7 @@ class ScalingProblem:
         self._usual = UsualPosture(self.posture, standing_sd_rad)
         self._upright = UprightPosture(model)
         self._worn = ScaledMarkers(model, self.segments, self.reference_m)
+        self._last: tuple[ScalingState, _Shown, ArrowEquations] | None = None
 
     def _model(self, factors: Array) -> HumanModel:
         return HumanModel(self.body, factors, self.body.reference_mass_kg, centres_m=self._centres_m)
@@ -180,6 +182,7 @@ class ScalingProblem:
         other = copy(self)
         other.measured_m = read_only(measured_m)
         other.seen = np.asarray(~np.isnan(other.measured_m).any(axis=2))
+        other._last = None
         return other
 
     def of_frames(self, chosen: NDArray[np.intp]) -> ScalingProblem:
@@ -199,6 +202,8 @@ class ScalingProblem:
         other = copy(self)
         other.prior = prior
         other._precision = prior.precision
+        if prior.flexions != self.prior.flexions:
+            other._last = None
         return other
 
     def cost(self, state: ScalingState) -> float:
@@ -244,41 +249,68 @@ class ScalingProblem:
 
     def linearise(self, state: ScalingState) -> ArrowEquations:
         """Gauss–Newton equations; frames border only what they share."""
-        return self._equations(state, self._shown(state), self._precision, self.prior.away(state))
+        _, data = self._by_data(state)
+        return self._with_prior(data, self._precision, self.prior.away(state))
 
     def information(self, state: ScalingState) -> Array:
         """(K + E + 3 M (1 + D), …) information on factors, joint centres, offsets and displacements, frames eliminated.
 
         That on the centres is the data's alone, without a prior.
         """
-        count, shown = len(self.body.scale_factors), self._shown(state)
+        count, (shown, data) = len(self.body.scale_factors), self._by_data(state)
         shown = replace(shown, by_factors=np.concatenate([shown.by_factors, self._by_centres(state)], axis=3))
         centres = shown.by_factors.shape[3] - count
         precision = block_diag(
             self._precision[:count, :count], np.zeros((centres, centres)), self._precision[count:, count:]
         )
         away = np.insert(self.prior.away(state), [count] * centres, 0.0)
-        return self._equations(state, shown, precision, away).schur_complement()
+        data = self._equations(shown, data.frames, data.frame_gradient, data.cost)
+        return self._with_prior(data, precision, away).schur_complement()
+
+    def _by_data(self, state: ScalingState) -> tuple[_Shown, ArrowEquations]:
+        """Whitened errors, and the equations without prior; kept for the next call, often with another prior."""
+        if self._last is None or self._last[0] is not state:
+            shown = self._shown(state)
+            cost = float((shown.errors**2).sum()) + self._posture_cost(state)
+            equations = self._equations(shown, *self._frame_equations(state, shown), cost)
+            self._last = state, shown, equations
+        return self._last[1:]
+
+    @staticmethod
+    def _with_prior(data: ArrowEquations, precision: Array, away: Array) -> ArrowEquations:
+        """Equations with a prior's precision on what frames share, ``away`` from its mean."""
+        pull = precision @ away
+        return replace(
+            data,
+            corner=data.corner + precision,
+            corner_gradient=data.corner_gradient + pull,
+            cost=data.cost + float(away @ pull),
+        )
 
     def _by_centres(self, state: ScalingState) -> Array:
         """(N, M, 3, E) whitened derivatives of the markers by displacements of joint centres."""
         return self._worn.by_centres(state.poses) * self._whiten()[..., None]
 
-    def _equations(self, state: ScalingState, shown: _Shown, precision: Array, away: Array) -> ArrowEquations:
-        """Gauss–Newton equations of frames and of unknowns with a prior's precision, away from its mean."""
-        frames, frame_gradient = self._frame_equations(state, shown)
-        count, (poses, _, _, nv) = shown.by_factors.shape[3], shown.by_pose.shape
-        across = shown.by_pose.reshape(poses, -1, nv).swapaxes(1, 2)
-        # a marker's offset moves that marker only: (nv, 3) (3, 3) for each, not (nv, 3 M) (3 M, 3 M)
-        by_offset = (shown.by_pose.swapaxes(2, 3) @ shown.axes).swapaxes(1, 2)
-        by_place = by_offset[:, :, None] * np.moveaxis(shown.shares, 0, 1)[:, None, :, :, None]
-        border = np.concatenate(
-            [across @ shown.by_factors.reshape(poses, -1, count), by_place.reshape(poses, nv, -1)], axis=2
-        )
-        corner, corner_gradient = precision.copy(), precision @ away
-        self._add_shared(shown, corner, corner_gradient)
-        cost = float((shown.errors**2).sum()) + float(away @ precision @ away) + self._posture_cost(state)
-        return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, cost)
+    def _equations(self, shown: _Shown, frames: Array, frame_gradient: Array, cost: float) -> ArrowEquations:
+        """Gauss–Newton equations of frames and of unknowns without prior."""
+        count, (poses, markers, _, nv) = shown.by_factors.shape[3], shown.by_pose.shape
+        columns = np.empty((poses, count + 3 * markers, nv))
+        by_factors = shown.by_factors.reshape(poses, -1, count).swapaxes(1, 2)
+        np.matmul(by_factors, shown.by_pose.reshape(poses, -1, nv), out=columns[:, :count])
+        # a marker's offset moves that marker only: (3, 3) (3, nv) for each, not (3 M, 3 M) (3 M, nv)
+        by_offset = columns[:, count:].reshape(poses, markers, 3, nv)
+        np.matmul(np.swapaxes(shown.axes, 2, 3), shown.by_pose, out=by_offset)
+        # its displacements by flexion move it as the offset does, by their shares
+        kinds = len(shown.shares)
+        of = np.concatenate([np.arange(count), *[np.arange(count, count + 3 * markers)] * kinds])
+        factors = None
+        if kinds > 1:
+            shares = np.repeat(np.moveaxis(shown.shares, 0, 1), 3, axis=2).reshape(poses, -1)
+            factors = np.concatenate([np.ones((poses, count)), shares], axis=1)
+        corner, gradient = np.zeros((len(of), len(of))), np.zeros(len(of))
+        self._add_shared(shown, corner, gradient)
+        border = Border(columns.swapaxes(1, 2), of, factors)
+        return ArrowEquations(frames, border, corner, frame_gradient, gradient, cost)
 
     def _frame_equations(self, state: ScalingState, shown: _Shown) -> tuple[Array, Array]:
         """(N, nv, nv) matrices and (N, nv) gradients of the poses."""
@@ -331,7 +363,7 @@ class ScalingProblem:
         by_pose = np.array([one.jacobian for one in reading.markers])
         if state.slides_m.any():
             by_share = np.array([self.skin.linearised(q)[1] for q in state.poses])
-            by_pose += reading.axes @ np.einsum("dmi,tmdv->tmiv", state.slides_m, by_share)
+            by_pose += (reading.axes @ np.moveaxis(state.slides_m, 0, 2)) @ by_share
         by_pose *= whiten[..., None]
         return _Shown(
             np.where(self.seen[..., None], errors, 0.0) * whiten,

@@ -44,25 +44,28 @@ class FlexedSkin:
         skin = model.description.skin
         self.flexions = flexions_of(model.description, segments)
         self._posture = PostureSensor(model)
-        self._turning = np.zeros((len(segments), self.flexions, model.nv))
+        turning = np.zeros((len(segments), self.flexions, model.nv))
         for m, name in enumerate(segments):
             for d, joints in enumerate(skin[name].flexions if name in skin else ()):
                 for joint in joints:
-                    self._turning[m, d, _bending_dof(model, joint)] = 1.0 / len(joints)
+                    turning[m, d, _bending_dof(model, joint)] = 1.0 / len(joints)
+        # markers of one segment share their flexions, each computed once
+        self._turning, which = np.unique(turning.reshape(-1, model.nv), axis=0, return_inverse=True)
+        self._which = which.reshape(turning.shape[:2])
 
     def shares(self, q: Array) -> Array:
         """(M, D) f(θ) at a configuration q (nq,)."""
-        return _share(self._turning @ self._posture.deviation(q)[0])
+        return _share(self._turning @ self._posture.deviation(q)[0])[self._which]
 
     @property
     def carried(self) -> BoolArray:
         """(M, D) True where a flexion moves a marker."""
-        return np.asarray(self._turning.any(axis=2))
+        return np.asarray(np.asarray(self._turning.any(axis=1))[self._which])
 
     def only(self, markers: NDArray[np.intp]) -> FlexedSkin:
         """The shares of some of the markers, by their numbers."""
         some = copy(self)
-        some._turning = self._turning[markers]
+        some._which = self._which[markers]
         return some
 
     def displacement(self, slides_m: Array) -> SkinDisplacement:
@@ -71,31 +74,33 @@ class FlexedSkin:
         Args:
             slides_m: (M, D, 3) displacement of each marker by each flexion, m.
         """
-        return SkinDisplacement(self._posture, self._turning, slides_m)
+        return SkinDisplacement(self._posture, self._turning, self._which, slides_m)
 
     def linearised(self, q: Array) -> tuple[Array, Array]:
         """(M, D) f(θ) at a configuration q (nq,) and their derivative (M, D, nv) in its tangent space."""
         deviation, jacobian = self._posture.deviation(q)
         theta = self._turning @ deviation
         slope = 0.5 * np.cos(0.5 * theta) / np.sin(0.5 * FLEXED_RAD)
-        return _share(theta), slope[..., None] * (self._turning @ jacobian)
+        by_q = slope[:, None] * (self._turning @ jacobian)
+        return _share(theta)[self._which], by_q[self._which]
 
 
 class SkinDisplacement:
-    """Σ_d f(θ_d) c_d of M markers with known c: markers of one segment share their flexions, each computed once."""
+    """Σ_d f(θ_d) c_d of M markers with known c."""
 
-    def __init__(self, posture: PostureSensor, turning: Array, slides_m: Array) -> None:
+    def __init__(
+        self, posture: PostureSensor, turning: Array, which: NDArray[np.intp], slides_m: Array
+    ) -> None:
         """Prepares the sum.
 
         Args:
             posture: Rotations of the joints.
-            turning: (M, D, nv) share of each rotation in a flexion.
+            turning: (F, nv) share of each rotation in each flexion.
+            which: (M, D) flexions that move the markers.
             slides_m: (M, D, 3) displacements c, m.
         """
         count = len(slides_m)
-        rows = turning.reshape(-1, turning.shape[2])
-        self._posture = posture
-        self._turning, which = np.unique(rows, axis=0, return_inverse=True)
+        self._posture, self._turning = posture, turning
         by_flexion = np.zeros((3 * count, len(self._turning)))
         slides = np.moveaxis(slides_m, 1, 2).reshape(3 * count, -1)
         of_marker = np.repeat(which.reshape(count, -1), 3, axis=0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.numerics.elimination import Border
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
 from mbkf.numerics.rotations import nearest_rotations, quaternion_of
 from mbkf.sensors.marker_sensor import MarkerInformation, MarkerSensor
@@ -134,6 +135,7 @@ def fit_pose(
     seen = np.asarray(~np.isnan(measured_m).any(axis=1))
     target, noise = measured_m[seen], noise_m[seen, None]
     nv = sensor.model.nv
+    nothing = Border.plain(np.zeros((1, nv, 0)))
     markers, weights = MarkerInformation(sensor, noise_m), posture.weights(1.0, np.zeros(nv, dtype=bool))
 
     def weighed(positions_m: Array, deviation: Array) -> float:
@@ -149,7 +151,7 @@ def fit_pose(
         known += prior_information(posture, deviation, turning, weights)
         hessian, gradient = known.matrix[None] + 1e-9 * np.eye(nv), -known.vector[None]
         found = weighed(reading.positions_m, deviation)
-        return ArrowEquations(hessian, np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient, np.zeros(0), found)
+        return ArrowEquations(hessian, nothing, np.zeros((0, 0)), gradient, np.zeros(0), found)
 
     solution = minimise(
         start,

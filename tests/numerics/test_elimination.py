@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.numerics.elimination import eliminate, row_blocks
+from mbkf.numerics.elimination import Border, eliminate, row_blocks
 
 BRANCHES = ([0, 1, 2], [0, 1, 3, 4], [0, 5])
 """Own unknowns that act on the shared unknowns of each branch; the first ones are the root's."""
@@ -17,19 +17,29 @@ def tree(frames=3, each=2):
         J = rng.normal(size=(frames, 4, len(own)))
         H[:, np.array(own)[:, None], own] += J.swapaxes(1, 2) @ J
         border[:, own, each * k : each * (k + 1)] = rng.normal(size=(frames, len(own), each))
-    return H, border, rng.normal(size=(frames, 6))
+    return H, Border.plain(border), rng.normal(size=(frames, 6))
 
 
 def full():
     rng = np.random.default_rng(6)
     A = rng.normal(size=(4, 5, 7))
-    return A @ A.swapaxes(1, 2), rng.normal(size=(4, 5, 3)), rng.normal(size=(4, 5))
+    return A @ A.swapaxes(1, 2), Border.plain(rng.normal(size=(4, 5, 3))), rng.normal(size=(4, 5))
 
 
-@pytest.mark.parametrize("arrow", [tree(), full()])
+def repeated(each=2):
+    """The tree, whose shared unknowns act twice: by themselves, and by a factor that is zero for one of them."""
+    H, border, gradient = tree(each=each)
+    rng, count = np.random.default_rng(7), border.columns.shape[2]
+    factors = np.hstack([np.ones((len(H), count)), rng.normal(size=(len(H), count))])
+    factors[:, count] = 0.0
+    return H, Border(border.columns, np.tile(np.arange(count), 2), factors), gradient
+
+
+@pytest.mark.parametrize("arrow", [tree(), full(), repeated(), repeated(each=8)])
 def test_the_elimination_is_the_dense_one(arrow):
     H, border, gradient = arrow
     found = eliminate(H, border, gradient, row_blocks(H, border))
+    border = border.terms
     dense = np.linalg.solve(H, border)
     np.testing.assert_allclose(found.complement, (border.swapaxes(1, 2) @ dense).sum(axis=0), atol=1e-12)
     np.testing.assert_allclose(
@@ -44,6 +54,14 @@ def test_rows_of_a_branch_have_its_columns_alone():
     H, border, _ = tree()
     columns = {block.rows.start: block.columns.tolist() for block in row_blocks(H, border)}
     assert columns == {0: [4, 5], 1: [2, 3], 3: [0, 1], 4: [0, 1, 2, 3], 5: [0, 1, 2, 3, 4, 5]}
+
+
+def test_terms_are_columns_times_the_factors_of_frames():
+    _, border, _ = repeated()
+    expected = np.concatenate([border.columns] * 2, axis=2) * border.factors[:, None]
+    np.testing.assert_array_equal(border.terms, expected)
+    np.testing.assert_array_equal(border.acting, (expected != 0.0).any(axis=0))
+    assert not border.acting[:, 6].any()
 
 
 def test_a_frame_that_is_not_positive_definite_is_refused():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mbkf.numerics.elimination import Border
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
 
 
@@ -23,7 +24,7 @@ def random_arrow(seed, frames=4, own=3, shared=2):
 def arrow(by_own, by_shared, residual):
     return ArrowEquations(
         frames=np.einsum("tri,trj->tij", by_own, by_own),
-        border=np.einsum("tri,trj->tij", by_own, by_shared),
+        border=Border.plain(np.einsum("tri,trj->tij", by_own, by_shared)),
         corner=np.einsum("tri,trj->ij", by_shared, by_shared),
         frame_gradient=np.einsum("tri,tr->ti", by_own, residual),
         corner_gradient=np.einsum("tri,tr->i", by_shared, residual),

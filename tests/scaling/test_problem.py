@@ -160,7 +160,7 @@ def test_the_arrow_is_the_gauss_newton_matrix(problem, state, jacobian):
     for t in range(FRAMES):
         own = slice(t * nv, (t + 1) * nv)
         assert_near(equations.frames[t] / size, dense[own, own] / size, 1e-9)
-        assert_near(equations.border[t] / size, dense[own, FRAMES * nv :] / size, 1e-9)
+        assert_near(equations.border.terms[t] / size, dense[own, FRAMES * nv :] / size, 1e-9)
     assert_near(equations.corner / size, dense[FRAMES * nv :, FRAMES * nv :] / size, 1e-9)
 
 
@@ -206,7 +206,7 @@ def test_missing_markers_say_nothing(problem, state):
     errors = problem.errors_m(state)
     np.testing.assert_array_equal(np.isnan(errors), np.isnan(problem.measured_m))
     columns = 18 + 3 * 4 + np.arange(3)  # the marker never seen
-    assert (problem.linearise(state).border[:, :, columns] == 0).all()
+    assert (problem.linearise(state).border.terms[:, :, columns] == 0).all()
 
 
 def test_other_samples_make_the_problem_that_they_alone_would(problem, state):

@@ -149,56 +149,75 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
     frames = enough[spread_indices(len(enough), FRAMES)]
     segments = np.array(places.segments)
     feet = [np.isin(segments, list(foot)) for foot in places.feet]
+    patterns, which = np.unique(~np.isnan(positions[frames]).any(axis=2), axis=0, return_inverse=True)
     found = []
-    for points in positions[frames]:
-        seen = ~np.isnan(points).any(axis=1)
-        frame = _frame(points[seen], places.neutral_m[seen], segments[seen])
-        if frame is not None:
-            found.append((*frame, [_foot(points, places.neutral_m, foot & seen) for foot in feet]))
-    if not found:
+    for n, seen in enumerate(patterns):
+        own = frames[which.ravel() == n]
+        directions = [_foot(positions[own], places.neutral_m, foot & seen) for foot in feet]
+        known = _frames(positions[own][:, seen], places.neutral_m[seen], segments[seen])
+        found.append((own, *known, np.stack(directions, axis=1)))
+    own, *parts = (np.concatenate(one) for one in zip(*found, strict=True))
+    in_order = np.argsort(own)
+    up, stretch, handedness, explained, both_feet = (part[in_order] for part in parts)
+    known = ~np.isnan(stretch)
+    if not known.any():
         return None
-    up, stretch, handedness, explained, directions = (np.array(one) for one in zip(*found, strict=True))
     low, size, high = _sizes(positions[frames], places, segments)
-    return BodyAttitude(up, stretch, handedness, directions, size, (high - low) / size, explained)
+    return BodyAttitude(
+        up[known],
+        stretch[known],
+        handedness[known],
+        both_feet[known],
+        size,
+        (high - low) / size,
+        explained[known],
+    )
 
 
-def _frame(
-    points: Array, neutral: Array, segments: NDArray[np.str_]
-) -> tuple[Array, float, float, float] | None:
-    """Up, stretch, handedness and explained share of a frame's markers; None without evidence on up."""
+def _frames(points: Array, neutral: Array, segments: NDArray[np.str_]) -> tuple[Array, Array, Array, Array]:
+    """Up (F, 3), stretch, handedness and explained share (F,) of frames; up and stretch NaN without evidence on up.
+
+    Args:
+        points: (F, K, 3) markers of the frames.
+        neutral: (K, 3) their places on the body.
+        segments: (K,) their segments.
+    """
+    count = len(points)
     design = np.column_stack([_depth(neutral, segments), (neutral - neutral.mean(axis=0))[:, 1:]])
     spread_enough = np.linalg.norm(design, axis=0) >= LEAST_SPREAD_M
+    up, unknown = np.full((count, 3), np.nan), np.full(count, np.nan)
     if not spread_enough[2]:
-        return None
-    centred = points - points.mean(axis=0)
-    slopes, *_ = np.linalg.lstsq(design[:, spread_enough], centred, rcond=None)
-    lengths = np.linalg.norm(slopes, axis=1)
-    if not (lengths > 0.0).all():
-        return None
-    units = slopes / lengths[:, None]
-    handedness = float(np.linalg.det(units)) if spread_enough.all() else np.nan
-    spread = (centred**2).sum()
-    explained = 1.0 - ((centred - design[:, spread_enough] @ slopes) ** 2).sum() / spread if spread else 0.0
-    return units[-1], float(lengths[-1]), handedness, float(explained)
+        return up, unknown, unknown, unknown
+    design = design[:, spread_enough]
+    centred = points - points.mean(axis=1, keepdims=True)
+    every = centred.swapaxes(0, 1).reshape(len(design), -1)
+    slopes = np.linalg.lstsq(design, every, rcond=None)[0]
+    left = (every - design @ slopes).reshape(len(design), count, 3)
+    slopes = slopes.reshape(-1, count, 3).swapaxes(0, 1)
+    lengths, spread = np.linalg.norm(slopes, axis=2), (centred**2).sum(axis=(1, 2))
+    clear = (lengths > 0.0).all(axis=1)
+    units = slopes / np.where(clear[:, None], lengths, np.nan)[:, :, None]
+    handedness = np.linalg.det(units) if spread_enough.all() else unknown
+    explained = 1.0 - (left**2).sum(axis=(0, 2)) / np.where(spread > 0.0, spread, np.inf)
+    stretch = np.where(clear, lengths[:, -1], np.nan)
+    return units[:, -1], stretch, handedness, np.where(spread > 0.0, explained, 0.0)
 
 
 def _depth(neutral: Array, segments: NDArray[np.str_]) -> Array:
     """(K,) distance of each marker in front of the mean of its segment's."""
-    depth = np.zeros(len(neutral))
-    for segment in set(segments):
-        own = segments == segment
-        depth[own] = neutral[own, 0] - neutral[own, 0].mean()
-    return depth
+    _, which, counts = np.unique(segments, return_inverse=True, return_counts=True)
+    means = np.bincount(which, weights=neutral[:, 0]) / counts
+    return np.asarray(neutral[:, 0] - means[which])
 
 
 def _foot(points: Array, neutral: Array, own: BoolArray) -> Array:
-    """(3,) unit direction from heel to toe; NaN for a foot with too few markers."""
+    """(F, 3) unit direction from heel to toe in frames (F, K, 3); NaN for a foot with too few markers."""
     ahead = neutral[own, 0] - neutral[own, 0].mean() if own.any() else np.zeros(0)
     if np.linalg.norm(ahead) < LEAST_SPREAD_M[0]:
-        return np.full(3, np.nan)
-    direction = ahead @ points[own]
-    length = np.linalg.norm(direction)
-    return np.asarray(direction / length) if length else np.full(3, np.nan)
+        return np.full((len(points), 3), np.nan)
+    direction = ahead @ points[:, own]
+    length = np.linalg.norm(direction, axis=1, keepdims=True)
+    return np.asarray(direction / np.where(length > 0.0, length, np.nan))
 
 
 def _sizes(positions: Array, places: MarkerPlaces, segments: NDArray[np.str_]) -> tuple[float, float, float]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Named, Subject, match_names
 from mbkf.model.protocol import Protocol, load_protocol, protocol_names
@@ -158,11 +160,8 @@ def _computed(subject: Subject) -> set[str]:
 
 def _seen(markers: MarkerTrajectories) -> tuple[str, ...]:
     """Names of the markers that have one of their own and are seen in any frame."""
-    return tuple(
-        name
-        for i, name in enumerate(markers.names)
-        if markers.present[:, i].any() and not name.startswith("*")
-    )
+    seen = np.asarray(markers.present.any(axis=0))
+    return tuple(name for name, there in zip(markers.names, seen, strict=True) if there and name[:1] != "*")
 
 
 def _ignored(

@@ -13,7 +13,7 @@ from mbkf.io.subject import Subject
 from mbkf.labelling.exchanges import Distances, Exchange, body_distances, find_exchanges, undo_exchanges
 from mbkf.labelling.turned_segments import find_turned
 from mbkf.model.human import HumanModel
-from mbkf.model.protocol import Protocol
+from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 STANDING_SD_M = 0.008
@@ -39,7 +39,7 @@ def names_put_right(
     )
     placed = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in own])
     neutral = sensor.positions(sensor.model.neutral())
-    found = _found(markers.positions_m, neutral, sensor, body_distances(sensor, placed))
+    found = _found(markers.positions_m, sensor, neutral, body_distances(sensor, placed))
     return _changed(markers, found), _exchanges(markers, found)
 
 
@@ -55,6 +55,10 @@ def trials_put_right(
         trials: The trials, under any names of the protocol.
         protocol: The markers worn.
     """
+    model = HumanModel.scaled(body=protocol.body)
+    stood = dict[
+        tuple[str, ...], tuple[MarkerSensor, Array, Distances]
+    ]()  # by markers, mostly those of all trials
     standing = {marker.name: name for name, marker in protocol.match(static.names).items()}
     there = np.asarray(static.present.any(axis=0))
     right: list[Capture] = []
@@ -68,14 +72,11 @@ def trials_put_right(
             and there[static.names.index(standing[marker.name])]
         }
         own = trial.markers.select(tuple(match))
-        columns = [static.names.index(standing[marker.name]) for marker in match.values()]
-        sensor = MarkerSensor(
-            HumanModel.scaled(body=protocol.body),
-            [marker.segment for marker in match.values()],
-            np.array([marker.position_m for marker in match.values()]).reshape(-1, 3),
-        )
-        stood = static.positions_m[:, columns]
-        found = _found(own.positions_m, _middle(stood), sensor, _standing(stood, sensor)) if match else ()
+        worn = tuple(marker.name for marker in match.values())
+        if match and worn not in stood:
+            columns = [static.names.index(standing[name]) for name in worn]
+            stood[worn] = _as_stood(model, tuple(match.values()), static.positions_m[:, columns])
+        found = _found(own.positions_m, *stood[worn]) if match else ()
         exchanges += _exchanges(own, found)
         fresh = _changed(own, found)
         positions = trial.markers.positions_m.copy()
@@ -92,12 +93,22 @@ def exchange_notes(found: Sequence[tuple[str, str, int]]) -> tuple[str, ...]:
 
 
 def _found(
-    positions_m: Array, places_m: Array, sensor: MarkerSensor, distances: Distances
+    positions_m: Array, sensor: MarkerSensor, places_m: Array, distances: Distances
 ) -> tuple[Exchange, ...]:
     """Names permuted within segments, then pairs that are exchanged in some frames."""
     proximal = {one.name: one.parent for one in sensor.model.description.segments if one.parent}
     turned = find_turned(positions_m, places_m, sensor.segments, proximal)
     return (*turned, *find_exchanges(undo_exchanges(positions_m, turned), distances))
+
+
+def _as_stood(
+    model: HumanModel, markers: Sequence[ProtocolMarker], positions_m: Array
+) -> tuple[MarkerSensor, Array, Distances]:
+    """Markers of the reference body, their places (M, 3) and distances as a standing trial (T, M, 3) has them."""
+    sensor = MarkerSensor(
+        model, [marker.segment for marker in markers], np.array([marker.position_m for marker in markers])
+    )
+    return sensor, _middle(positions_m), _standing(positions_m, sensor)
 
 
 def _middle(positions_m: Array) -> Array:
