@@ -74,14 +74,14 @@ def test_a_summary_is_held_to_its_bounds_or_to_the_kinematic_filter():
     kinematic = {"marker_rms_mm": 5.0, "measured_frames": 100}
     summary = {
         "marker_rms_mm": 5.6,
-        "residual_force_rms_n": 4.0,
-        "residual_moment_rms_nm": None,
+        "residual_force_share": 0.04,
+        "residual_lever_m": None,
         "measured_frames": 99,
         "plate_force_change_rms_n": 1.0,
     }
-    rows = summary_rows("x", summary, kinematic, Bounds(5.0, 3.0))
+    rows = summary_rows("x", summary, kinematic, Bounds())
     assert [row.passed for row in rows] == [False, True, False, True]
-    rows = summary_rows("x", summary, kinematic, Bounds(5.0, 3.0, 6.0, 2.0))
+    rows = summary_rows("x", summary, kinematic, Bounds(marker_mm=6.0, plates_n=2.0))
     assert [row.passed for row in rows] == [True, True, False, True, True]
 
 
