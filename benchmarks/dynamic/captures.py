@@ -88,8 +88,9 @@ BOUNDS: Mapping[str, Bounds] = {
     "biomechzoo HC044A": Bounds(),
     "gaitalytics": Bounds(),
 }
-"""The residual is a state with standard deviations of 5 % of body weight and 3 cm: an RMS beyond these contradicts it. A
-run may reach 8 %, since soft tissue bounces with the steps. Bounds of 5 to 15 N belonged to a residual held at 2 N by
+"""The residual is a state with standard deviations of 5 % of body weight and 3 cm: an RMS beyond these contradicts it.
+
+A run may reach 8 %, since soft tissue bounces with the steps. Bounds of 5 to 15 N belonged to a residual held at 2 N by
 its equation, which the motion paid for (:mod:`mbkf.sensors.root_residual`)."""
 
 

@@ -53,6 +53,9 @@ class TrialKind(StrEnum):
     RUN = "run"
     SQUAT = "squat"
     JUMP = "jump"
+    TURN = "turn"
+    STAIRS = "stairs"
+    SIT_TO_STAND = "sit_to_stand"
     UNKNOWN = "unknown"
 
 

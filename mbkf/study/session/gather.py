@@ -16,12 +16,13 @@ from mbkf.io.results_folder import MOTION_FILE, read_reconstruction
 from mbkf.io.session import SessionNotes, TrialKind, TrialNotes
 from mbkf.io.session import session_of as session_of_entries
 from mbkf.io.subject import Subject
+from mbkf.model.human import HumanModel
 from mbkf.study.batch.inputs import RECORD, read_record
 from mbkf.study.session.cycles import SideCycles, cycles_of_trial, together
 from mbkf.study.session.jumps import jump_measures
 from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
 from mbkf.study.session.squats import squat_measures
-from mbkf.study.survey.movement import kind_of_markers
+from mbkf.study.survey.movement import SUNK_M, kind_of_markers
 from mbkf.trial.gait.cycles import Gait, find_gait
 
 GAIT_KINDS = (TrialKind.WALK, TrialKind.RUN, TrialKind.UNKNOWN)
@@ -141,11 +142,28 @@ def trial_summary(r: Reconstruction, kind: TrialKind | None = None) -> SessionTr
     else:
         verdict = "good"
     if kind is None:
-        kind = kind_of_markers(MarkerTrajectories(r.marker_names, r.measured_m, r.rate_hz))
+        kind = kind_of_result(r)
     seconds = r.frames / r.rate_hz
     return SessionTrial(
         r.trial, kind, seconds, verdict, (*outside, *r.warnings), f"{r.filter}, {r.later_frames}"
     )
+
+
+def kind_of_result(r: Reconstruction) -> TrialKind:
+    """Kind of movement of a trial with results: that of its markers, and sitting where a seat bore the pelvis.
+
+    Args:
+        r: Its results.
+    """
+    kind = kind_of_markers(MarkerTrajectories(r.marker_names, r.measured_m, r.rate_hz))
+    if kind not in (TrialKind.SQUAT, TrialKind.UNKNOWN) or not r.tracked.any():
+        return kind
+    model = HumanModel.of(r.subject)
+    bearings = model.description.bearings.items()
+    seats = {name for name, one in bearings if one.segment == model.roles.root}
+    sat = any(one.part in seats for one in r.contacts)
+    rises = np.ptp(r.q[r.tracked, model.root.q.start + 2]) > SUNK_M
+    return TrialKind.SIT_TO_STAND if sat and rises else kind
 
 
 def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:

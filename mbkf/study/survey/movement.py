@@ -1,33 +1,24 @@
 """Kind of movement in a capture, recognised from the markers alone, whatever their names.
 
-Feet are the low markers that keep their distances among each other; the pelvis carries the markers half-way up. Where
-the feet pass each other again and again there is gait, with flights of both feet a run; where both leave the floor
-together and the body rises, a jump; where they stay and the pelvis sinks, a squat.
+Where the feet pass each other again and again there is gait: with flights of both feet a run, with a new direction a
+turn. Where a foot comes to stand higher and lifts the pelvis there are stairs; where both feet leave the floor together
+and the body rises, a jump; where they stay and the pelvis sinks, a squat. Sitting shows in the load of a seat, which
+markers alone do not show (:mod:`mbkf.study.session.gather`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.session import TrialKind
 from mbkf.numerics.runs import stretches
+from mbkf.study.survey.body_points import BodyPoints, body_points
 from mbkf.trial.protocol.standing import stands_still
-
-LEAST_SEEN = 0.3
-"""Markers that are seen in a smaller share of the frames are left out."""
 
 STILL_SHARE = 0.9
 """Of a standing person so many markers stay; of one who moves a leg or an arm fewer."""
-
-LOW, MIDDLE = 0.25, (0.45, 0.7)
-"""Heights of the feet's and the pelvis's markers, in shares of the highest one's."""
-
-RIGID_M = 0.03
-"""Markers of a foot whose distance varies by less (a standard deviation) belong together."""
 
 LIFTED_M, FLIGHT_S, JUMP_S = 0.04, 0.05, 0.12
 """A foot is off the floor when its lowest marker is so much above its lowest height. Flights shorter than the second
@@ -42,26 +33,29 @@ FALLING = 0.5
 PASSING_M = 0.2
 """Feet that are in turns so far before each other walk."""
 
-RUN_SHARE = 0.05
-"""Share of the frames in flight from which gait is a run."""
+RUN_SHARE, FLOWN_SHARE = 0.05, 0.01
+"""Gait is a run from the first share of frames with both feet lifted, if the pelvis falls freely in the second."""
 
-RISEN_M, SUNK_M, STAYED_M = 0.08, 0.08, 0.15
-"""By how much a pelvis rises in a jump and sinks in a squat, and how far feet that stay may move."""
+TURNED_DEG, STRIDE_S = 45.0, 1.2
+"""A turn changes the direction of the pelvis, averaged over about a stride, by this."""
 
+STANDS_M_S, STANDS_S = 0.1, 0.1
+"""A foot stands whose centre is slower than this, for so long in all."""
 
-@dataclass(frozen=True)
-class FeetAndPelvis:
-    """The body as three points.
+TRAVELS_M, BELT_STANDS = 0.5, 0.3
+"""A pelvis that moves by less than the first, over a foot that stands in more than this share, does not walk."""
 
-    Attributes:
-        feet_m: (T, 2, 3) centres of the feet's markers.
-        lifts_m: (T, 2) lowest marker of each foot above its lowest height.
-        pelvis_m: (T, 3) centre of the markers half-way up.
-    """
+STAIR_M, ROSE_SHARE = 0.08, 0.5
+"""Heights of a standing foot that differ by the first are a stair if the pelvis rises by this share of it."""
 
-    feet_m: Array
-    lifts_m: Array
-    pelvis_m: Array
+RISEN_M, STAYED_M = 0.08, 0.15
+"""By how much a pelvis rises in a jump, and how far feet that stay may move."""
+
+SUNK_M = 0.08
+"""By how much a pelvis sinks in a squat or onto a seat."""
+
+LOWEST_SHARE = 0.47
+"""Who sinks by more of the pelvis's height over the feet kneels or lies."""
 
 
 def kind_of_markers(markers: MarkerTrajectories) -> TrialKind:
@@ -70,25 +64,34 @@ def kind_of_markers(markers: MarkerTrajectories) -> TrialKind:
         return TrialKind.UNKNOWN
     if stands_still(markers, STILL_SHARE):
         return TrialKind.STATIC
-    body = feet_and_pelvis(markers)
+    body = body_points(markers)
     return TrialKind.UNKNOWN if body is None else kind_of_movement(body, markers.rate_hz)
 
 
-def kind_of_movement(body: FeetAndPelvis, rate_hz: float) -> TrialKind:
+def kind_of_movement(body: BodyPoints, rate_hz: float) -> TrialKind:
     """Kind of movement from the paths of feet and pelvis.
 
     Args:
         body: Feet and pelvis.
         rate_hz: Frame rate, Hz.
     """
-    flights = flights_of(body, rate_hz)
-    if passes(body) >= 2 and (np.nanmax(body.lifts_m, axis=0) > STEP_M).all():
-        in_flight = sum(len(run) for run in flights)
-        return TrialKind.RUN if in_flight > RUN_SHARE * len(body.lifts_m) else TrialKind.WALK
+    flights, stairs = flights_of(body, rate_hz), climbs(body, rate_hz)
+    if not stairs and _steps(body, rate_hz):
+        lifted = float((np.nan_to_num(body.lifts_m).min(axis=1) > LIFTED_M).mean())
+        flown = sum(len(run) for run in flights) / len(body.lifts_m)
+        if lifted > RUN_SHARE and flown > FLOWN_SHARE:
+            return TrialKind.RUN
+        return TrialKind.TURN if turned_deg(body, rate_hz) > TURNED_DEG else TrialKind.WALK
     height = body.pelvis_m[:, 2]
     longest = max((len(run) for run in flights), default=0) / rate_hz
     if longest >= JUMP_S and np.nanmax(height) - np.nanmedian(height) > RISEN_M:
         return TrialKind.JUMP
+    if stairs:
+        return TrialKind.STAIRS
+    if _lies_down(body):
+        return TrialKind.UNKNOWN
+    if (np.nanmax(body.lifts_m, axis=0) > STEP_M).all() and turned_deg(body, rate_hz) > TURNED_DEG:
+        return TrialKind.TURN
     stayed = np.nanmax(np.ptp(_known(body.feet_m[:, :, :2]), axis=0)) < STAYED_M
     upright = float(np.nanpercentile(height, 90))
     if stayed and not flights and upright - np.nanmin(height) > SUNK_M:
@@ -96,7 +99,69 @@ def kind_of_movement(body: FeetAndPelvis, rate_hz: float) -> TrialKind:
     return TrialKind.UNKNOWN
 
 
-def flights_of(body: FeetAndPelvis, rate_hz: float) -> list[Array]:
+def turned_deg(body: BodyPoints, rate_hz: float) -> float:
+    """Range of the pelvis's direction over the trial, averaged over about a stride, degrees; 0 where it is not seen.
+
+    Args:
+        body: The points of the body.
+        rate_hz: Frame rate, Hz.
+    """
+    from scipy.ndimage import uniform_filter1d
+
+    known = np.flatnonzero(~np.isnan(body.yaw_rad))
+    if len(known) < 2:
+        return 0.0
+    yaw = np.interp(np.arange(len(body.yaw_rad)), known, body.yaw_rad[known])
+    window = min(round(STRIDE_S * rate_hz), len(yaw) // 2)
+    smooth = uniform_filter1d(yaw, max(window, 1))[window // 2 : len(yaw) - window // 2]
+    return float(np.rad2deg(np.ptp(smooth)))
+
+
+def climbs(body: BodyPoints, rate_hz: float) -> bool:
+    """Whether a foot stands at two heights, and the pelvis is higher by a good part of that while it stands higher.
+
+    Args:
+        body: The points of the body.
+        rate_hz: Frame rate, Hz.
+    """
+    for foot in range(2):
+        place = body.feet_m[:, foot]
+        if len(place) < 2:
+            return False
+        speed = np.linalg.norm(np.gradient(place, axis=0), axis=1) * rate_hz
+        seen = ~np.isnan(body.pelvis_m[:, 2]) & ~np.isnan(body.lifts_m[:, foot])
+        stands = np.flatnonzero((speed < STANDS_M_S) & seen)
+        if len(stands) < 2.0 * STANDS_S * rate_hz:
+            continue
+        heights, pelvis = body.lifts_m[stands, foot], body.pelvis_m[stands, 2]
+        high = heights > 0.5 * (heights.max() + heights.min())
+        if high.sum() < STANDS_S * rate_hz or (~high).sum() < STANDS_S * rate_hz:
+            continue
+        rise = float(np.median(heights[high]) - np.median(heights[~high]))
+        rose = float(np.percentile(pelvis[high], 95) - np.percentile(pelvis[~high], 95))
+        if rise > STAIR_M and rose > ROSE_SHARE * rise:
+            return True
+    return False
+
+
+def _lies_down(body: BodyPoints) -> bool:
+    """The pelvis sinks lower than squatting or sitting brings it: the person kneels or lies."""
+    above = body.pelvis_m[:, 2] - float(np.nanmin(body.feet_m[:, :, 2]))
+    high, low = np.nanpercentile(above, [95, 2])
+    return bool(high - low > LOWEST_SHARE * high)
+
+
+def _steps(body: BodyPoints, rate_hz: float) -> bool:
+    """Feet pass each other, both are lifted, and the body gets on: over the floor, or on a belt that moves the feet."""
+    if passes(body) < 2 or not (np.nanmax(body.lifts_m, axis=0) > STEP_M).all():
+        return False
+    travels = float(np.nanmax(np.ptp(_known(body.pelvis_m[:, :2]), axis=0))) > TRAVELS_M
+    speed = np.linalg.norm(np.gradient(body.feet_m, axis=0), axis=2) * rate_hz
+    stands = float(np.nanmax((speed < STANDS_M_S).mean(axis=0)))
+    return travels or stands < BELT_STANDS
+
+
+def flights_of(body: BodyPoints, rate_hz: float) -> list[Array]:
     """Frames of each flight: both feet are off the floor and the pelvis falls freely.
 
     Args:
@@ -115,7 +180,7 @@ def flights_of(body: FeetAndPelvis, rate_hz: float) -> list[Array]:
     return found
 
 
-def passes(body: FeetAndPelvis) -> int:
+def passes(body: BodyPoints) -> int:
     """Number of times that one foot passes the other, from clearly behind to clearly before it."""
     apart = body.feet_m[:, 0, :2] - body.feet_m[:, 1, :2]
     known = apart[~np.isnan(apart).any(axis=1)]
@@ -126,93 +191,6 @@ def passes(body: FeetAndPelvis) -> int:
     side = np.where(along > PASSING_M, 1, np.where(along < -PASSING_M, -1, 0))
     turns = side[side != 0]
     return int(np.count_nonzero(np.diff(turns)))
-
-
-def feet_and_pelvis(markers: MarkerTrajectories) -> FeetAndPelvis | None:
-    """Feet and pelvis of a capture; None: two feet are not found."""
-    seen = markers.present.mean(axis=0) >= LEAST_SEEN
-    positions = markers.positions_m[:, seen]
-    if not positions.size:
-        return None
-    heights = np.nanmedian(positions[..., 2], axis=0)
-    floor = float(np.nanmin(positions[..., 2]))
-    share = (heights - floor) / max(float(heights.max()) - floor, 1e-6)
-    low = positions[:, share < LOW]
-    feet = _two_groups(low) or _two_sides(low, positions)
-    middle = positions[:, (share > MIDDLE[0]) & (share < MIDDLE[1])]
-    if feet is None or not middle.size:
-        return None
-    pelvis = _steadiest([middle[:, group] for group in _groups(middle)], _centre(positions))
-    lows = np.stack([_lowest(foot) for foot in feet], axis=1)
-    return FeetAndPelvis(
-        np.stack([_centre(foot) for foot in feet], axis=1), lows - np.nanmin(lows, axis=0), _centre(pelvis)
-    )
-
-
-def _steadiest(groups: list[Array], body: Array) -> Array:
-    """The group that stays nearest to its place in the body: of the markers half-way up the pelvis, and not a hand."""
-    several = [group for group in groups if group.shape[1] > 1] or groups
-    spreads = [np.nanstd(_centre(group) - body, axis=0).sum() for group in several]
-    return several[int(np.argmin(spreads))]
-
-
-def _two_groups(positions: Array) -> list[Array] | None:
-    """The markers of the two largest groups that keep their distances; None: fewer than two groups."""
-    groups = _groups(positions)
-    return [positions[:, group] for group in groups[:2]] if len(groups) > 1 else None
-
-
-def _groups(positions: Array) -> list[list[int]]:
-    """Markers that keep their distances from one another, the largest group first."""
-    left, groups = set(range(positions.shape[1])), []
-    while left:
-        group, frontier = set(), {min(left)}
-        while frontier:
-            group |= frontier
-            frontier = {
-                other
-                for other in left - group
-                for one in frontier
-                if _keeps_distance(positions[:, one], positions[:, other])
-            }
-        left -= group
-        groups.append(sorted(group))
-    return sorted(groups, key=len, reverse=True)
-
-
-def _two_sides(low: Array, positions: Array) -> list[Array] | None:
-    """The low markers of either side, of feet that never move apart: a standing body is broader than it is deep."""
-    places, body = np.nanmean(low, axis=0)[:, :2], np.nanmedian(positions, axis=0)[:, :2]
-    if len(places) < 2:
-        return None
-    middle = body.mean(axis=0)
-    across = np.linalg.svd(body - middle, full_matrices=False)[2][0]
-    side = (places - middle) @ across > 0.0
-    return [low[:, side], low[:, ~side]] if side.any() and not side.all() else None
-
-
-def _keeps_distance(a: Array, b: Array) -> bool:
-    distance = np.linalg.norm(a - b, axis=1)
-    known = distance[~np.isnan(distance)]
-    return len(known) > 1 and float(known.std()) < RIGID_M
-
-
-def _centre(positions: Array) -> Array:
-    """(T, 3) mean of the markers, each taken about its own place so that a missing one does not shift it."""
-    own = np.nanmean(positions, axis=0)
-    moved = positions - own
-    known: BoolArray = ~np.isnan(moved)
-    counts = known.sum(axis=1)
-    total = np.where(known, moved, 0.0).sum(axis=1)
-    return np.where(counts > 0, total / np.maximum(counts, 1), np.nan) + own.mean(axis=0)
-
-
-def _lowest(positions: Array) -> Array:
-    """(T,) height of the lowest marker above its own lowest height."""
-    lifts = positions[..., 2] - np.nanmin(positions[..., 2], axis=0)
-    known = ~np.isnan(lifts)
-    lowest = np.where(known, lifts, np.inf).min(axis=1)
-    return np.where(np.isfinite(lowest), lowest, np.nan)
 
 
 def _known(values: Array) -> Array:

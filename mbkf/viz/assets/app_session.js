@@ -1,7 +1,7 @@
 // One session on the page: the person, the trials, the run.
 "use strict";
 
-const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", unknown: "unknown" };
+const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", turn: "turn", stairs: "stairs", sit_to_stand: "sit_to_stand", unknown: "unknown" };
 const STAGE_WORDS = { "Reading": "stage_reading", "Following markers alone": "stage_markers", "Filtering": "stage_filtering", "Writing": "stage_writing" };
 
 function sessionView(data, act) {
