@@ -6,10 +6,13 @@ import argparse
 import math
 from collections.abc import Callable
 from pathlib import PurePath
-from typing import NamedTuple, TypedDict
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
+
+if TYPE_CHECKING:
+    from mbkf.io.verdict import VerdictTold
 
 CAPTURE_FILES = either((*CAPTURES.suffixes_so_far, "that of an installed reader"))
 """Suffixes of captures that can be read, for help texts, which import no other package."""
@@ -228,3 +231,24 @@ def port(text: str) -> int:
     """A port from 0, any free one, to 65535."""
     rule = "a port from 0 (any free one) to 65535"
     return int(_number(text, lambda x: 0.0 <= x <= 65535.0 and x == int(x), rule))
+
+
+EXIT_DO_NOT_USE = 3
+"""Exit code with ``--strict`` where the verdict is "do not use"."""
+
+
+def add_strict(parser: argparse._ActionsContainer) -> None:
+    """Adds ``--strict``."""
+    parser.add_argument(
+        "--strict", action="store_true", help='exit with 3 where the verdict is "do not use", after writing'
+    )
+
+
+def strict_exit(args: argparse.Namespace, told: VerdictTold | None) -> int:
+    """0, or with ``--strict`` 3 where the verdict is "do not use".
+
+    Args:
+        args: Options of the command.
+        told: The verdict as summaries have it.
+    """
+    return EXIT_DO_NOT_USE if args.strict and told is not None and told["overall"] == "do not use" else 0

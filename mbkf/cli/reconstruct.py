@@ -12,6 +12,9 @@ Examples:
 By default all later frames correct earlier ones (smoothing). With --causal a frame uses itself and earlier frames, as
 in 'mbkf live'; with --lag MS also those of the next MS milliseconds. Every file but markers.trc states the choice.
 
+The first line printed is the verdict: use, look or do not use, with the parts that it concerns and the reason. With
+--strict the exit code is 3 where the word is "do not use".
+
 Writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactions.mot and markers.trc to the folder.
 """
 
@@ -29,16 +32,22 @@ from mbkf.cli.options import (
     add_lag_option,
     add_out,
     add_spreads_option,
+    add_strict,
     asked_spreads,
     axes_options,
     comma_separated,
     lag_seconds,
+    strict_exit,
 )
 
 if TYPE_CHECKING:
     from mbkf.io.results_folder import Summary
+    from mbkf.io.verdict import VerdictTold
     from mbkf.trial.inertial.on_body import ImuOnBody
     from mbkf.trial.preparation.settings import Hidden
+
+MOST_REASONS = 4
+"""Reasons that are printed below the first line."""
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -119,6 +128,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     add_spreads_option(parser)
     add_axes_options(parser)
+    add_strict(parser)
     add_out(parser, "DIR", "folder to write", required=True)
 
 
@@ -161,7 +171,7 @@ def run(args: argparse.Namespace) -> int:
     summary = summarise(result, truth)
     write_reconstruction(result, summary, folder)
     print_summary(summary, folder)
-    return 0
+    return strict_exit(args, summary["verdict"])
 
 
 def _imus(args: argparse.Namespace) -> ImuOnBody | None:
@@ -245,10 +255,33 @@ def print_summary(summary: Summary, folder: Path) -> None:
         if text or name not in ("markers ignored", "unexplained loads", "checks"):
             table.add_row(name, text)
     console = terminal()
+    for line in verdict_lines(summary["trial"], summary["verdict"]):
+        console.print(line, soft_wrap=True)
     console.print(table)
     for warning in summary["warnings"]:
         console.print(f"note: {warning}", soft_wrap=True)
     console.print(str(folder), soft_wrap=True)
+
+
+def verdict_lines(trial: str, told: VerdictTold | None) -> list[str]:
+    """The verdict on a trial and its gravest reason in a line, and the other reasons below.
+
+    Args:
+        trial: Name of the trial.
+        told: The verdict as summaries have it; None gives no line.
+    """
+    from mbkf.io.verdict import Verdict
+
+    if told is None:
+        return []
+    verdict = Verdict.of_table(told)
+    others = verdict.sentences[1:]
+    more = (
+        [f"  and {len(others) - MOST_REASONS} more reasons in summary.json"]
+        if len(others) > MOST_REASONS
+        else []
+    )
+    return [f"{trial}: {verdict.line}", *(f"  {one}" for one in others[:MOST_REASONS]), *more]
 
 
 def _unexplained(summary: Summary) -> list[str]:

@@ -27,6 +27,7 @@ class Finding:
         verdict: One of :data:`Judgement`.
         hint: Meaning and remedy, or the reason why it is not judged.
         better: Better value of the quantity where the capture gives one, e.g. the mass in kg; None elsewhere.
+        segment: Segment that it concerns; empty for the capture as a whole.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Finding:
     verdict: Judgement
     hint: str = ""
     better: float | None = None
+    segment: str = ""
 
     def __post_init__(self) -> None:
         """Refuses an unknown verdict.

@@ -30,6 +30,7 @@ from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.quantities import LATER, Column, Plot, attribute, change, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
+from mbkf.io.verdict import Verdict, verdict_of_text
 
 SOURCE_CODES = {one.value: one.name.lower() for one in Source}
 
@@ -223,8 +224,8 @@ class Quality:
     measured: BoolArray = flag("time", "plates measure every load", section="valid-frames")
     valid: BoolArray = flag(
         "time",
-        "every load is measured, or estimated so well that the torques which it changes are known, and no unexplained "
-        "force acts",
+        "every load is measured, or estimated so well that the torques which it changes are known, no unexplained "
+        "force acts, and the verdict leaves loads",
         section="valid-frames",
     )
     unexplained_force_n: Array = quantity(
@@ -242,6 +243,9 @@ class Quality:
         "stretches in which a limb fits its markers badly or lies beyond its ranges, mended or not",
         (),
         read=_limb_doubts,
+    )
+    verdict: Verdict | None = attribute(
+        "parts that may be used, and the reasons; absent in older files", None, read=verdict_of_text
     )
 
 

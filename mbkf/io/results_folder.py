@@ -18,6 +18,7 @@ from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
 from mbkf.io.results_opensim import OPENSIM_FILES, write_opensim
+from mbkf.io.verdict import VerdictTold
 
 SUMMARY_FILE = "summary.json"
 MOTION_FILE = "motion.h5"
@@ -122,6 +123,7 @@ class Summary(TypedDict):
 
     Attributes:
         run_id: A number that all files of one run share; given when they are written.
+        verdict: The parts of the result that may be used, and the reasons; None of a result that was not judged.
         trial, protocol, filter: Names of capture, protocol and filter.
         smoothed: Whether all later frames that matter were used.
         later_frames: The same in words: "smoothed (all later frames known)", "causal (as live)" or "fixed lag 60 ms".
@@ -163,6 +165,7 @@ class Summary(TypedDict):
     """
 
     run_id: NotRequired[str]
+    verdict: VerdictTold | None
     trial: str
     protocol: str
     filter: str

@@ -36,6 +36,7 @@ from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.progression import PELVIS_FRAMES
 from mbkf.trial.results.readings import ANGLES, zero_posture
 from mbkf.trial.results.warnings import all_warnings
+from mbkf.trial.verdict.judge import judged_result
 
 
 def reconstruct(
@@ -108,13 +109,15 @@ def reconstruct(
         )
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
         checks = _checks(shown, subject, inputs, recording, alone) if settings.checks else ()
-        return replace(
-            found,
-            checks=checks,
-            markers_ignored=dict(use.ignored),
-            markers_explained=use.share,
-            warnings=all_warnings(checks, subject, found),
-            names_exchanged=exchanged,
+        return judged_result(
+            replace(
+                found,
+                checks=checks,
+                markers_ignored=dict(use.ignored),
+                markers_explained=use.share,
+                warnings=all_warnings(checks, subject, found),
+                names_exchanged=exchanged,
+            )
         )
 
 

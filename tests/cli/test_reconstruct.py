@@ -28,8 +28,8 @@ OPENSIM = {"angles.mot", "angles_lab.mot", "torques.sto", "reactions.mot", "mark
 FILES = {"summary.json", "motion.h5"} | OPENSIM
 
 KEYS = {
-    "trial", "protocol", "filter", "smoothed", "later_frames", "version", "direction", "progression", "mass_kg",
-    "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
+    "verdict", "trial", "protocol", "filter", "smoothed", "later_frames", "version", "direction", "progression",
+    "mass_kg", "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "residual_force_share",
     "residual_lever_m", "valid_frames", "measured_frames", "contacts", "unexplained", "limb_doubts",
@@ -106,6 +106,8 @@ def test_files_keys_and_numbers(person, reconstruct, capsys):
     kind, heading = summary["progression"]["kind"], summary["progression"]["heading_deg"]
     assert f"{kind}, {heading:z.0f}° from the x axis" in shown
     assert shown.splitlines()[-1] == str(out)
+    assert shown.splitlines()[0] == "trial: use"
+    assert summary["verdict"]["overall"] == "use"
 
 
 def test_opensim_files_agree_with_the_motion(plain):
@@ -269,6 +271,22 @@ def test_other_contacts_are_looked_for_unless_only_the_feet_bear(person, causal,
     feet_only = read_summary(causal(person.trial, "--feet-only"))
     assert read_summary(plain())["settings"]["other_contacts"] is True
     assert feet_only["settings"]["other_contacts"] is False
+
+
+def test_a_result_that_is_not_to_be_used_is_written_and_with_strict_exits_with_3(person, tmp_path, capsys):
+    """Plates that read a person of half the mass: the loads are another's, which the first line states."""
+    capture = read_c3d(person.trial, CaptureOptions())
+    halves = tuple(replace(p, force_n=0.5 * p.force_n, moment_nm=0.5 * p.moment_nm) for p in capture.plates)
+    write_c3d(replace(capture, plates=halves), tmp_path / "trial.c3d")
+    words = ["reconstruct", str(tmp_path / "trial.c3d"), "--subject", str(person.subject), *KINEMATIC]
+    assert main([*words, "--out", str(tmp_path / "lax")]) == 0
+    first = capsys.readouterr().out.splitlines()[0]
+    assert main([*words, "--strict", "--out", str(tmp_path / "strict")]) == 3
+    assert first.startswith("trial: do not use: loads of both legs")
+    summary = read_summary(tmp_path / "strict")
+    assert summary["verdict"]["parts"]["right_leg_loads"] == "do not use"
+    assert summary["verdict"]["parts"]["right_leg"] == "use"
+    assert summary["valid_frames"] == 0 and summary["measured_frames"] > 0
 
 
 def test_hide_is_read():

@@ -5,6 +5,7 @@ The check uses the segments that carry the markers, no body and no filter.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -55,7 +56,7 @@ def rigidity_finding(markers: MarkerTrajectories, subject: Subject) -> Finding:
     value, sd = (float(x) for x in typical[name])
     hint = f"{name} moves most against the others of its segment ({own[name].segment.replace('_', ' ')})"
     remedy = ": check its name and segment, and whether it came loose"
-    return judged(NAME, value, sd, "mm", BOUND_MM, hint, remedy)
+    return replace(judged(NAME, value, sd, "mm", BOUND_MM, hint, remedy), segment=own[name].segment)
 
 
 def _spread_mm(apart: Array) -> float | None:

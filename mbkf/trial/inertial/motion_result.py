@@ -15,6 +15,7 @@ from mbkf.model.human import HumanModel
 from mbkf.trial.inertial.motion_inputs import motion_inputs
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
+from mbkf.trial.verdict.judge import judged_result
 
 
 @dataclass(frozen=True)
@@ -60,4 +61,6 @@ def motion_result(
     capture = Capture(timeline.trial, none, notes=tuple(notes))
     hidden = np.zeros((frames, 0), dtype=bool)
     found = assemble(capture, subject, settings, none, hidden, inputs, tracked)
-    return replace(found, protocol="inertial sensors", settings={**found.settings, **(more or {})})
+    return judged_result(
+        replace(found, protocol="inertial sensors", settings={**found.settings, **(more or {})})
+    )

@@ -24,6 +24,7 @@ from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.warnings import unexplained_remarks
+from mbkf.trial.verdict.judge import judged_result
 
 
 def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
@@ -74,7 +75,7 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
             result = changes.added_to(result, logged.rows)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
     warnings = (*unexplained_remarks(found.unexplained), *found.warnings)
-    return replace(found, settings=logged.settings, warnings=warnings)
+    return judged_result(replace(found, settings=logged.settings, warnings=warnings))
 
 
 def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracked: Track) -> Reconstruction:

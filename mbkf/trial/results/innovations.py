@@ -38,7 +38,7 @@ KIND_WORDS = {"markers": "markers", "plates": "plates", "law": "Newton's law", "
 
 def per_reading(r: Reconstruction) -> float | None:
     """Mean over settled frames of the normalised innovation squared per reading."""
-    counted = _settled(r) & (r.nis_readings > 0) & np.isfinite(r.nis)
+    counted = settled(r) & (r.nis_readings > 0) & np.isfinite(r.nis)
     if not counted.any():
         return None
     return float((r.nis[counted] / r.nis_readings[counted]).mean())
@@ -52,8 +52,8 @@ def by_kind(r: Reconstruction) -> dict[str, float]:
     """
     found: dict[str, float] = {}
     if r.nis_by_kind is not None and r.nis_readings_by_kind is not None:
-        settled = _settled(r) & np.isfinite(r.nis_by_kind).all(axis=1)
-        squared, readings = (x[settled].sum(axis=0) for x in (r.nis_by_kind, r.nis_readings_by_kind))
+        counted = settled(r) & np.isfinite(r.nis_by_kind).all(axis=1)
+        squared, readings = (x[counted].sum(axis=0) for x in (r.nis_by_kind, r.nis_readings_by_kind))
         found = {kind: float(squared[k] / readings[k]) for k, kind in enumerate(READING_KINDS) if readings[k]}
     before = before_correction(r.checks)
     return found if before is None else found | {BEFORE: before}
@@ -73,7 +73,7 @@ def marker_noise_mm(r: Reconstruction) -> dict[str, float | None]:
     """Root mean square of the spread of one reading of each marker, per coordinate, as its innovations show it."""
     if r.marker_spread_m is None:
         return {}
-    seen = np.where(_settled(r)[:, None] & r.present, r.marker_spread_m, np.nan)
+    seen = np.where(settled(r)[:, None] & r.present, r.marker_spread_m, np.nan)
     counts = np.isfinite(seen).sum(axis=0)
     mean = np.nansum(seen**2, axis=0) / np.maximum(counts, 1)
     return {
@@ -106,7 +106,7 @@ def _remarks(r: Reconstruction) -> Iterator[str]:
 def _single(r: Reconstruction) -> Iterator[str]:
     if r.marker_nis is None:
         return
-    used = np.isfinite(r.marker_nis) & _settled(r)[:, None]
+    used = np.isfinite(r.marker_nis) & settled(r)[:, None]
     counts = used.sum(axis=0)
     mean = np.where(used, r.marker_nis, 0.0).sum(axis=0) / np.maximum(counts, 1)
     odd = np.flatnonzero((mean > MARKER_NIS) & (counts >= MARKER_S * r.rate_hz))
@@ -125,8 +125,8 @@ def _stretches(r: Reconstruction) -> Iterator[tuple[float, float, float, str]]:
     width = max(1, round(STRETCH_S * r.rate_hz))
     if r.nis_by_kind is None or r.nis_readings_by_kind is None or r.frames < width:
         return
-    squared = np.where(_settled(r)[:, None], np.nan_to_num(r.nis_by_kind), 0.0)
-    readings = np.where(_settled(r)[:, None], r.nis_readings_by_kind, 0)
+    squared = np.where(settled(r)[:, None], np.nan_to_num(r.nis_by_kind), 0.0)
+    readings = np.where(settled(r)[:, None], r.nis_readings_by_kind, 0)
     high: BoolArray = _moving(squared.sum(axis=1), width) > STRETCH_NIS * np.maximum(
         _moving(readings.sum(axis=1), width), 1.0
     )
@@ -147,5 +147,6 @@ def _moving(values: Array, width: int) -> Array:
     return total[width:] - total[:-width]
 
 
-def _settled(r: Reconstruction) -> BoolArray:
+def settled(r: Reconstruction) -> BoolArray:
+    """(T,) frames in which innovations count, once the filter has settled."""
     return np.asarray(r.times_s >= (r.times_s[0] + SETTLING_S if r.frames else 0.0))

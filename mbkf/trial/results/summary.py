@@ -53,6 +53,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
     force_n, moment_nm = (_rms_of_norm(one[r.measured]) for one in (r.residual_force_n, r.residual_moment_nm))
     return {
         "trial": r.trial,
+        "verdict": None if r.verdict is None else r.verdict.as_table(),
         "protocol": r.protocol,
         "filter": r.filter,
         "smoothed": bool(r.smoothed),

@@ -16,6 +16,7 @@ from mbkf.trial.results.summary import compare_with_truth, summarise
 from tests.io.reconstructions import made_up, with_trunk
 
 KEYS = {
+    "verdict",
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
     "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",

@@ -1,0 +1,206 @@
+"""Reasons against the motion of a part: its markers, its joints' ranges, its spreads, the scaled body, tracking.
+
+Bounds were set on sixty right trials (public captures and persons made from OpenSim bodies) and on forty with a
+fault; ``python -m benchmarks verdict`` prints the words on these and on others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, TITLES, Reason, Word
+from mbkf.trial.verdict.evidence import Evidence
+from mbkf.trial.verdict.parts import ARMS
+
+
+class Bounds(NamedTuple):
+    """Sizes from which a number calls for a look, and from which a result is not to be used."""
+
+    look: float
+    leave: float
+
+    def reached(self, size: float) -> tuple[Word, float] | None:
+        """The word on a number and its size over the word's bound; None below both bounds."""
+        if size >= self.leave:
+            return "do not use", size / self.leave
+        return ("look", size / self.look) if size >= self.look else None
+
+
+FIT = Bounds(1.5, 2.5)
+"""Distance of a part's markers from the body over their noise: at most 1.1 in right trials, from 2.6 on where names are
+crossed or plates drag the body off its markers."""
+
+INNOVATION = Bounds(2.2, 4.0)
+"""Innovation squared of a part's markers per coordinate: at most 1.9 in right trials."""
+
+RANGE_DEG = Bounds(4.0, 10.0)
+"""Excess of a joint over its range for longer than an instant: at most 2.5° in right trials."""
+
+SPREAD_DEG = Bounds(10.0, 20.0)
+ARM_SPREAD_DEG = Bounds(20.0, 40.0)
+"""Standard deviation of flexions: at most 8.5° in right trials, of arms 16°."""
+
+REFUSED = Bounds(0.1, 0.3)
+"""Share of a part's samples that were refused."""
+
+UNTRACKED = Bounds(0.05, 0.5)
+"""Share of the frames in which the body was not followed."""
+
+UNEXPLAINED_MARKERS = Bounds(0.4, 0.7)
+"""Share of the capture's markers that the protocol does not know."""
+
+CHECK_NAMES = "check the names of its markers, and that the subject file belongs to this person"
+
+
+def motion_reasons(evidence: Evidence) -> Iterator[Reason]:
+    """All reasons against motions of parts.
+
+    Args:
+        evidence: The evidence.
+    """
+    yield from _not_shown(evidence)
+    yield from _fits(evidence)
+    yield from _ranges(evidence)
+    yield from _spreads(evidence)
+    yield from _whole(evidence)
+
+
+def _not_shown(evidence: Evidence) -> Iterator[Reason]:
+    for part in evidence.unshown:
+        if part in LOAD_PARTS:
+            yield Reason(
+                part,
+                "do not use",
+                "no frame in which every load is known",
+                "torques rest on loads that nothing reads",
+                "record both feet on plates, or use the motion alone",
+                shown=False,
+            )
+        else:
+            yield Reason(
+                part,
+                "do not use",
+                "the capture shows nothing of it",
+                "its angles are those of the usual posture",
+                "put markers on it if it matters",
+                shown=False,
+            )
+    for part, segments in evidence.unshown_segments.items():
+        names = ", ".join(one.replace("_", " ") for one in segments)
+        yield Reason(
+            part,
+            "look",
+            f"no marker shows the {names}",
+            "angles beside it are guessed from the usual posture",
+            "put markers on it, or use the other joints alone",
+        )
+    if "pelvis" in evidence.unshown:
+        for part in ("right_leg", "left_leg", "trunk"):
+            if part not in evidence.unshown:
+                yield Reason(
+                    part,
+                    "look",
+                    "no marker shows the pelvis",
+                    "hip and trunk angles are measured from a pelvis that is guessed",
+                    "use knees and ankles alone, or put markers on the pelvis",
+                )
+
+
+def _fits(evidence: Evidence) -> Iterator[Reason]:
+    for fit in evidence.fits:
+        title = TITLES[fit.part]
+        off = FIT.reached(fit.per_noise)
+        if off is not None:
+            yield Reason(
+                fit.part,
+                off[0],
+                f"markers of the {title} lie {fit.rms_mm:.0f} mm from the body, {fit.per_noise:.1f} times as far as "
+                f"their noise explains; worst is {fit.worst}",
+                "the body is not posed as these markers are",
+                CHECK_NAMES,
+                off[1],
+            )
+        moving = None if fit.nis is None else INNOVATION.reached(fit.nis)
+        if moving is not None:
+            yield Reason(
+                fit.part,
+                moving[0],
+                f"innovations of the markers of the {title} are {fit.nis:.1f} per reading, 1 in a coherent trial",
+                "the body moves otherwise than these markers",
+                "check their names, and plates and clocks",
+                moving[1],
+            )
+        refused = REFUSED.reached(fit.refused)
+        if refused is not None:
+            yield Reason(
+                fit.part,
+                refused[0],
+                f"{100.0 * fit.refused:.0f} % of the samples of the {title} were refused",
+                "the motion rests on the others",
+                "check names and reflections",
+                refused[1],
+            )
+
+
+def _ranges(evidence: Evidence) -> Iterator[Reason]:
+    for one in evidence.beyond:
+        off = RANGE_DEG.reached(one.excess_deg)
+        if off is not None:
+            yield Reason(
+                one.part,
+                off[0],
+                f"the joint of the {one.joint.replace('_', ' ')} is {one.excess_deg:.0f}° beyond its range, "
+                f"{one.seconds:.1f} s in all",
+                "a limb may be turned over, or its markers exchanged",
+                CHECK_NAMES,
+                off[1],
+            )
+
+
+def _spreads(evidence: Evidence) -> Iterator[Reason]:
+    for part, sd in evidence.spread_deg.items():
+        off = (ARM_SPREAD_DEG if part in ARMS else SPREAD_DEG).reached(sd)
+        if off is not None and part not in evidence.unshown:
+            yield Reason(
+                part,
+                off[0],
+                f"flexions of the {TITLES[part]} have standard deviations of {sd:.0f}°",
+                "too few markers show them",
+                "use them with their intervals, or add markers",
+                off[1],
+            )
+
+
+def _whole(evidence: Evidence) -> Iterator[Reason]:
+    """Reasons against the motion of all parts that are shown."""
+    found: list[tuple[tuple[Word, float], str, str, str]] = []
+    lost = UNTRACKED.reached(1.0 - evidence.tracked)
+    if lost is not None:
+        share = 100.0 * (1.0 - evidence.tracked)
+        found.append(
+            (
+                lost,
+                f"the body was not followed in {share:.0f} % of the frames",
+                "these frames are left out",
+                "check unit, axes and marker names",
+            )
+        )
+    unknown = UNEXPLAINED_MARKERS.reached(1.0 - evidence.explained)
+    if unknown is not None:
+        found.append(
+            (
+                unknown,
+                f"the protocol knows {100.0 * evidence.explained:.0f} % of the capture's markers",
+                "it may be another marker set",
+                "name the protocol with --protocol, or let it be inferred",
+            )
+        )
+    for doubt in evidence.doubts:
+        found.append(
+            (("look", 1.0), f"the subject file: {doubt}", "the body may be another's", "scale again")
+        )
+    for (word, weight), what, means, todo in found:
+        for part in MOTION_PARTS:
+            if part not in evidence.unshown:
+                yield Reason(part, word, what, means, todo, weight)

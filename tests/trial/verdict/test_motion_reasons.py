@@ -1,0 +1,94 @@
+"""Reasons against motions: each bound from both sides, and the parts that are meant."""
+
+from dataclasses import replace
+
+import pytest
+
+from mbkf.io.verdict import MOTION_PARTS, gravest
+from mbkf.trial.verdict.evidence import Evidence
+from mbkf.trial.verdict.fit import PartFit
+from mbkf.trial.verdict.motion_reasons import FIT, INNOVATION, RANGE_DEG, Bounds, motion_reasons
+from mbkf.trial.verdict.ranges import Beyond
+
+LEG = PartFit("left_leg", 8, 5.0, 0.5, 1.0, 0.0, "LANK")
+
+
+def word_on(part, **evidence):
+    return gravest(one.word for one in motion_reasons(Evidence(**evidence)) if one.part == part)
+
+
+def test_no_evidence_against_a_trial_gives_no_reason():
+    assert list(motion_reasons(Evidence(fits=(LEG,)))) == []
+
+
+@pytest.mark.parametrize(
+    ("size", "word"), [(0.99, "use"), (1.0, "look"), (1.99, "look"), (2.0, "do not use")]
+)
+def test_words_begin_at_their_bounds(size, word):
+    assert word_on("left_leg", fits=(replace(LEG, per_noise=_scaled(FIT, size)),)) == word
+    assert word_on("left_leg", fits=(replace(LEG, nis=_scaled(INNOVATION, size)),)) == word
+    knee = Beyond("left_leg", "left_shank", _scaled(RANGE_DEG, size), 0.5)
+    assert word_on("left_leg", beyond=(knee,)) == word
+    assert word_on("right_leg", beyond=(knee,)) == "use"
+
+
+def _scaled(bounds: Bounds, size: float) -> float:
+    """A number whose word changes at 1 and at 2."""
+    return bounds.look * size if size < 1.0 else bounds.look + (size - 1.0) * (bounds.leave - bounds.look)
+
+
+def test_the_text_names_number_unit_part_and_marker():
+    (found,) = motion_reasons(Evidence(fits=(replace(LEG, per_noise=3.0, rms_mm=31.0),)))
+    assert found.found == (
+        "markers of the left leg lie 31 mm from the body, 3.0 times as far as their noise explains; worst is LANK"
+    )
+    assert found.word == "do not use" and found.weight == pytest.approx(3.0 / FIT.leave)
+
+
+def test_a_part_that_is_not_shown_says_so():
+    (found,) = motion_reasons(Evidence(unshown=("left_arm",)))
+    assert (found.part, found.word, found.shown) == ("left_arm", "do not use", False)
+
+
+def test_a_pelvis_that_is_not_shown_makes_its_neighbours_doubtful():
+    words = {one.part: one.word for one in motion_reasons(Evidence(unshown=("pelvis", "left_leg")))}
+    assert words == {"pelvis": "do not use", "left_leg": "do not use", "right_leg": "look", "trunk": "look"}
+
+
+def test_a_segment_that_is_not_shown_makes_its_part_doubtful():
+    assert word_on("right_leg", unshown_segments={"right_leg": ("right_foot",)}) == "look"
+
+
+@pytest.mark.parametrize(
+    ("part", "sd", "word"),
+    [
+        ("left_leg", 9.0, "use"),
+        ("left_leg", 12.0, "look"),
+        ("left_leg", 25.0, "do not use"),
+        ("left_arm", 15.0, "use"),
+        ("left_arm", 45.0, "do not use"),
+    ],
+)
+def test_wide_spreads_have_words(part, sd, word):
+    assert word_on(part, spread_deg={part: sd}) == word
+
+
+@pytest.mark.parametrize(
+    ("evidence", "word"),
+    [
+        ({"tracked": 0.97}, "use"),
+        ({"tracked": 0.9}, "look"),
+        ({"tracked": 0.4}, "do not use"),
+        ({"explained": 0.7}, "use"),
+        ({"explained": 0.5}, "look"),
+        ({"explained": 0.2}, "do not use"),
+        ({"doubts": ("the fit did not converge",)}, "look"),
+    ],
+)
+def test_what_concerns_the_whole_trial_concerns_every_shown_part(evidence, word):
+    assert {word_on(part, **evidence) for part in MOTION_PARTS} == {word}
+    assert word_on("trunk", **evidence, unshown=("trunk",)) == "do not use"
+
+
+def test_refused_samples_have_words():
+    assert word_on("left_leg", fits=(replace(LEG, refused=0.15),)) == "look"
