@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import BoolArray
 from mbkf.io.contacts import FEET, ContactInterval
 from mbkf.io.findings import Finding
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
@@ -32,6 +33,7 @@ class Evidence:
         unshown_segments: Segments by part that no instrument shows, of parts that others show.
         fits: Fit of the markers of each part that shows any.
         beyond: Joints beyond their ranges.
+        doubtful_limbs: Limbs that were in doubt while the filter ran, and the share of the trial for each.
         spread_deg: Mean standard deviation by part of the flexions that instruments show.
         loads_known: Share of the frames in which every load is known, or would be without an unexplained one.
         unexplained: Forces that no contact explains.
@@ -48,6 +50,7 @@ class Evidence:
     unshown_segments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     fits: tuple[PartFit, ...] = ()
     beyond: tuple[Beyond, ...] = ()
+    doubtful_limbs: tuple[tuple[LimbDoubt, float], ...] = ()
     spread_deg: Mapping[str, float] = field(default_factory=dict)
     loads_known: float = 1.0
     unexplained: tuple[UnexplainedLoad, ...] = ()
@@ -90,6 +93,7 @@ def evidence_of(r: Reconstruction) -> Evidence:
         },
         fits=part_fits(r),
         beyond=joints_beyond(model, r.q, r.tracked, r.rate_hz),
+        doubtful_limbs=_doubtful_limbs(r),
         spread_deg=_spreads(r, body, lacking),
         loads_known=float(known.mean()) if r.frames else 0.0,
         unexplained=r.unexplained,
@@ -132,6 +136,13 @@ def _acting(r: Reconstruction) -> BoolArray:
     for one in r.unexplained:
         acts |= (r.times_s >= one.from_s - 1e-9) & (r.times_s <= one.to_s + 1e-9)
     return acts
+
+
+def _doubtful_limbs(r: Reconstruction) -> tuple[tuple[LimbDoubt, float], ...]:
+    """Limbs in doubt with the share of the trial; mended ones of a smoothed result have their better pose all along."""
+    lasts_s = max(r.frames / r.rate_hz, 1e-9)
+    kept = [one for one in r.limb_doubts if not (one.mended and r.smoothed)]
+    return tuple((one, min((one.to_s - one.from_s + 1.0 / r.rate_hz) / lasts_s, 1.0)) for one in kept)
 
 
 def _spreads(r: Reconstruction, body: BodyDescription, lacking: frozenset[str]) -> dict[str, float]:

@@ -67,8 +67,7 @@ RULES = (
 
 LAW_NAMES = (newton.FORCE, newton.MOMENT)
 LAW = Bounds(3.0, 4.0)
-"""Force or moment that plates lack, over their bound or what noise explains; at most 1.5 in right trials of a second, 2.7 in
-shorter ones."""
+"""Force or moment that plates lack, over their bound or the part that noise explains; at most 2.7 in right trials."""
 
 SPOILT = Bounds(0.0, 0.1)
 """Share of the frames that an unexplained force spoils."""

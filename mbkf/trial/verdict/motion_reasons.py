@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, TITLES, Reason, Word
 from mbkf.trial.verdict.evidence import Evidence
-from mbkf.trial.verdict.parts import ARMS
+from mbkf.trial.verdict.parts import ARMS, TRUNK
 
 
 class Bounds(NamedTuple):
@@ -44,6 +44,9 @@ ARM_SPREAD_DEG = Bounds(20.0, 40.0)
 REFUSED = Bounds(0.1, 0.3)
 """Share of a part's samples that were refused."""
 
+IN_DOUBT = Bounds(0.05, 0.2)
+"""Share of the trial in which a limb was in doubt."""
+
 UNTRACKED = Bounds(0.05, 0.5)
 """Share of the frames in which the body was not followed."""
 
@@ -62,6 +65,7 @@ def motion_reasons(evidence: Evidence) -> Iterator[Reason]:
     yield from _not_shown(evidence)
     yield from _fits(evidence)
     yield from _ranges(evidence)
+    yield from _doubtful_limbs(evidence)
     yield from _spreads(evidence)
     yield from _whole(evidence)
 
@@ -156,6 +160,22 @@ def _ranges(evidence: Evidence) -> Iterator[Reason]:
                 CHECK_NAMES,
                 off[1],
             )
+
+
+def _doubtful_limbs(evidence: Evidence) -> Iterator[Reason]:
+    """Limbs that the filter had in doubt for long enough, a mended one until then."""
+    for one, share in evidence.doubtful_limbs:
+        off = IN_DOUBT.reached(share)
+        if off is None:
+            continue
+        yield Reason(
+            evidence.part_of.get(one.limb, TRUNK),
+            "look" if one.mended else off[0],
+            one.sentence,
+            f"{100.0 * share:.0f} % of the trial have a pose in doubt",
+            "look at the limb in 3-D then" if one.mended else CHECK_NAMES,
+            off[1],
+        )
 
 
 def _spreads(evidence: Evidence) -> Iterator[Reason]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS
 from mbkf.trial.verdict.evidence import evidence_of
@@ -62,3 +63,18 @@ def test_doubts_of_the_subject_s_file_are_evidence():
     r = walk()
     doubtful = replace(r.subject, report={"doubts": ["the fit did not converge"]})
     assert evidence_of(replace(r, subject=doubtful)).doubts == ("the fit did not converge",)
+
+
+def test_a_mended_limb_is_in_doubt_until_then_and_not_at_all_once_smoothed():
+    r = walk()
+    half_s = float(r.times_s[r.frames // 2 - 1])
+    doubt = LimbDoubt("left_thigh", "turned over", float(r.times_s[0]), half_s, mended=True)
+    ((_, share),) = evidence_of(replace(r, limb_doubts=(doubt,))).doubtful_limbs
+    assert share == pytest.approx(0.5, abs=0.01)
+    assert evidence_of(replace(r, limb_doubts=(doubt,), smoothed=True)).doubtful_limbs == ()
+    assert (
+        len(
+            evidence_of(replace(r, limb_doubts=(replace(doubt, mended=False),), smoothed=True)).doubtful_limbs
+        )
+        == 1
+    )

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.verdict import MOTION_PARTS, gravest
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.fit import PartFit
@@ -92,3 +93,13 @@ def test_what_concerns_the_whole_trial_concerns_every_shown_part(evidence, word)
 
 def test_refused_samples_have_words():
     assert word_on("left_leg", fits=(replace(LEG, refused=0.15),)) == "look"
+
+
+@pytest.mark.parametrize(
+    ("share", "mended", "word"),
+    [(0.02, False, "use"), (0.1, False, "look"), (0.5, False, "do not use"), (0.5, True, "look")],
+)
+def test_a_limb_in_doubt_counts_by_its_share_of_the_trial(share, mended, word):
+    doubt = LimbDoubt("left_thigh", "turned over", 0.0, 1.0, misfit_m=0.03, mended=mended)
+    evidence = {"doubtful_limbs": ((doubt, share),), "part_of": {"left_thigh": "left_leg"}}
+    assert word_on("left_leg", **evidence) == word
