@@ -23,7 +23,7 @@ Where no plate reads at all, a quick change is known only after a while, causall
 l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag. Last, e eᵀ is added for every
 wrench e that may be there or not: a small vertical force at the middle of the sole of a foot without a plate that
 carries hardly anything; what a plate reads below its threshold under a foot that counts as in the air; and a share of
-the change since the frame before on a plate, whose reading is a mean over the frame.
+the change since the frame before on a plate, whose reading is a mean over the frame, beyond what its noise changes.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ class ErrorSettings:
     """
 
     new_share: float = 0.035
-    new_rates: tuple[float, float] = (0.09, 0.025)
-    smoothed_new_rates: tuple[float, float] = (0.1, 0.014)
+    new_rates: tuple[float, float] = (0.055, 0.025)
+    smoothed_new_rates: tuple[float, float] = (0.08, 0.014)
     skin_share: float = 0.65
-    skin_rate_rad_s: float = 3.4
+    skin_rate_rad_s: float = 2.8
     sharing_scale: float = 1.3
     lag_s: float = 0.033
     smoothed_lag_s: float = 0.008
@@ -85,7 +85,7 @@ class ErrorCovariance:
         sharing: Factor c where both do.
         lag: (nv + 12 or more,) l of accelerations and wrenches; None for none.
         edges: (n, 12) every e, on both feet's wrenches about the world's origin, N, N m.
-        plates: Noise of plates over what the filter takes for it.
+        plates: (2, 6) noise of the feet's wrenches by plates over what the filter takes for it; or one number.
         supports: Slice of the wrench on other parts that bear, which Newton's law alone tells, too; None where none do.
     """
 
@@ -102,7 +102,7 @@ class ErrorCovariance:
     edges: Array = field(default_factory=lambda: np.zeros((0, FEET)))
     supports: slice | None = None
     new_rates: tuple[float, float] | None = None
-    plates: float = 1.0
+    plates: Array | float = 1.0
 
     @cached_property
     def size(self) -> Array:
@@ -111,8 +111,9 @@ class ErrorCovariance:
         everything, rates = len(self.seen) == layout.nv, self.new_rates or (self.new, self.new)
         for part, new in zip((layout.q, layout.v, layout.a), (self.new, *rates), strict=True):
             size[part if everything else part.start + self.seen] = new**0.5
-        for foot, part in enumerate(layout.feet):
-            size[part] = self.new**0.5 if foot in self.free else self.plates
+        size[layout.wrench] = np.reshape(self.plates, -1)
+        for foot in self.free:
+            size[layout.feet[foot]] = self.new**0.5
         if self.supports is not None:
             size[self.supports] = self.new**0.5
         return size

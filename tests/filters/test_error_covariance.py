@@ -42,7 +42,7 @@ def test_parts_are_those_of_the_whole(seed, new, rate):
         lag=rng.normal(size=NV + 12),
         edges=rng.normal(size=(3, 12)),
         new_rates=(0.3 * new, 2.0 * new),
-        plates=0.4,
+        plates=rng.uniform(0.1, 1.0, (2, 6)),
     )
     whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
     near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}

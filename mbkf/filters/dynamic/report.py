@@ -21,14 +21,15 @@ from mbkf.filters.spread import ConfigurationParts, Spread, root
 from mbkf.filters.state_variances import StateVariances, state_variances
 from mbkf.model.layout import FEET
 from mbkf.sensors.block import NO_DOFS, Frame
-from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.white_noise import WhiteNoise
+from mbkf.sensors.contact.plate_noise import PlateNoise, spread_about_origin
+from mbkf.sensors.contact.records import Contact, ContactDecision
+from mbkf.sensors.foot_contact import FootContact
 
 LATER_FADES_S = 0.1
 """Time in which a later frame's influence fades; without later frames an estimate is as late as a causal one."""
 
-LEAST_PLATE_NOISE_N = 0.1
-"""Least noise of a plate's forces: readings are stored in steps of such a size."""
+OF_WHITE_NOISE = 6.0**0.5
+"""Standard deviation of the second differences of white noise of standard deviation 1."""
 
 ROUNDS = 2
 """Linearisations of a smoothed window; a third round changes the residual by less than 0.1 N."""
@@ -42,13 +43,13 @@ class Changes(NamedTuple):
             None where that is not stated.
         wrench: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
             at once; None where they are not.
-        plate_noise: Noise of the plates' forces, N; None at a start.
+        plate_noise: Noise of the plates; None at a start.
         smoothed: Later frames have corrected the estimate and its covariance.
     """
 
     lag: Array | None
     wrench: Array | None
-    plate_noise: WhiteNoise | None
+    plate_noise: PlateNoise | None
     smoothed: bool = False
 
 
@@ -64,7 +65,10 @@ class DynamicReport(StateReport[DynamicState]):
     def __init__(self, kalman: DynamicFilter) -> None:
         super().__init__(kalman)
         self.loads = SupportLoads(self.model, kalman.layout)
-        self._plate_noise = WhiteNoise(kalman.settings.contact.plate_force_n, LEAST_PLATE_NOISE_N)
+        feet = [block for block in kalman.blocks if isinstance(block, FootContact)]
+        self._usual = kalman.settings.contact.plate_force_n, kalman.settings.contact.plate_moment_nm
+        origins_m = feet[0].detector.origins_m if feet else np.zeros((0, 3))
+        self._plate_noise = PlateNoise.before(origins_m, *self._usual)
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
         self._read: tuple[Posterior, StateVariances, int] | None = None
@@ -85,7 +89,7 @@ class DynamicReport(StateReport[DynamicState]):
         np.subtract(state.w.reshape(2, 6), before.wrench, out=wrench[0])
         if last.wrench is not None:
             np.subtract(wrench[0], last.wrench[0], out=wrench[1])
-        noise = (last.plate_noise or self._plate_noise).after(frame.plates[:, :3])
+        noise = (last.plate_noise or self._plate_noise).after(frame.plates)
         steps = self.kalman.settings.errors.lag_s / self.kalman.plant.dt_s
         return self._estimate(step, Changes(self._lag(was, state, steps), wrench, noise))
 
@@ -256,6 +260,9 @@ class DynamicReport(StateReport[DynamicState]):
         contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
         free = tuple(foot for foot, on in enumerate(contacts) if on == Contact.UNMEASURED)
         unread = bool(free) and not {Contact.MEASURED, Contact.SHARED} & set(contacts)
+        noise = None
+        if changes.plate_noise is not None and notes.contact is not None:
+            noise = changes.plate_noise.on_feet(notes.contact.centres_m)
         return ErrorCovariance(
             layout,
             state.P,
@@ -267,20 +274,26 @@ class DynamicReport(StateReport[DynamicState]):
             free,
             s.errors.sharing_scale,
             changes.lag if unread or notes.supports else None,
-            self._edges(estimate, free),
+            self._edges(estimate, free, noise),
             self.loads.slice if notes.supports and all_seen else None,
             s.errors.smoothed_new_rates if changes.smoothed else s.errors.new_rates,
-            self._plates(changes, contacts),
+            self._plates(notes.contact, noise),
         )
 
-    def _plates(self, changes: Changes, contacts: Sequence[Contact]) -> float:
-        """Noise of plates over the filter's assumption; where two feet share a plate, no reading shows their shares."""
-        if changes.plate_noise is None or Contact.SHARED in contacts:
+    def _plates(self, contact: ContactDecision | None, noise: Array | None) -> Array | float:
+        """(2, 6) noise of the feet's wrenches over the filter's; where feet share a plate, no reading shows a share."""
+        if contact is None or noise is None or Contact.SHARED in contact.contacts:
             return 1.0
-        return min(1.0, changes.plate_noise.sd / self.kalman.settings.contact.plate_force_n)
+        return np.minimum(noise / spread_about_origin(*self._usual, contact.centres_m), 1.0)
 
-    def _edges(self, estimate: Posterior, free: tuple[int, ...]) -> Array:
-        """(n, 12) wrenches that feet may carry or not: see :mod:`mbkf.filters.error_covariance`."""
+    def _edges(self, estimate: Posterior, free: tuple[int, ...], noise: Array | None) -> Array:
+        """(n, 12) wrenches that feet may carry or not: see :mod:`mbkf.filters.error_covariance`.
+
+        Args:
+            estimate: The estimate.
+            free: Feet that no plate reads.
+            noise: (2, 6) noise of the readings under the feet; None where it is not known.
+        """
         contact = _step(estimate).decisions.notes.contact
         if contact is None:
             return np.zeros((0, FEET))
@@ -297,7 +310,12 @@ class DynamicReport(StateReport[DynamicState]):
                 edges[foot, foot] = 0.0 if contact.below is None else contact.below
             elif change is not None:
                 edges[foot, foot] = s.frame_share[0] * change[0, foot]
-                edges[2 + foot, foot] = s.frame_share[1] * change[1, foot]
+                bend = change[1, foot]
+                if noise is not None:
+                    bend = np.sign(bend) * np.sqrt(
+                        np.maximum(bend**2 - (OF_WHITE_NOISE * noise[foot]) ** 2, 0.0)
+                    )
+                edges[2 + foot, foot] = s.frame_share[1] * bend
         return edges.reshape(4, FEET)
 
 

@@ -55,6 +55,7 @@ class ContactDetector:
 
     Attributes:
         surfaces_m: Height of each plate's surface.
+        origins_m: (K, 3) points that the plates' own moments refer to.
     """
 
     def __init__(self, model: Body, plates: Sequence[PlateReadings], dt_s: float) -> None:
@@ -67,6 +68,7 @@ class ContactDetector:
         """
         self._least_n = [least_load(plate.threshold_n) for plate in plates]
         self.surfaces_m = [surface_height(plate) for plate in plates]
+        self.origins_m = np.array([plate.origin_m for plate in plates]).reshape(-1, 3)
         self._areas = PlateAreas(plates)
         self._model, self._feet, self._still = model, FeetOnBody(model), np.zeros(model.nv)
         floor_m = min(self.surfaces_m, default=np.nan)

@@ -7,6 +7,7 @@ import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.report import ROUNDS
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.sensors.contact.records import Contact
 from tests.dynamics import settings_with
 from tests.followed import FRAMES, SETTLED, estimates, made, made_filter, recording, torques, tracked
@@ -139,7 +140,8 @@ def test_markers_on_skin_with_a_memory_leave_the_spreads_their_places():
 def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_one():
     tracking, found = estimates("dynamic")
     record = found[30].record
-    noise = replace(record.detail.plate_noise, sd=0.3)
+    noise = record.detail.plate_noise
+    noise = replace(noise, force=replace(noise.force, sd=0.3), moment=replace(noise.moment, sd=0.5))
     quiet = found[30]._replace(record=record._replace(detail=record.detail._replace(plate_noise=noise)))
     notes = record.step.decisions.notes
     contact = notes.contact
@@ -151,3 +153,30 @@ def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_
     own = np.sqrt(np.diag(quiet.record.state.P)[tracking.kalman.layout.wrench]).reshape(2, 6)
     assert (shared >= own).all()
     assert (sd[:, 2] < 0.5 * own[:, 2]).all()
+    moments = replace(noise, moment=replace(noise.moment, sd=0.01))
+    still = found[30]._replace(record=record._replace(detail=record.detail._replace(plate_noise=moments)))
+    quieter = tracking.wrench_sd(still)
+    assert (quieter[:, 3] < 0.8 * sd[:, 3]).all()
+    np.testing.assert_allclose(quieter[:, :3], sd[:, :3])
+
+
+def test_white_noise_of_a_plate_is_not_counted_again_as_a_change_within_the_frame():
+    """Second differences of √6 σ are noise; beyond that they count as far as they exceed it."""
+    tracking, found = estimates("dynamic")
+    record, share = found[30].record, DynamicSettings().errors.frame_share[1]
+    detail = record.detail
+    noise = replace(
+        detail.plate_noise,
+        force=replace(detail.plate_noise.force, sd=1.0),
+        moment=replace(detail.plate_noise.moment, sd=0.2),
+    )
+
+    def force_sd(bend_n):
+        change = np.zeros((2, 2, 6))
+        change[1, :, 2] = bend_n
+        other = detail._replace(plate_noise=noise, wrench=change)
+        return tracking.wrench_sd(found[30]._replace(record=record._replace(detail=other)))[0, 2]
+
+    still = force_sd(0.0)
+    assert force_sd(2.4) == still
+    assert force_sd(25.0) ** 2 - still**2 == pytest.approx(share**2 * (25.0**2 - 6.0))

@@ -1,0 +1,84 @@
+"""White noise of plates, forces and moments each by their own readings, and as it stands in wrenches on the feet.
+
+A plate's moments about its own origin o have noise of their own, σ_M. Moved to the world's origin they take up noise
+of the forces, too:
+
+    σ² = σ_M² + |o − (o·e) e|² σ_F²        about an axis e of the world
+
+Which plate a foot is on makes little difference, since plates of a laboratory are alike; the nearest one counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.numerics.rotations import skew
+from mbkf.sensors.white_noise import WhiteNoise
+
+LEAST_FORCE_N, LEAST_MOMENT_NM = 0.1, 0.02
+"""Least noise of a plate's forces and moments: readings are stored in steps of such a size."""
+
+
+@dataclass(frozen=True)
+class PlateNoise:
+    """Noise of K plates after a frame.
+
+    Attributes:
+        origins_m: (K, 3) points that the plates' own moments refer to.
+        levers: (K, 3, 3) o× of them.
+        force: Noise of the forces, N.
+        moment: Noise of the moments about these points, N m.
+    """
+
+    origins_m: Array
+    levers: Array
+    force: WhiteNoise
+    moment: WhiteNoise
+
+    @classmethod
+    def before(cls, origins_m: Array, force_n: float, moment_nm: float) -> PlateNoise:
+        """Before the first reading.
+
+        Args:
+            origins_m: (K, 3) points that the plates' own moments refer to.
+            force_n: Usual noise of forces, N.
+            moment_nm: Usual noise of moments, N m.
+        """
+        noise = WhiteNoise(force_n, LEAST_FORCE_N), WhiteNoise(moment_nm, LEAST_MOMENT_NM)
+        return cls(origins_m, skew(origins_m), *noise)
+
+    def after(self, wrench: Array) -> PlateNoise:
+        """The noise after the next frame's (K, 6) wrenches about the world's origin; NaN without a reading."""
+        force, moment = wrench[:, :3], wrench[:, 3:]
+        own = moment - (self.levers @ force[:, :, None])[:, :, 0]
+        return PlateNoise(self.origins_m, self.levers, self.force.after(force), self.moment.after(own))
+
+    def on_feet(self, middles_m: Array) -> Array:
+        """(2, 6) noise of the feet's wrenches about the world's origin, N, N m.
+
+        Args:
+            middles_m: (2, 3) middles of the soles.
+        """
+        if not len(self.origins_m):
+            return spread_about_origin(self.force.sd, self.moment.sd, middles_m)
+        away = middles_m[:, None] - self.origins_m
+        nearest = (away * away).sum(axis=2).argmin(axis=1)
+        return spread_about_origin(self.force.sd, self.moment.sd, self.origins_m[nearest])
+
+
+def spread_about_origin(force_n: float, moment_nm: float, points_m: Array) -> Array:
+    """(n, 6) spreads of wrenches about the world's origin, of those that are independent about points (n, 3).
+
+    Args:
+        force_n: Spread of each force, N.
+        moment_nm: Spread of each moment about the points, N m.
+        points_m: The points, m.
+    """
+    squares = points_m * points_m
+    found = np.full((len(points_m), 6), force_n)
+    lever = squares.sum(axis=1, keepdims=True) - squares
+    found[:, 3:] = np.sqrt(moment_nm**2 + force_n**2 * lever)
+    return found
