@@ -21,6 +21,8 @@ def test_sides_mirror_each_other_for_the_most_part():
         right, left = (NAMES.index(f"{side}_thigh_centre_{axis}") for side in ("right", "left"))
         assert correlation[right, left] == pytest.approx(sign * (1.0 - OWN_SHARE**2))
         assert sd[right] == pytest.approx(1e-3 * {"x": 8.0, "y": 6.0, "z": 8.0}[axis])
+    shoulder = [NAMES.index(f"right_upper_arm_centre_{axis}") for axis in "xyz"]
+    np.testing.assert_allclose(sd[shoulder], [0.008, 0.012, 0.015])
     middle = NAMES.index("torso_centre_z")
     assert np.count_nonzero(covariance[middle]) == 1
 
