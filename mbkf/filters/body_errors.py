@@ -7,9 +7,10 @@ Scaling leaves scale factors, marker places and displacements of the skin by fle
     δq = W δp,   W = −(Hᵀ R⁻¹ H + Π)⁻¹ Hᵀ R⁻¹ H_p,
 
 H and H_p the derivatives of marker positions by q and p. These are consider parameters (S. F. Schmidt 1966): never
-estimated, their share of the error is carried along. Pose errors that hold whenever the posture is the same change
-while the body moves, so velocities and accelerations err by the rates of W δp along the motion. Generalised forces
-τ(x, k) err by ∂τ/∂x δx + ∂τ/∂k δk, and by segment masses and centres of mass (:mod:`mbkf.filters.inertia_errors`).
+estimated, their share of the error is carried along. So is the posture that a person holds otherwise than the prior has
+it (:mod:`mbkf.filters.pose_errors`). Pose errors that hold whenever the posture is the same change while the body
+moves, so velocities and accelerations err by the rates of W δp along the motion. Generalised forces τ(x, k) err by
+∂τ/∂x δx + ∂τ/∂k δk, and by segment masses and centres of mass (:mod:`mbkf.filters.inertia_errors`).
 
 All is kept as B = (∂·/∂p) L, so that a covariance is B Bᵀ.
 """
@@ -130,7 +131,12 @@ class BodyErrors:
     """
 
     def __init__(
-        self, sensor: MarkerSensor, noise_m: Array, root: Array, skin: FlexedSkin | None = None
+        self,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        root: Array,
+        skin: FlexedSkin | None = None,
+        held_rad: Array | None = None,
     ) -> None:
         """Makes it.
 
@@ -140,10 +146,12 @@ class BodyErrors:
             root: (K + E + 3 M (1 + D), r) L of the covariance of scale factors, displacements of joint centres, marker
                 places and displacements by flexion.
             skin: Shares of these displacements; None where no skin is known (D = 0).
+            held_rad: (nv,) standard deviation of the rotation from neutral in which a person holds a joint, rad; 0 by
+                default.
         """
         model = sensor.model
         self.sensor, self._model, self._balance = sensor, model, NewtonEuler(model)
-        self._poses = PoseErrors(sensor, noise_m, root, skin)
+        self._poses = PoseErrors(sensor, noise_m, root, skin, held_rad)
         self._poses.onto(self._directions())
         directions, self._along = _principal(self._poses.sizes)
         self._varied = [NewtonEuler(one) for one in _varied(model, directions)]

@@ -10,6 +10,10 @@ f = Σ J_mᵀ δ_m / σ_m² in its axes, Hᵀ R⁻¹ H = Σ Zᵀ M Z and Hᵀ R�
 inertia and the forces on it (Featherstone 2008). M is the same in all postures. So is f of errors of places, and of
 displacements by flexion but for their share f(θ_d), which all markers of a segment have in common. An origin that
 errors of sizes displace by δo adds M [Aᵀ δo, 0].
+
+The prior draws every joint to neutral, while a person may hold it otherwise, by h in the whole trial. A filter that
+takes the prior for a new reading in every frame does not count this: δq = −(Hᵀ R⁻¹ H + Π)⁻¹ Π h, which is small where
+markers show the joint.
 """
 
 from __future__ import annotations
@@ -29,9 +33,16 @@ LOOSE = 1e-6
 
 
 class PoseErrors:
-    """Roots of the errors of poses by a root L of the covariance of sizes, places and displacements by flexion."""
+    """Roots of the errors of poses by h and by a root L of the covariance of sizes, places and displacements."""
 
-    def __init__(self, sensor: MarkerSensor, noise_m: Array, root: Array, skin: FlexedSkin | None) -> None:
+    def __init__(
+        self,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        root: Array,
+        skin: FlexedSkin | None,
+        held_rad: Array | None = None,
+    ) -> None:
         """Sums over the markers.
 
         Args:
@@ -40,12 +51,18 @@ class PoseErrors:
             root: (K + E + 3 M (1 + D), r) L of scale factors, displacements of joint centres, marker places and
                 displacements by flexion.
             skin: Shares of these displacements; None where no skin is known (D = 0).
+            held_rad: (nv,) standard deviation of h, rad; 0 by default. Its dofs follow L in the roots' columns.
         """
         model = sensor.model
         self._model, self._origins = model, OriginLevers(model)
         self._levers = np.concatenate([self._origins.levers, self._origins.centre_levers], axis=2)
         posture = np.asarray(model.posture_sd)
         self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
+        held = np.zeros(model.nv) if held_rad is None else held_rad
+        dofs = np.flatnonzero(held > 0.0)
+        self._pulls = np.zeros((root.shape[1] + len(dofs), model.nv))
+        self._pulls[root.shape[1] + np.arange(len(dofs)), dofs] = -((self._prior - LOOSE) * held)[dofs]
+        root = np.hstack([root, np.zeros((len(root), len(dofs)))])
         self._joints, of_marker = np.unique(sensor.joint_ids, return_inverse=True)
         self._moves = model.supports[self._joints].astype(float)[:, None]
         members = (of_marker == np.arange(len(self._joints))[:, None]).astype(float)
@@ -65,8 +82,9 @@ class PoseErrors:
         self._forces = np.einsum("gm,dmcr->gdcr", members, weighed @ moved)
 
     def onto(self, directions: Array) -> None:
-        """Replaces L by its product with directions (r, n)."""
+        """Replaces L, and the dofs of h beside it, by its product with directions (r, n)."""
         self.sizes, self._forces = self.sizes @ directions, self._forces @ directions
+        self._pulls = directions.T @ self._pulls
 
     def roots(self, poses: Array) -> list[Array]:
         """Roots (nv, r) of the pose's error at each of the configurations (N, nq).
@@ -82,7 +100,7 @@ class PoseErrors:
         levers = axes @ self._origins.summed(rotations, self._levers, self._joints)
         by_sizes = _flat(levers).swapaxes(1, 2) @ _flat(pulled[:, :, :3])
         twists = _flat(twists)
-        force = self._force(poses).swapaxes(1, 2) @ -twists - self.sizes.T @ by_sizes
+        force = self._force(poses).swapaxes(1, 2) @ -twists - self.sizes.T @ by_sizes + self._pulls
         information = _flat(pulled).swapaxes(1, 2) @ twists
         np.einsum("nii->ni", information)[:] += self._prior
         return [_solved(*equations) for equations in zip(information, force, strict=True)]

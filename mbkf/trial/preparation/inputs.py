@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from scipy.linalg import block_diag
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
@@ -67,33 +67,38 @@ def trial_inputs(
     sensor = subject_sensor(model, tracked)
     noise_m, spread_m = _noise(tracked, 1.0 / shown.rate_hz, settings.dynamic.markers.innovation_share)
     present = shown.present.mean(axis=0) >= MIN_PRESENT
+    unobservable = ~model.supports[sensor.joint_ids[present]].any(axis=0)
     inputs = FilterInputs(
         sensor,
         noise_m,
         plates,
         1.0 / shown.rate_hz,
-        ~model.supports[sensor.joint_ids[present]].any(axis=0),
+        unobservable,
         settings.kinematic,
         settings.dynamic,
         settings.torque,
         spread_m=spread_m,
         remarks=remarks,
-        body=_body_errors(sensor, noise_m, shown.names, subject),
+        body=_body_errors(sensor, noise_m, shown.names, subject, unobservable),
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)
 
 
 def _body_errors(
-    sensor: MarkerSensor, noise_m: Array, names: Sequence[str], subject: Subject
+    sensor: MarkerSensor, noise_m: Array, names: Sequence[str], subject: Subject, unobservable: BoolArray
 ) -> BodyErrors | None:
-    """Errors by the unknowns of scaling; a marker that it did not see may be anywhere that its session allows.
+    """Errors by the unknowns of scaling, and by how the person holds joints.
+
+    A marker that scaling did not see may be anywhere that its session allows. Of dofs that no marker shows the filter
+    itself knows the spread of the posture.
 
     Args:
         sensor: The markers on the body.
         noise_m: (M,) standard deviation that filters weigh each with.
         names: Their names.
         subject: The person.
+        unobservable: (nv,) True for a dof that moves no marker.
     """
     known = covariance_of(subject, sensor.model.description)
     if known is None:
@@ -106,7 +111,9 @@ def _body_errors(
     never_learnt = [np.zeros((len(root) - len(unseen) * 3 * len(names), 0))]
     never_learnt += [NEVER_LEARNT * np.linalg.cholesky(one) for one in unseen]
     root = np.hstack([root, block_diag(*never_learnt)])
-    return BodyErrors(sensor, noise_m, root, FlexedSkin(sensor.model, segments) if len(unseen) else None)
+    skin = FlexedSkin(sensor.model, segments) if len(unseen) else None
+    held_rad = np.where(unobservable, 0.0, sensor.model.posture_sd)
+    return BodyErrors(sensor, noise_m, root, skin, held_rad)
 
 
 def _noise(markers: Sequence[SubjectMarker], dt_s: float, share: float) -> tuple[Array, Array | None]:

@@ -90,3 +90,15 @@ def test_a_marker_that_scaling_did_not_see_may_be_anywhere_its_session_allows():
     assert largest.startswith(("right_thigh", "right_shank", "right_foot")) and more.max() > 0.01
     other = [not name.startswith("right") for name in dof_names(inputs.sensor.model)]
     assert more[other].max() < 0.5 * more.max()
+
+
+def test_a_joint_that_few_markers_show_may_be_held_otherwise_than_the_prior_has_it():
+    """The rest of the body is known exactly, and the skin as good as that: of the hand's turn most of 5° is left."""
+    markers, plates, subject = shown(walker().trial.markers.names)
+    factors, names = tuple(subject.scale_factors), tuple(marker.name for marker in subject.markers)
+    size = len(factors) + 9 * len(names)
+    person = replace(subject, covariance=BodyCovariance(factors, names, np.zeros((size, size)), 2))
+    inputs, _ = trial_inputs(markers, plates, person, ReconstructSettings())
+    spread = np.linalg.norm(inputs.body.pose_root(walker().truth.q[50]), axis=1)
+    turn = dof_names(inputs.sensor.model).index("right_hand_z")
+    assert 0.7 < spread[turn] / inputs.sensor.model.posture_sd[turn] < 1.0
