@@ -31,6 +31,7 @@ from mbkf.filters.section_errors import SectionErrors
 from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
+from mbkf.numerics.principal import principal_directions, unit_rows
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -52,9 +53,6 @@ POSTURES, POSTURE_RAD = 10, 0.4
 
 KEPT_VARIANCE = 0.99
 """Share of the variance kept: half of the columns of L move no joint."""
-
-RANK = 1e-12
-"""Share of the largest variance below which a direction has none but rounding's."""
 
 
 @dataclass(frozen=True)
@@ -153,8 +151,9 @@ class BodyErrors:
         self.sensor, self._model, self._balance = sensor, model, NewtonEuler(model)
         self._poses = PoseErrors(sensor, noise_m, root, skin, held_rad)
         self._poses.onto(self._directions())
-        directions, self._along = _principal(self._poses.sizes)
-        self._varied = [NewtonEuler(one) for one in _varied(model, directions)]
+        directions = principal_directions(self._poses.sizes.T, KEPT_OF_SIZES)
+        self._along = directions.T @ self._poses.sizes
+        self._varied = [NewtonEuler(one) for one in _varied(model, directions.T)]
         self._inertia = InertiaErrors(model)
 
     @cached_property
@@ -169,16 +168,7 @@ class BodyErrors:
         turned[:, :ROOT] = 0.0
         poses = np.array([model.integrate(model.neutral(), moved) for moved in turned])
         stacked = np.concatenate([self._poses.sizes, *self.pose_roots(poses)])
-        size = np.linalg.norm(stacked, axis=1)
-        known = size > 1e-9 * size.max(initial=0.0)
-        scaled = stacked[known] / size[known, None]
-        # the right singular vectors, by the left ones: there are fewer rows than columns
-        squares, left = np.linalg.eigh(scaled @ scaled.T)
-        squares, left = squares[::-1], left[:, ::-1]
-        shares = np.cumsum(squares) / np.sum(squares)
-        kept = 1 + int(np.searchsorted(shares, KEPT_VARIANCE))
-        kept = min(kept, int(np.count_nonzero(squares > RANK * squares[0])))
-        return np.asarray(scaled.T @ (left[:, :kept] / np.sqrt(squares[:kept])))
+        return principal_directions(unit_rows(stacked), KEPT_VARIANCE)
 
     def pose_root(self, q: Array) -> Array:
         """(nv, r) W L at a configuration q (nq,).
@@ -266,18 +256,6 @@ class BodyErrors:
         for foot, share in zip(free, vertical / vertical.sum(), strict=True):
             found[6 * foot : 6 * foot + 6] = share * total
         return found
-
-
-def _principal(sizes: Array) -> tuple[Array, Array]:
-    """(n, K + E) directions of sizes in which nearly all of their variance lies, and the root (n, r) along them.
-
-    Args:
-        sizes: (K + E, r) root of their covariance.
-    """
-    directions, spreads, along = np.linalg.svd(sizes, full_matrices=False)
-    shares = np.cumsum(spreads**2) / max(float(np.sum(spreads**2)), np.finfo(float).tiny)
-    kept = 1 + int(np.searchsorted(shares, KEPT_OF_SIZES))
-    return directions.T[:kept], spreads[:kept, None] * along[:kept]
 
 
 def _varied(model: Body, directions: Array) -> Sequence[HumanModel]:
