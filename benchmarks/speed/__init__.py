@@ -8,7 +8,7 @@ benchmark ``labelling``, how many frames a second a stream may have by ``live``.
 from __future__ import annotations
 
 from benchmarks.checks import Check, Context, information
-from benchmarks.speed import commands, growth
+from benchmarks.speed import bodies, commands, growth
 from benchmarks.speed.products import Times
 from benchmarks.speed.steps import (
     INVERSE_DYNAMICS,
@@ -41,6 +41,7 @@ def run(context: Context) -> list[Check]:
         ]
     if not context.quick:
         checks += growth.rows(seconds, steps // 4)
+        checks += bodies.rows(context.data)
         checks += commands.rows(context.out)
     return checks
 
