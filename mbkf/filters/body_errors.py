@@ -31,7 +31,7 @@ from mbkf.filters.section_errors import SectionErrors
 from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
-from mbkf.numerics.principal import principal_directions, unit_rows
+from mbkf.numerics.principal import of_unit_length, principal_directions
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -168,7 +168,7 @@ class BodyErrors:
         turned[:, :ROOT] = 0.0
         poses = np.array([model.integrate(model.neutral(), moved) for moved in turned])
         stacked = np.concatenate([self._poses.sizes, *self.pose_roots(poses)])
-        return principal_directions(unit_rows(stacked), KEPT_VARIANCE)
+        return principal_directions(of_unit_length(stacked), KEPT_VARIANCE)
 
     def pose_root(self, q: Array) -> Array:
         """(nv, r) W L at a configuration q (nq,).

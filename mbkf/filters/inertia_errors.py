@@ -13,7 +13,7 @@ from mbkf.conventions import Array
 from mbkf.model.body import Body
 from mbkf.model.inertia_spread import inertia_precision
 from mbkf.model.inertial_regressor import PER_SEGMENT, InertialRegressor
-from mbkf.numerics.principal import principal_directions, unit_rows
+from mbkf.numerics.principal import of_unit_length, principal_directions
 
 MASS_SD, CENTRE_SD, WHOLE_SD = 0.15, 0.1, 0.01
 """Standard deviations of a segment's mass, relative, of its centre of mass, in units of its distance from the segment's
@@ -53,7 +53,7 @@ class InertiaErrors:
         for _ in range(MOTIONS):
             q = model.integrate(model.neutral(), POSTURE_RAD * rng.normal(size=nv))
             rows.append(self.at(q, np.zeros(nv), ACCELERATION * rng.normal(size=nv)))
-        return principal_directions(unit_rows(np.concatenate(rows)), KEPT_VARIANCE)
+        return principal_directions(of_unit_length(np.concatenate(rows)), KEPT_VARIANCE)
 
     def at(self, q: Array, v: Array, a: Array) -> Array:
         """(nv, r) Y L of a motion.

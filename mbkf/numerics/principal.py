@@ -37,7 +37,7 @@ def principal_directions(rows: Array, share: float) -> Array:
     return np.asarray(rows.T @ (vectors[:, :kept] / np.sqrt(np.maximum(squares[:kept], TINY))))
 
 
-def unit_rows(rows: Array) -> Array:
+def of_unit_length(rows: Array) -> Array:
     """Rows (m, c) scaled to length 1, so that each quantity counts alike; rows of no length are left out."""
     size = np.linalg.norm(rows, axis=1)
     known = size > LEAST_ROW * size.max(initial=0.0)

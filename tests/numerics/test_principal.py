@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.numerics.principal import principal_directions, unit_rows
+from mbkf.numerics.principal import of_unit_length, principal_directions
 
 
 def root(rows, columns):
@@ -41,4 +41,4 @@ def test_a_root_without_variance_has_one_direction(shape):
 
 def test_rows_count_alike():
     rows = np.array([[3.0, 4.0], [0.0, 0.0], [0.0, 2e-3], [1e-12, 0.0]])
-    np.testing.assert_allclose(unit_rows(rows), [[0.6, 0.8], [0.0, 1.0]], atol=1e-15)
+    np.testing.assert_allclose(of_unit_length(rows), [[0.6, 0.8], [0.0, 1.0]], atol=1e-15)
