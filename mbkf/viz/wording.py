@@ -11,6 +11,13 @@ from mbkf.model.clinical_table import ClinicalJoint
 
 SIDE_NAMES = {"r": "right", "l": "left"}
 
+TRUNK_POSITIVE = {
+    "extension": "extends the trunk",
+    "bending": "bends it to the right",
+    "rotation": "turns it to the left",
+}
+"""Meaning of a positive moment of the trunk by its axis."""
+
 
 @dataclass(frozen=True)
 class Wording:

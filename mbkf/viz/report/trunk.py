@@ -11,15 +11,10 @@ from mbkf.viz.markup import folded, key, paragraph, section, table
 from mbkf.viz.report.motion import Cell, charts, is_long, time_chart
 from mbkf.viz.report.spreads import Curve
 from mbkf.viz.svg import number
+from mbkf.viz.wording import TRUNK_POSITIVE
 
 WAYS = {"top_down": "r", "bottom_up": "l"}
 """Colour by way."""
-
-POSITIVE = {
-    "extension": "extends the trunk",
-    "bending": "bends it to the right",
-    "rotation": "turns it to the left",
-}
 
 NOTE = (
     "Net moment of the part of the body below the level on the part above it, about the axes of the trunk's angles. "
@@ -50,7 +45,7 @@ def _drawn(r: Reconstruction, level: str) -> str:
             for way, side in WAYS.items()
         }
         known = {side: one for side, one in curves.items() if np.isfinite(one.values).any()}
-        cells.append(Cell(f"{level} {turn}", "N m/kg", POSITIVE[turn], known))
+        cells.append(Cell(f"{level} {turn}", "N m/kg", TRUNK_POSITIVE[turn], known))
     return charts([cells], lambda cell: time_chart(r.times_s, cell), is_long(r))
 
 

@@ -7,17 +7,18 @@ stands for unknown. The page receives the offset of each part once.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from mbkf.conventions import SIDES, Array, BoolArray
 from mbkf.io.contacts import FEET
-from mbkf.io.dimensions import labels_of, shape_of
+from mbkf.io.dimensions import AXES, labels_of, shape_of
 from mbkf.io.results import PLOTTED
 from mbkf.model.clinical_table import ClinicalJoint
-from mbkf.viz.wording import SIDE_NAMES, part_wording, wordings
+from mbkf.viz.wording import SIDE_NAMES, TRUNK_POSITIVE, part_wording, wordings
 
 SEEN, UNSEEN, REFUSED = 0, 1, 2
 """States of a marker: measured and used, not measured (or hidden), measured but rejected by the gate."""
@@ -25,12 +26,16 @@ SEEN, UNSEEN, REFUSED = 0, 1, 2
 RESOLUTION = {
     "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,
     "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02, "source": 1.0,
+    "trunk": 0.02, "trunk_sd": 0.02,
 }  # fmt: skip
 RESOLUTION |= {name: one.plot.resolution for name, one in PLOTTED.items() if one.plot}
 """Visible resolution of a part's numbers; recordings are rounded to it."""
 
 FORCE_AXES = (("vertical", "Vertical", "", 2), ("x", "", " along x", 0), ("y", "", " along y", 1))
 """Components of a force: name, words before and after its kind, world axis."""
+
+TRUNK_ROWS = len(AXES["way"].labels) * len(AXES["turn"].labels)
+"""Moments of the trunk at a level of the spine."""
 
 STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked", "unexplained")
 """The first numbers of a row."""
@@ -70,8 +75,10 @@ class Layout:
         parts: First column and width of each part, by name: status, segments (position, quaternion x y z w each),
             measured and predicted markers, state of each marker, force, force_sd, pressure point and source
             (:class:`mbkf.io.contacts.Source`) of the loads on feet and other parts, angles, angles_sd, moments,
-            moments_sd, declared curves (:data:`mbkf.io.results.PLOTTED`), unlabelled points.
+            moments_sd, trunk and trunk_sd (by way, level and turn), declared curves
+            (:data:`mbkf.io.results.PLOTTED`), unlabelled points.
         loads: Names of the parts of the body with loads, the feet first.
+        levels: Levels of the spine at which the trunk's moments are shown.
         width: Numbers in a row.
     """
 
@@ -82,6 +89,7 @@ class Layout:
         coordinates: int,
         unlabelled: int = 0,
         supports: tuple[str, ...] = (),
+        levels: tuple[str, ...] = (),
     ) -> None:
         """Parts of a row, one after another.
 
@@ -91,8 +99,9 @@ class Layout:
             coordinates: Number of clinical coordinates.
             unlabelled: Greatest number of points without names.
             supports: Parts that bear load besides the feet.
+            levels: Levels of the spine at which the trunk's moments are shown.
         """
-        self.loads = (*FEET, *supports)
+        self.loads, self.levels = (*FEET, *supports), levels
         widths = {
             "status": len(STATUS),
             "segments": 7 * segments,
@@ -107,6 +116,8 @@ class Layout:
             "angles_sd": coordinates,
             "moments": coordinates,
             "moments_sd": coordinates,
+            "trunk": TRUNK_ROWS * len(levels),
+            "trunk_sd": TRUNK_ROWS * len(levels),
         }
         sizes = {"coordinate": coordinates, "marker": markers}
         for name, one in PLOTTED.items():
@@ -157,7 +168,11 @@ def marker_states(measured_m: Array, hidden: BoolArray, refused: BoolArray) -> A
 
 
 def quantities(
-    layout: Layout, coordinate_names: tuple[str, ...], joints: Iterable[ClinicalJoint], streamed: bool
+    layout: Layout,
+    coordinate_names: tuple[str, ...],
+    joints: Iterable[ClinicalJoint],
+    streamed: bool,
+    own_levels: Mapping[str, str] | None = None,
 ) -> list[Quantity]:
     """All quantities that can be plotted, in the order of the page's list.
 
@@ -166,8 +181,9 @@ def quantities(
         coordinate_names: (A,) clinical coordinates.
         joints: The body's clinical joints.
         streamed: True with latency, rate and lost frames.
+        own_levels: Level of the spine that a joint lies at, by its name without the side.
     """
-    words = wordings(joints)
+    words, at_level = wordings(joints), own_levels or {}
     found = []
     for group, part, of_load in (("Angles", "angles", False), ("Torques", "moments", True)):
         for a, name in enumerate(coordinate_names):
@@ -175,6 +191,8 @@ def quantities(
             residual = of_load and w.root
             suffix = "" if not of_load else (" residual" if residual else " torque")
             side = f", {SIDE_NAMES[w.side]}" if w.side else ""
+            if of_load and w.joint in at_level:
+                side += f", {at_level[w.joint]}"
             found.append(
                 Quantity(
                     id=f"{'torque' if of_load else 'angle'}:{name}",
@@ -188,6 +206,7 @@ def quantities(
                     sd_column=layout.column(f"{part}_sd", a),
                 )
             )
+    found += _of_trunk(layout)
     found += [one for k in range(len(layout.loads)) for one in _of_load(layout, k)]
     found += [one for name in PLOTTED for one in _declared(layout, name, coordinate_names)]
     if streamed:
@@ -197,6 +216,23 @@ def quantities(
             column = layout.column("status", STATUS.index(name))
             found.append(Quantity(f"stream:{name}", "Stream", title, "", unit, "", 1.0, column))
     return sorted(found, key=lambda q: GROUPS.index(q.group))
+
+
+def _of_trunk(layout: Layout) -> Iterator[Quantity]:
+    """The trunk's moments at the levels of the spine, both ways."""
+    labels = product(AXES["way"].labels, layout.levels, AXES["turn"].labels)
+    for k, (way, level, turn) in enumerate(labels):
+        yield Quantity(
+            id=f"trunk:{level}:{turn}:{way}",
+            group="Torques",
+            title=f"Trunk {turn} torque, {level}, {way.replace('_', '-')}",
+            side="",
+            unit="N m",
+            positive=TRUNK_POSITIVE[turn],
+            factor=1.0,
+            column=layout.column("trunk", k),
+            sd_column=layout.column("trunk_sd", k),
+        )
 
 
 def _of_load(layout: Layout, k: int) -> list[Quantity]:

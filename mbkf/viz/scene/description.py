@@ -35,7 +35,10 @@ def scene_description(
         streamed: True for rows of a stream.
     """
     drawn = plate_corners_m[np.isfinite(plate_corners_m).all(axis=(1, 2))]
-    plotted = quantities(layout, coordinate_names, model.description.clinical_joints, streamed)
+    body = model.description
+    own = {level.above: level.name for level in body.levels if level.position_m is None}
+    own_levels = {joint.name: own[joint.distal] for joint in body.clinical_joints if joint.distal in own}
+    plotted = quantities(layout, coordinate_names, body.clinical_joints, streamed, own_levels)
     return {
         "title": title,
         "weight_n": round(float(model.mass_kg * GRAVITY_M_S2), 1),

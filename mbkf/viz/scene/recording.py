@@ -60,7 +60,10 @@ def recorded_scene(r: Reconstruction) -> tuple[dict[str, object], Array, Array]:
     supports = tuple(
         name for k, name in enumerate(r.support_names) if bearing(r.support_wrench[:, [k]]).any()
     )
-    layout = Layout(len(model.joints), len(r.marker_names), len(r.coordinate_names), supports=supports)
+    levels = r.level_names if r.trunk_moments is not None else ()
+    layout = Layout(
+        len(model.joints), len(r.marker_names), len(r.coordinate_names), supports=supports, levels=levels
+    )
     stride = max(1, int(np.ceil(r.rate_hz / MOST_HZ - 1e-9)))
     shown = slice(None, None, stride)
     rows = _rows(r, model, layout, shown)
@@ -101,6 +104,9 @@ def _rows(r: Reconstruction, model: HumanModel, layout: Layout, shown: slice) ->
         values = getattr(r, part)
         if values is not None:
             layout.put(rows, part, values[shown])
+    for part, moments in (("trunk", r.trunk_moments), ("trunk_sd", r.trunk_moments_sd)):
+        if moments is not None:
+            layout.put(rows, part, moments[shown])
     return rows
 
 

@@ -100,3 +100,27 @@ def test_marker_states():
     hidden = np.array([False, False, True, False])
     refused = np.array([False, True, True, True])
     assert marker_states(measured, hidden, refused).tolist() == [SEEN, UNSEEN, UNSEEN, REFUSED]
+
+
+def test_moments_of_the_trunk_have_a_curve_by_level_turn_and_way_with_its_band():
+    layout = Layout(2, 3, 4, levels=("T12/L1", "L5/S1"))
+    found = {q.id: q for q in quantities(layout, (), [], streamed=False) if q.id.startswith("trunk:")}
+    assert len(found) == 12 and layout.parts["trunk"][1] == 12
+    moments = np.arange(12.0).reshape(1, 2, 2, 3)
+    rows = layout.blank(1)
+    layout.put(rows, "trunk", moments)
+    layout.put(rows, "trunk_sd", moments + 100.0)
+    one = found["trunk:L5/S1:bending:bottom_up"]
+    assert (one.title, one.group) == ("Trunk bending torque, L5/S1, bottom-up", "Torques")
+    assert (rows[0, one.column], rows[0, one.sd_column]) == (moments[0, 1, 1, 1], moments[0, 1, 1, 1] + 100.0)
+    assert Layout(2, 3, 4).parts["trunk"][1] == 0
+
+
+def test_the_torque_of_the_bodys_own_joint_says_its_level():
+    names = ("lumbar_extension", "knee_angle_r")
+    layout = Layout(18, 36, len(names))
+    joints = load_body().clinical_joints
+    found = {q.id: q for q in quantities(layout, names, joints, False, {"lumbar": "T12/L1"})}
+    assert found["torque:lumbar_extension"].title == "Trunk extension torque, T12/L1"
+    assert found["angle:lumbar_extension"].title == "Trunk extension"
+    assert "T12" not in found["torque:knee_angle_r"].title
