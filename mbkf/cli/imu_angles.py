@@ -108,7 +108,7 @@ def _write(found: ImuAngles, summary: dict[str, Any], folder: Path) -> None:
     from mbkf.io.imu.mount import write_mounts
     from mbkf.io.storage import Table, write_storage
 
-    degrees = np.degrees(found.angles)
+    degrees = np.degrees(found.angles + found.opensim_zeros_rad)
     table = Table(found.names, found.time_s, degrees, in_degrees=True, title="Coordinates")
     with replacing_folder(folder, last="angles.json") as partial:
         write_storage(table, partial / "angles.mot")

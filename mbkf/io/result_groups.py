@@ -58,6 +58,10 @@ class Measurements:
     )
 
 
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(json.loads(text))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Motion:
     """Clinical coordinates and their rates, and names of what the filter estimates."""
@@ -101,6 +105,16 @@ class Motion:
         "what the frame of the pelvis's angles follows: progression, heading or laboratory", "laboratory"
     )
     angles_read: str = attribute("axes that angles are read in: model, isb or pig", "model")
+    opensim_origin_m: tuple[float, ...] = attribute(
+        "place of OpenSim's origin of the root in the root's frame, m; empty where it is the root's own",
+        (),
+        read=_numbers,
+    )
+    opensim_zeros_rad: dict[str, float] = attribute(
+        "value of OpenSim's coordinate where the one of that name is 0; 0 for others",
+        read=json.loads,
+        factory=dict,
+    )
     angles_zero: str = attribute(
         "zero of the joints' angles: axes, or static for the static trial's posture", "axes"
     )

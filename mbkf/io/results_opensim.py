@@ -26,6 +26,7 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.io.results import QUANTITIES, Reconstruction
 from mbkf.io.storage import Table, write_storage
 from mbkf.io.trc import write_trc
+from mbkf.numerics.cardan import quaternion_matrices
 
 ANGLES_FILE, ANGLES_LAB_FILE, TORQUES_FILE = "angles.mot", "angles_lab.mot", "torques.sto"
 REACTIONS_FILE, MARKERS_FILE = "reactions.mot", "markers.trc"
@@ -37,6 +38,9 @@ TITLES = {
     REACTIONS_FILE: "Ground reactions",
 }
 """Titles of the tables; those of angles are in degrees."""
+
+PELVIS_PLACE = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
+"""OpenSim's coordinates of the pelvis's place, forward, up and to the right."""
 
 OPENSIM_FILES = (*TITLES, MARKERS_FILE)
 """Names of the files."""
@@ -63,7 +67,8 @@ def write_opensim(reconstruction: Reconstruction, folder: Path, run_id: str = ""
 def opensim_table(reconstruction: Reconstruction, name: str) -> Table:
     """A table by the name of its file: the quantities that declare a column there; reactions begin with the loads.
 
-    Angles are in degrees, the pelvis's translations in m. Moments are named as OpenSim's inverse dynamics names them;
+    Angles are in degrees and count from OpenSim's zeros; the pelvis's translations, in m, are those of its origin in
+    OpenSim. Moments are named as OpenSim's inverse dynamics names them;
     those that bear the name of OpenSim's lumbar joint are the trunk's moments at that joint's level, and those at other
     levels of the spine follow (:func:`_trunk_columns`).
     """
@@ -73,8 +78,8 @@ def opensim_table(reconstruction: Reconstruction, name: str) -> Table:
     for one in QUANTITIES.values():
         if one.column is not None and one.column.file == name:
             columns |= _columns(r, one, in_degrees)
-    if name == TORQUES_FILE:
-        columns = _trunk_columns(r, columns)
+    columns = _trunk_columns(r, columns) if name == TORQUES_FILE else columns
+    columns = _as_opensim_counts(r, columns) if in_degrees else columns
     values = np.column_stack(list(columns.values()))
     known = np.logical_or.reduce(np.isfinite(values[r.tracked]), axis=0)
     rows = r.tracked & np.isfinite(values[:, known]).all(axis=1)
@@ -133,6 +138,24 @@ def _columns(r: Reconstruction, one: Quantity, in_degrees: bool) -> dict[str, Ar
         shown = {"side": words.get("foot", " ")[0], "load": "force" if unit == "N" else "moment", **words}
         degrees = in_degrees and unit == "rad"
         found[one.column.name.format(**shown)] = np.rad2deg(column) if degrees else column
+    return found
+
+
+def _as_opensim_counts(r: Reconstruction, columns: Mapping[str, Array]) -> dict[str, Array]:
+    """Columns of coordinates counted from OpenSim's zeros, the root's place that of OpenSim's origin.
+
+    Args:
+        r: The result.
+        columns: (T,) values by coordinate, degrees and m.
+    """
+    found = dict(columns)
+    for name, zero in r.opensim_zeros_rad.items():
+        if name in found:
+            found[name] = found[name] + np.rad2deg(zero)
+    if r.opensim_origin_m:
+        from_root = quaternion_matrices(r.q[:, 3:7]) @ np.array(r.opensim_origin_m) @ rotation_to_world("y")
+        for name, along in zip(PELVIS_PLACE, from_root.T, strict=True):
+            found[name] = found[name] + along
     return found
 
 

@@ -46,7 +46,7 @@ _SEGMENT_KEYS = (
     "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
     "posture_sd_deg", "acceleration_sd", "movement_sd", "limits_deg",
 )  # fmt: skip
-_ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title", "zero_sd_deg")
+_ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title", "zero_sd_deg", "opensim_zero_deg")
 KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
@@ -58,6 +58,7 @@ KNOWN = {
     "sole": ("height_m", "heel_x_m", "ball_x_m", "toe_x_m", "inner_y_m", "outer_y_m"),
     "clinical_joint": (
         "name", "proximal", "distal", "order", "main", "mirror", "heading_sd_deg", "angle", "translation",
+        "opensim_origin_m",
     ),
     "clinical_joint.angle": _ANGLE_KEYS,
     "clinical_joint.translation": _ANGLE_KEYS,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from mbkf.conventions import TomlTable
@@ -24,6 +25,7 @@ class Angle:
         sign: +1 or −1.
         positive: What a positive value means, in words.
         opensim: Coordinate of the full-body model of Rajagopal et al. (2016) it compares with, "" where there is none.
+        opensim_zero_deg: Value of OpenSim's coordinate where this one is 0.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Angle:
     opensim: str = ""
     title: str = ""
     zero_sd_deg: float = 0.0
+    opensim_zero_deg: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,8 @@ class ClinicalJoint:
         translations: The root's position along three world axes; empty for other joints.
         heading_sd_deg: How far the side-to-side axes of its segments differ in heading in ordinary movement; None where
             they differ at will.
+        opensim_origin_m: Origin of OpenSim's distal segment in that segment's frame, whose place the translations of
+            OpenSim's root state; None where it is the segment's own.
     """
 
     name: str
@@ -59,6 +64,7 @@ class ClinicalJoint:
     angles: tuple[Angle, ...]
     translations: tuple[Angle, ...]
     heading_sd_deg: float | None = None
+    opensim_origin_m: tuple[float, float, float] | None = None
 
     @property
     def coordinates(self) -> tuple[Angle, ...]:
@@ -85,6 +91,16 @@ def clinical_joints(entries: Iterable[TomlTable]) -> tuple[ClinicalJoint, ...]:
     if twice:
         raise ValueError(f"the coordinate {twice[0]} stands twice; give every angle a name of its own")
     return tuple(joints)
+
+
+def opensim_zeros_rad(joints: Iterable[ClinicalJoint]) -> dict[str, float]:
+    """Values of OpenSim's coordinates where ours are 0, rad, by name; without those that are 0, too."""
+    return {
+        angle.name: math.radians(angle.opensim_zero_deg)
+        for joint in joints
+        for angle in joint.angles
+        if angle.opensim_zero_deg
+    }
 
 
 def _check(joint: ClinicalJoint) -> None:
@@ -116,7 +132,15 @@ def _joint(entry: TomlTable) -> ClinicalJoint:
         angles=tuple(Angle(**angle) for angle in entry["angle"]),
         translations=tuple(Angle(**angle) for angle in entry.get("translation", ())),
         heading_sd_deg=entry.get("heading_sd_deg"),
+        opensim_origin_m=_place(entry.get("opensim_origin_m")),
     )
+
+
+def _place(numbers: Sequence[float] | None) -> tuple[float, float, float] | None:
+    if numbers is None:
+        return None
+    x, y, z = (float(one) for one in numbers)
+    return x, y, z
 
 
 def _left(right: ClinicalJoint) -> ClinicalJoint:
@@ -130,6 +154,7 @@ def _left(right: ClinicalJoint) -> ClinicalJoint:
             _left_name(angle.opensim),
             angle.title,
             angle.zero_sd_deg,
+            angle.opensim_zero_deg,
         )
         for angle in right.angles
     )

@@ -1,6 +1,7 @@
 """OpenSim's files: units, axes, names; the ground's wrench stays the same wrench."""
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.results_opensim import (
@@ -174,3 +175,29 @@ def test_the_header_tells_the_axes_that_angles_are_read_in():
     for name in ("angles.mot", "angles_lab.mot"):
         assert opensim_table(r, name).header["AnglesRead"] == "pig"
     assert opensim_table(r, "torques.sto").header["AnglesRead"] == "model"
+
+
+def test_coordinates_count_from_opensims_zeros_and_the_pelvis_is_where_opensims_origin_is():
+    """The pelvis lies on its back, head to the left: what is forward in it points up, what is up in it to the left."""
+    names = ("pelvis_tilt", "pelvis_tx", "pelvis_ty", "pelvis_tz", "pro_sup_r")
+    angles = np.random.default_rng(4).normal(size=(12, 5))
+    q = np.array(made_up().q)
+    q[:, 3:7] = Rotation.from_matrix([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]).as_quat()
+    arrays = {
+        name: np.ones((12, 5))
+        for name in ("angle_rates", "moments", "angles_sd", "angle_rates_sd", "moments_sd", "singular")
+    }
+    own = made_up(
+        coordinate_names=names,
+        angles=angles,
+        q=q,
+        opensim_origin_m=(0.06, 0.01, -0.2),
+        opensim_zeros_rad={"pro_sup_r": np.pi / 2, "pro_sup_l": 1.0},
+        **arrays,
+    )
+    for file in ("angles.mot", "angles_lab.mot"):
+        table = opensim_table(own, file)
+        np.testing.assert_allclose(table.column("pro_sup_r"), np.rad2deg(angles[:, 4]) + 90.0)
+        np.testing.assert_allclose(table.column("pelvis_tilt"), np.rad2deg(angles[:, 0]))
+        for k, (name, along) in enumerate((("pelvis_tx", 0.01), ("pelvis_ty", 0.06), ("pelvis_tz", 0.2)), 1):
+            np.testing.assert_allclose(table.column(name), angles[:, k] + along, atol=1e-12)

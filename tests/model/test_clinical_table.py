@@ -2,10 +2,11 @@
 
 import copy
 
+import numpy as np
 import pytest
 
 from mbkf.model.body_file import load_body
-from mbkf.model.clinical_table import clinical_joints
+from mbkf.model.clinical_table import clinical_joints, opensim_zeros_rad
 
 KNEE = {
     "name": "knee_r",
@@ -84,3 +85,9 @@ def test_both_sides_have_the_spread_of_a_zero():
 def test_two_coordinates_of_one_name_are_refused():
     with pytest.raises(ValueError, match="flexion_r stands twice"):
         clinical_joints([KNEE | {"mirror": False}, KNEE | {"mirror": False, "name": "other"}])
+
+
+def test_opensim_counts_pronation_from_the_supinated_forearm():
+    """A palm that faces in is half way from supination (0°) to a palm down (180°)."""
+    zeros = opensim_zeros_rad(load_body().clinical_joints)
+    assert zeros == {"pro_sup_r": pytest.approx(np.pi / 2), "pro_sup_l": pytest.approx(np.pi / 2)}

@@ -24,6 +24,7 @@ from mbkf.imu.worn_mounts import worn_mounts
 from mbkf.io.imu.mount import ImuMount
 from mbkf.io.imu.readings import ImuReadings, between
 from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.clinical_table import opensim_zeros_rad
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.inertial.disturbed_magnetometers import (
@@ -64,6 +65,7 @@ class ImuAngles:
         q: (T, nq) configurations, at the origin, facing x where the person stood; joints without sensors are neutral.
         names: (A,) clinical coordinates that sensors determine.
         angles: (T, A) rad.
+        opensim_zeros_rad: (A,) values of OpenSim's coordinates where these are 0.
         mounts: Rotation and place of every sensor on its segment.
         warnings: Remarks about the readings and the calibration.
     """
@@ -72,6 +74,7 @@ class ImuAngles:
     q: Array
     names: tuple[str, ...]
     angles: Array
+    opensim_zeros_rad: Array
     mounts: tuple[ImuMount, ...]
     warnings: tuple[str, ...]
 
@@ -147,7 +150,9 @@ def imu_angles(
     )
     found = tuple(clinical.names[k] for k in wanted)
     remarks = (*warnings, *(one.remark for one in disturbed), *_doubts(body, segments, motion, common))
-    return ImuAngles(time_s, motion, found, values[:, wanted], mounts, remarks)
+    by_name = opensim_zeros_rad(body.description.clinical_joints)
+    zeros = np.array([by_name.get(name, 0.0) for name in found])
+    return ImuAngles(time_s, motion, found, values[:, wanted], zeros, mounts, remarks)
 
 
 def _standing_sensors(standing: Sequence[object], names: Sequence[str]) -> list[ImuReadings]:

@@ -10,6 +10,7 @@ from mbkf.io.result_groups import Moments, Motion, Torques
 from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles, configuration_names, dof_names
+from mbkf.model.clinical_table import opensim_zeros_rad
 from mbkf.trial.results.progression import LABORATORY, Progression, laboratory
 from mbkf.trial.results.readings import AXES, STATIC
 
@@ -91,9 +92,19 @@ def clinical_motion(
         heading_rad=frame.heading_rad,
         direction=frame.direction,
         angles_read=clinical.reading.name,
+        opensim_origin_m=_opensim_origin(model),
+        opensim_zeros_rad=opensim_zeros_rad(model.description.clinical_joints),
         angles_zero=AXES if zero_q is None else STATIC,
     )
     return motion, _moments(own, track, torques, known, own_angles)
+
+
+def _opensim_origin(model: Body) -> tuple[float, ...]:
+    """OpenSim's origin of the root in the root's frame, of the person's size, m; empty where it is the root's own."""
+    place = model.description.clinical_joints[0].opensim_origin_m
+    if place is None:
+        return ()
+    return tuple(float(one) for one in model.axis_scale(model.description.segments[0]) * np.array(place))
 
 
 def _moments(own: ClinicalAngles, track: Track, torques: Torques, known: BoolArray, angles: Array) -> Moments:

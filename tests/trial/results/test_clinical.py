@@ -225,3 +225,12 @@ def test_parts_go_the_way_of_their_totals(spread_case, turned):
         np.testing.assert_allclose(offset, 0.6 * total, rtol=1e-12)
         assert np.isnan(offset[2]).all() and (offset[KNOWN] > 0.0).all()
         np.testing.assert_allclose(getattr(found, f"{name}_sd_change"), 0.3 * total, rtol=1e-5)
+
+
+def test_opensims_origin_of_the_pelvis_is_the_middle_of_the_persons_asis(case):
+    """Reed 1999: the hips lie 0.208 of the pelvis's width behind and 0.278 below it."""
+    model, _, _, _, found = case
+    root, hip = model.description.segments[0], model.description.segment("right_thigh").origin_m
+    middle = [hip[0] + 0.208 * 0.224, 0.0, hip[2] + 0.278 * 0.224]
+    np.testing.assert_allclose(found.opensim_origin_m, model.axis_scale(root) * middle, atol=1e-3)
+    assert found.opensim_zeros_rad == {name: pytest.approx(np.pi / 2) for name in ("pro_sup_r", "pro_sup_l")}
