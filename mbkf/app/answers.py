@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from pathlib import Path
 
 from mbkf.app.live_run import LiveRun
 from mbkf.app.recordings import recording_rows
 from mbkf.app.runs import Runs, RunState
+from mbkf.app.verdicts import gravest_on, verdict_on
 from mbkf.app.workspace import Workspace
 from mbkf.io.session import TrialKind, plain_session
 from mbkf.io.session_change import session_version
@@ -18,13 +20,24 @@ from mbkf.study.survey.trial import SurveyedTrial
 
 Plain = dict[str, object]
 
+HAS_RESULT = ("done", "unchanged")
+"""Statuses of trials with a result."""
+
 
 def sessions(workspace: Workspace, runs: Runs) -> Plain:
     """All sessions, in short."""
     return {
         "folder": str(workspace.root),
-        "sessions": [{"id": name, "run": run_state(runs.state(name))} for name in workspace.sessions()],
+        "sessions": [_in_short(workspace, runs.state(name), name) for name in workspace.sessions()],
     }
+
+
+def _in_short(workspace: Workspace, state: RunState | None, name: str) -> Plain:
+    """A session with its run and the gravest word on its trials."""
+    place = workspace.place(name)
+    trials = {} if state is None else state.trials
+    done = [place / trial for trial, (status, _) in trials.items() if status in HAS_RESULT]
+    return {"id": name, "run": run_state(state), "verdict": gravest_on(done)}
 
 
 def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
@@ -41,14 +54,18 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
     """
     found = workspace.survey(name)
     state = runs.state(name)
-    scaled = record_of(workspace.place(name))
+    place = workspace.place(name)
+    scaled = record_of(place)
     return {
         "id": name,
         "notes": plain_session(found.notes),
         "version": session_version(found.notes),
         "standing_kg": found.standing_kg,
         "problems": [plain_problem(one) for one in found.problems],
-        "trials": [*(_trial(found, one, state) for one in found.trials), *recording_rows(workspace, name)],
+        "trials": [
+            *(_trial(found, one, state, place) for one in found.trials),
+            *recording_rows(workspace, name),
+        ],
         "kinds": [kind.value for kind in TrialKind],
         "run": run_state(state),
         "scaled_from": used_trials(scaled),
@@ -70,7 +87,7 @@ def live_state(live: LiveRun) -> Plain:
     return {"run": None if state is None else {**asdict(state), "goes_on": state.goes_on}}
 
 
-def _trial(found: SurveyedSession, trial: SurveyedTrial, state: RunState | None) -> Plain:
+def _trial(found: SurveyedSession, trial: SurveyedTrial, state: RunState | None, place: Path) -> Plain:
     status, reason = ("", "") if state is None else state.trials.get(trial.name, ("", ""))
     progress = None if state is None else state.under_way.get(trial.name)
     copied = ("name", "seconds", "rate_hz", "markers", "unnamed", "protocol", "plates", "events", "usable")
@@ -83,5 +100,6 @@ def _trial(found: SurveyedSession, trial: SurveyedTrial, state: RunState | None)
         "problems": [plain_problem(one) for one in trial.problems],
         "status": status,
         "reason": reason,
+        "verdict": verdict_on(place / trial.name) if status in HAS_RESULT else None,
         "under_way": None if progress is None else asdict(progress) | {"share": progress.share},
     }

@@ -6,6 +6,7 @@ import json
 from functools import lru_cache
 from pathlib import Path
 
+from mbkf.app.verdicts import verdict_on
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
 from mbkf.io.files_read import read_state
@@ -37,7 +38,7 @@ def _row(folder: Path) -> Plain:
         entries = _entries(folder, (folder / SUMMARY_FILE).stat().st_mtime_ns)
     except (MbkfError, OSError, ValueError) as error:
         return {**found, "status": "failed", "reason": " ".join(str(error).split())}
-    return {**found, **entries}
+    return {**found, **entries, "verdict": verdict_on(folder)}
 
 
 @lru_cache(maxsize=256)

@@ -9,6 +9,7 @@ from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import FootEvent, plain_events
 from mbkf.io.session_change import version_of
 from mbkf.trial.gait.events import foot_events, plain_found
+from mbkf.trial.verdict.judge import verdict_of
 from mbkf.viz.page import asset, embedded, embedded_words, fill, scripts, viewer_script
 from mbkf.viz.scene.recording import recording
 
@@ -28,8 +29,8 @@ def viewer_data(folder: Path, events: Iterable[FootEvent] | None = None) -> dict
 
     Returns:
         ``scene`` and ``rows`` (:func:`mbkf.viz.scene.recording.recording`), ``found``: the detected events,
-        ``events``: those by hand or None, ``version``: of these, ``frame_s``: seconds from one frame of the
-        capture to the next, and ``span_s``: times of its first and last frame.
+        ``events``: those by hand or None, ``version``: of these, ``verdict``: word, line and reasons, ``frame_s``:
+        seconds from one frame of the capture to the next, and ``span_s``: times of its first and last frame.
 
     Raises:
         FileFormatError: The result is damaged.
@@ -37,6 +38,7 @@ def viewer_data(folder: Path, events: Iterable[FootEvent] | None = None) -> dict
     """
     r = read_reconstruction(folder)
     found = plain_found(foot_events(r)) if r.tracked.any() else ()
+    verdict = verdict_of(r)
     by_hand = None if events is None else plain_events(events)
     return {
         **recording(r),
@@ -45,6 +47,7 @@ def viewer_data(folder: Path, events: Iterable[FootEvent] | None = None) -> dict
         "version": version_of(by_hand),
         "frame_s": 1.0 / r.rate_hz,
         "span_s": [float(r.times_s[0]), float(r.times_s[-1])],
+        "verdict": {"word": verdict.overall, "line": verdict.line, "reasons": list(verdict.sentences)},
     }
 
 

@@ -20,21 +20,26 @@ plates do not. A list names them instead:
                                                          trials = ["P01/walk1.c3d", "P01/walk2.c3d"]
 
 Results stand in DIR/SUBJECT[/SESSION]/TRIAL. DIR/summary.csv has a row for each trial, DIR/curves.csv all gait cycles
-at 0 to 100 %; both also as .parquet. A trial that is done and unchanged is skipped. A bad file fails alone, with its
-reason in the table.
+at 0 to 100 %; both also as .parquet. The last lines name the trials that are not to be used and those to look at, with
+the reason, and count the words; --strict exits with 3 if one is "do not use". A trial that is done and unchanged is
+skipped. A bad file fails alone, with its reason in the table.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections import Counter
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbkf.cli.options import (
+    EXIT_DO_NOT_USE,
     add_lag_option,
     add_out,
     add_spreads_option,
     add_static_only,
+    add_strict,
     asked_spreads,
     count,
     lag_seconds,
@@ -43,8 +48,13 @@ from mbkf.cli.options import (
 if TYPE_CHECKING:
     import pyarrow as pa
 
+    from mbkf.io.verdict import Verdict
+
 EXIT_FAILED = 1
 """Exit code after a trial that failed."""
+
+REASONS = "verdict.reasons"
+"""Column of the table with the reasons of verdicts."""
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -66,6 +76,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     add_lag_option(later)
     add_spreads_option(parser)
     add_static_only(parser)
+    add_strict(parser)
     add_out(parser, "DIR", "folder to write", required=True)
 
 
@@ -95,7 +106,10 @@ def run(args: argparse.Namespace) -> int:
             static_only=args.static_only,
             progress=report,
         )
-    return _print(table, args.out)
+    failed, words = _print(table, args.out)
+    if failed:
+        return EXIT_FAILED
+    return EXIT_DO_NOT_USE if args.strict and words["do not use"] else 0
 
 
 def shard_of(text: str | None) -> tuple[int, int] | None:
@@ -114,12 +128,41 @@ def shard_of(text: str | None) -> tuple[int, int] | None:
     return int(number), int(total)
 
 
-def _print(table: pa.Table, out: str) -> int:
-    """Prints the counts of trials and the reason of each failure; returns the exit code."""
+def _print(table: pa.Table, out: str) -> tuple[int, Counter[str]]:
+    """Prints counts of trials and of verdicts, the reason of each failure and of each trial that may not be used.
+
+    Returns:
+        Number of trials that failed, and of those with each word.
+    """
+    from mbkf.io.verdict import WORDS
+
     statuses = table["status"].to_pylist()
     for row in table.select(["folder", "status", "reason"]).to_pylist():
         if row["status"] == "failed":
             print(f"failed: {row['folder']}: {row['reason']}", file=sys.stderr)
+    verdicts = dict(_verdicts(table))
+    for folder, verdict in verdicts.items():
+        if verdict.overall != WORDS[0]:
+            print(f"{folder}: {verdict.line}")
     done, unchanged, failed = (statuses.count(status) for status in ("done", "unchanged", "failed"))
+    words = Counter(verdict.overall for verdict in verdicts.values())
+    if verdicts:
+        print("may they be used? " + ", ".join(f"{words[word]} {word}" for word in WORDS))
     print(f"{out}: {done} trials done, {unchanged} unchanged, {failed} failed")
-    return EXIT_FAILED if failed else 0
+    return failed, Counter(words)
+
+
+def _verdicts(table: pa.Table) -> Iterator[tuple[str, Verdict]]:
+    """Folder and verdict of each trial that has one, the gravest word first."""
+    from mbkf.io.verdict import WORDS, verdict_of_text
+
+    if REASONS not in table.column_names:
+        return
+    rows = table.select(["folder", REASONS]).to_pylist()
+    found = [
+        (row["folder"], verdict)
+        for row in rows
+        if row[REASONS] is not None
+        and (verdict := verdict_of_text(f'{{"reasons": {row[REASONS]}}}')) is not None
+    ]
+    yield from sorted(found, key=lambda one: -WORDS.index(one[1].overall))

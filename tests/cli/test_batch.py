@@ -2,11 +2,13 @@
 
 import json
 
+import pyarrow as pa
 import pytest
 
-from mbkf.cli.batch import shard_of
+from mbkf.cli.batch import REASONS, _print, shard_of
 from mbkf.cli.main import main
 from mbkf.errors import InvalidInput
+from mbkf.io.verdict import Reason, Verdict
 from tests.studies import ThisProcess, study
 
 pytestmark = pytest.mark.slow
@@ -45,3 +47,21 @@ def test_a_shard_is_two_numbers(text):
 
 def test_a_shard_is_read():
     assert shard_of("3/16") == (3, 16) and shard_of(None) is None
+
+
+def test_the_last_lines_name_the_trials_that_may_not_be_used_and_count_the_words(capsys):
+    turned = Verdict.of([Reason("left_leg", "do not use", "knee 57° beyond", "turned over", "check names")])
+    reasons = [json.dumps(one.as_table()["reasons"]) for one in (Verdict(), turned)]
+    columns = {
+        "folder": ["P1/a", "P1/b", "P1/c"], "status": ["done", "unchanged", "failed"], "reason": ["", "", "no file"],
+        REASONS: [*reasons, None],
+    }  # fmt: skip
+    failed, words = _print(pa.table(columns), "out")
+    assert (failed, words["use"], words["do not use"]) == (1, 1, 1)
+    shown = capsys.readouterr()
+    assert shown.out.splitlines() == [
+        f"P1/b: {turned.line}",
+        "may they be used? 1 use, 0 look, 1 do not use",
+        "out: 1 trials done, 1 unchanged, 1 failed",
+    ]
+    assert shown.err == "failed: P1/c: no file\n"

@@ -11,11 +11,14 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.contacts import Source
 from mbkf.io.results import Reconstruction
+from mbkf.io.verdict import LOAD_PARTS
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
 from mbkf.trial.gait.curves import ENDINGS, SideCurve, side_curves
 from mbkf.trial.gait.cycles import POINTS, Cycle, Gait, over_cycle
 from mbkf.trial.gait.facing import facing
+from mbkf.trial.verdict.judge import verdict_of
+from mbkf.trial.verdict.parts import LEGS, PELVIS, TRUNK, part_of_segment
 
 FORCES = ("forward", "medial", "upward")
 """Components of a reaction: in the direction the person faces, towards the other foot, up."""
@@ -97,7 +100,7 @@ class SideCycles:
 
 
 def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycles:
-    """The cycles of one side of a trial in which the body was followed throughout.
+    """The cycles of one side of a trial in which the body was followed throughout; NaN where one may not be used.
 
     Curves of the midline are as either side sees them: those of the left are mirrored.
 
@@ -112,6 +115,7 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
         return SideCycles(side, (), {})
     mirrored = mirrored_midline(reference_body(r.subject)) if side else frozenset()
     whole = frozenset(r.coordinate_names)
+    body, verdict = reference_body(r.subject), verdict_of(r)
     curves = {}
     for curve in [*side_curves(r, side), *_reactions(r, side)]:
         factor, unit = _shown(curve, r.subject.mass_kg)
@@ -125,9 +129,35 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
                 (factor, curve.change_sd),
             )
         )
+        if not verdict.may_use(part_of_curve(body, Key(curve.quantity, curve.name), side)):
+            value = np.full_like(value, np.nan)
         curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift, change, curve.name in whole)
     curves |= _whole_joints(curves, reference_body(r.subject), side)
     return SideCycles(side, cycles, curves)
+
+
+def part_of_curve(body: BodyDescription, key: Key, side: int) -> str:
+    """The part of the verdict that a curve belongs to; loads of arms belong to their motion.
+
+    Args:
+        body: The body.
+        key: The curve.
+        side: 0 right, 1 left.
+    """
+    if key.quantity == REACTION:
+        return LOAD_PARTS[side]
+    segments = part_of_segment(body)
+    names = (key.name, key.name + ENDINGS[side])
+    part = next(
+        (
+            segments[joint.distal]
+            for joint in body.clinical_joints
+            if any(one.name in names for one in (*joint.angles, *joint.translations))
+        ),
+        TRUNK,  # the trunk's net moments by level of the spine
+    )
+    loads = {PELVIS: LOAD_PARTS[2], TRUNK: LOAD_PARTS[2], **dict(zip(LEGS, LOAD_PARTS, strict=False))}
+    return loads.get(part, part) if key.is_load else part
 
 
 def _whole_joints(curves: Mapping[Key, Curves], body: BodyDescription, side: int) -> dict[Key, Curves]:

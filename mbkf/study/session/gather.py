@@ -16,6 +16,7 @@ from mbkf.io.results_folder import MOTION_FILE, read_reconstruction
 from mbkf.io.session import SessionNotes, TrialKind, TrialNotes
 from mbkf.io.session import session_of as session_of_entries
 from mbkf.io.subject import Subject
+from mbkf.io.verdict import listed
 from mbkf.model.human import HumanModel
 from mbkf.study.batch.inputs import RECORD, read_record
 from mbkf.study.session.cycles import SideCycles, cycles_of_trial, together
@@ -24,12 +25,11 @@ from mbkf.study.session.records import Measure, MovementGroup, Session, SessionT
 from mbkf.study.session.squats import squat_measures
 from mbkf.study.survey.movement import SUNK_M, kind_of_markers
 from mbkf.trial.gait.cycles import Gait, find_gait
+from mbkf.trial.verdict.judge import verdict_of
+from mbkf.trial.verdict.parts import LEGS, PELVIS
 
 GAIT_KINDS = (TrialKind.WALK, TrialKind.RUN, TrialKind.UNKNOWN)
 """Kinds whose cycles are looked at; feet of jumps and squats strike, too."""
-
-TRACKED_SHARE, MARKER_RMS_M = 0.95, 0.015
-"""A trial that was followed in a smaller share of its frames is bad; markers further from the body call for care."""
 
 MOST_DEEP = 3
 """Folders in folders in which results are looked for."""
@@ -37,12 +37,13 @@ MOST_DEEP = 3
 
 @dataclass(frozen=True)
 class _Part:
-    """Contribution of one trial to its session."""
+    """Contribution of one trial to its session; measures need that pelvis and legs may be used (``moves``)."""
 
     trial: SessionTrial
     subject: Subject
     sides: tuple[SideCycles, SideCycles]
     gait: Gait | None
+    moves: bool
     jumps: tuple[Measure, ...]
     squats: tuple[Measure, ...]
 
@@ -133,19 +134,19 @@ def trial_summary(r: Reconstruction, kind: TrialKind | None = None) -> SessionTr
         r: Its results.
         kind: Kind of the trial; None: recognised from its markers.
     """
-    rms = _marker_rms_m(r)
-    outside = tuple(f"{one.name}: {one.hint}" for one in r.checks if one.verdict == "outside")
-    if r.tracked.mean() < TRACKED_SHARE:
-        verdict = "bad"
-    elif outside or rms > MARKER_RMS_M:
-        verdict = "care"
-    else:
-        verdict = "good"
+    verdict = verdict_of(r)
+    out = [part for part in verdict.shown if not verdict.may_use(part)]
     if kind is None:
         kind = kind_of_result(r)
     seconds = r.frames / r.rate_hz
     return SessionTrial(
-        r.trial, kind, seconds, verdict, (*outside, *r.warnings), f"{r.filter}, {r.later_frames}"
+        r.trial,
+        kind,
+        seconds,
+        verdict.overall,
+        (*verdict.sentences, *r.warnings),
+        f"{r.filter}, {r.later_frames}",
+        listed(out),
     )
 
 
@@ -184,27 +185,25 @@ def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
 
 
 def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
+    r = replace(r, verdict=verdict_of(r))
     trial = trial_summary(r, stated.kind)
     gait = find_gait(r, stated.events) if trial.kind in GAIT_KINDS and r.tracked.any() else None
     sides = (cycles_of_trial(r, gait, 0), cycles_of_trial(r, gait, 1))
+    moves = all(verdict_of(r).may_use(part) for part in (PELVIS, *LEGS))
     return _Part(
         trial,
         r.subject,
         sides,
         gait,
-        jump_measures(r) if trial.kind == TrialKind.JUMP else (),
-        squat_measures(r) if trial.kind == TrialKind.SQUAT else (),
+        moves,
+        jump_measures(r) if trial.kind == TrialKind.JUMP and moves else (),
+        squat_measures(r) if trial.kind == TrialKind.SQUAT and moves else (),
     )
 
 
 def _again(r: Reconstruction, number: int) -> Reconstruction:
     """A trial whose name was there before, under a name of its own."""
     return replace(r, trial=f"{r.trial} ({number})")
-
-
-def _marker_rms_m(r: Reconstruction) -> float:
-    apart = np.where(r.present[:, :, None], r.measured_m - r.predicted_m, np.nan)[r.tracked]
-    return float(np.sqrt(np.nanmean((apart**2).sum(axis=2)))) if np.isfinite(apart).any() else 0.0
 
 
 def _gait_of(part: _Part, kind: TrialKind) -> bool:
@@ -215,7 +214,7 @@ def _group(kind: TrialKind, parts: list[_Part]) -> MovementGroup:
     """Trials of a kind together."""
     sides = (together([p.sides[0] for p in parts], 0), together([p.sides[1] for p in parts], 1))
     return MovementGroup(
-        kind, tuple(p.trial.name for p in parts), sides, _joined([_parameters(p) for p in parts])
+        kind, tuple(p.trial.name for p in parts), sides, _joined([_parameters(p) for p in parts if p.moves])
     )
 
 

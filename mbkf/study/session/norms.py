@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -9,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, MbkfWarning
 from mbkf.io.norms import Band, Norms
 from mbkf.io.session import TrialKind
 from mbkf.study.session.chosen import chosen_curves
@@ -55,6 +56,10 @@ def norms_of(sessions: Iterable[Session], name: str) -> Norms:
     curves: dict[tuple[str, str, str], list[tuple[str, Array]]] = {}
     measures: dict[tuple[str, str], list[tuple[str, Array]]] = {}
     for session in sessions:
+        for trial in session.trials:
+            if trial.left_out:
+                out = f"{trial.name} is left out of the norms where it may not be used: {trial.left_out}"
+                warnings.warn(f"{session.name}: {out}", MbkfWarning, stacklevel=2)
         for gait in session.gaits:
             if gait.kind == TrialKind.UNKNOWN:
                 continue

@@ -19,9 +19,10 @@ class SessionTrial:
         name: Its name.
         kind: Its kind.
         seconds: Duration.
-        verdict: "good", "care" or "bad": the worst that its checks found.
-        remarks: Their findings, in words.
+        verdict: "use", "look" or "do not use".
+        remarks: The reasons of the verdict, gravest first, then the trial's remarks.
         filter: The filter, and which later frames it knew.
+        left_out: Parts that the capture shows and that may not be used, in words; means and norms leave them out.
     """
 
     name: str
@@ -30,6 +31,7 @@ class SessionTrial:
     verdict: str
     remarks: tuple[str, ...]
     filter: str
+    left_out: str = ""
 
 
 @dataclass(frozen=True)

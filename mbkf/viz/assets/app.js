@@ -167,7 +167,7 @@ async function refresh() {
 
 function sessionButton(one) {
   const state = one.run ? element("span", { className: `status ${one.run.state === "finished" ? "done" : one.run.state}` }, one.run.state === "finished" ? "✓" : one.run.state === "running" ? "…" : "") : "";
-  const button = element("button", { className: "session", type: "button", onclick: () => go(one.id) }, titleOf(one.id), state);
+  const button = element("button", { className: "session", type: "button", onclick: () => go(one.id) }, titleOf(one.id), one.verdict ? verdictBadge({ word: one.verdict }) : "", state);
   button.setAttribute("aria-current", String(one.id === chosen));
   return button;
 }

@@ -89,6 +89,10 @@ function underWay(trial) {
   return element("div", { className: "under-way" }, bar, " " + words + (total > 1 ? ": " + word("frames_of", done, total) : ""));
 }
 
+function verdictBadge({ word: said, line }, status = "") {
+  return element("span", { className: `status ${status} verdict-${said.replaceAll(" ", "-")}`, title: line || "" }, word(`verdict_${said.replaceAll(" ", "_")}`));
+}
+
 function trialRow(data, one, act) {
   const kind = element("select", { onchange: () => act.trial(data, one.name, { kind: kind.value }) }, ...data.kinds.map((name) =>
     element("option", { value: name, selected: name === one.kind }, word(KIND_WORDS[name]))));
@@ -102,11 +106,13 @@ function trialRow(data, one, act) {
     out.append(" ", why);
   }
   const result = element("td", {});
-  if (one.status) result.append(element("span", { className: `status ${one.status}` }, word(one.status)));
+  if (one.verdict) result.append(verdictBadge(one.verdict, one.status));
+  else if (one.status) result.append(element("span", { className: `status ${one.status}` }, word(one.status)));
   if (one.status === "failed") result.append(" " + one.reason);
   if (one.under_way) result.replaceChildren(underWay(one));
   if (one.status === "done" || one.status === "unchanged") {
     const show = (look) => element("button", { type: "button", onclick: () => act.open(look, one.name) }, word(look));
+    if (one.verdict && one.verdict.reasons.length) result.append(element("details", { className: "reasons" }, element("summary", {}, word("reasons")), element("ul", {}, ...one.verdict.reasons.map((text) => element("li", {}, text)))));
     result.append(element("div", { className: "buttons" }, show("look"), show("report"), exportSelect(data, one)));
   }
   if (one.live) out.replaceChildren("–");

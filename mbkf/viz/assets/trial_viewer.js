@@ -4,8 +4,12 @@
 class TrialViewer {
   constructor(player, page, trial) {
     Object.assign(this, { player, trial, ghost: null, asked: 0 });
-    const { scene, found, events, version, frame_s, span_s } = page;
+    const { scene, found, events, version, frame_s, span_s, verdict } = page;
     document.documentElement.lang = language;
+    const shown = document.getElementById("verdict");
+    shown.textContent = verdict.line;
+    shown.title = verdict.reasons.join("\n");
+    shown.dataset.word = verdict.word;
     this.events = new FootEvents(found, events, span_s);
     this.pressure = new PressureMarks(player.view, scene.loads);
     this.pressure.legend(document.getElementById("legend"));

@@ -17,6 +17,7 @@ from mbkf.study.scaling.report import scaled_from
 from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.progression import LABORATORY
 from mbkf.trial.results.summary import progression_summary
+from mbkf.trial.verdict.judge import verdict_of
 from mbkf.viz.markup import folded, paragraph, section, table
 from mbkf.viz.page import asset, document
 from mbkf.viz.report.contacts import contact_section
@@ -24,6 +25,7 @@ from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
 from mbkf.viz.report.trunk import trunk_section
+from mbkf.viz.report.verdict import verdict_banner
 
 ANGLES_READ = {
     "model": "Angles are about the body's own axes, in the order of the ISB recommendations",
@@ -59,7 +61,7 @@ def report_page(
         sections += [reaction_section(r, gait), contact_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
-    body = _heading(r) + "".join(sections)
+    body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)
     return document("en", f"{r.trial} · mbkf report", asset("report.css"), there, body)
 
 

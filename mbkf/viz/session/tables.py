@@ -12,7 +12,7 @@ from mbkf.io.session import TrialKind
 from mbkf.study.session.comparison import MeasurePair, measure_mean
 from mbkf.study.session.means import Mean, difference_of, paired_difference
 from mbkf.study.session.records import Measure, Session
-from mbkf.viz.markup import Html, folded, table
+from mbkf.viz.markup import Html, folded, paragraph, table
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.svg import number
 
@@ -44,18 +44,23 @@ def trials_table(session: Session, terms: Terms) -> str:
                 number(trial.seconds, 1),
                 f"{right} + {left}" if counted else "–",
                 f"{right_measured} + {left_measured}" if counted else "–",
-                terms.say(trial.verdict),
+                terms.say(trial.verdict.replace(" ", "_")),
                 str(len(trial.remarks)) if trial.remarks else "–",
             )
         )
-    heads = ("trial", "kind", "length", "cycles", "measured_cycles", "quality", "remarks")
+    heads = ("trial", "kind", "length", "cycles", "measured_cycles", "verdict", "remarks")
     remarks = [
         f"<h4>{escape(trial.name)}</h4><ul>{''.join(f'<li>{escape(r)}</li>' for r in trial.remarks)}</ul>"
         for trial in session.trials
         if trial.remarks
     ]
     below = f'<div class="on-screen">{folded(terms.say("remarks"), *remarks)}</div>' if remarks else ""
-    return table([terms.say(one) for one in heads], rows, "trials") + below
+    out = [
+        paragraph(terms.say("left_out", trial.name, trial.left_out))
+        for trial in session.trials
+        if trial.left_out
+    ]
+    return table([terms.say(one) for one in heads], rows, "trials") + "".join(out) + below
 
 
 def measures_table(

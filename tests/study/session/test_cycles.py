@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.model.human import reference_body
-from mbkf.study.session.cycles import Key, cycles_of_trial, mirrored_midline, together
+from mbkf.study.session.cycles import Key, cycles_of_trial, mirrored_midline, part_of_curve, together
 from mbkf.trial.gait.cycles import find_gait, over_cycle
 from tests.study.session.sessions import estimated, walks
 
@@ -123,3 +124,29 @@ def test_trials_are_put_together_by_what_all_know():
     less = type(two)(0, two.cycles, {k: v for k, v in two.curves.items() if k != key})
     assert key not in together([one, less], 0).curves
     assert together([type(one)(0, (), {})], 0).cycles == ()
+
+
+@pytest.mark.parametrize(
+    ("key", "side", "part"),
+    [
+        (Key("angle", "knee_angle"), 0, "right_leg"),
+        (Key("torque", "knee_angle"), 1, "left_leg_loads"),
+        (Key("power", "hip_flexion"), 0, "right_leg_loads"),
+        (Key("reaction", "upward"), 1, "left_leg_loads"),
+        (Key("angle", "pelvis_tilt"), 1, "pelvis"),
+        (Key("angle", "lumbar_extension"), 0, "trunk"),
+        (Key("torque", "lumbar_extension"), 0, "trunk_loads"),
+        (Key("torque", "elbow_flex"), 1, "left_arm"),
+    ],
+)
+def test_each_curve_belongs_to_a_part_of_the_verdict(key, side, part):
+    assert part_of_curve(reference_body(trial().subject), key, side) == part
+
+
+def test_curves_that_may_not_be_used_are_nan():
+    plate = Reason("left_leg_loads", "do not use", "plate turned", "wrong", "mend it")
+    left = cycles_of_trial(replace(trial(), verdict=Verdict.of([plate])), gait(), 1)
+    right = cycles_of_trial(replace(trial(), verdict=Verdict.of([plate])), gait(), 0)
+    assert np.isnan(left.curves[Key("torque", "knee_angle")].values).all()
+    assert np.isfinite(left.curves[Key("angle", "knee_angle")].values).all()
+    assert np.isfinite(right.curves[Key("torque", "knee_angle")].values).all()

@@ -9,6 +9,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.findings import Finding
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, plain_events
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.study.batch.inputs import RECORD, write_record
 from mbkf.study.session.gather import results_in, session_from, session_of, trial_summary
 from mbkf.trial.gait.cycles import find_gait
@@ -73,15 +74,34 @@ def test_names_that_are_there_twice_stay_apart():
     assert [one.name for one in found.trials] == ["walk 0", "walk 0 (2)"]
 
 
-def test_verdicts():
+def test_a_trial_s_word_and_reasons_are_those_of_its_verdict():
     r = walks()[0]
-    lost, outside = r.tracked.copy(), Finding("mass", 9.0, 1.0, "kg", 3.0, "outside", "look at it")
-    lost[: r.frames // 2] = False
-    assert trial_summary(r).verdict == "good"
-    assert trial_summary(replace(r, tracked=lost)).verdict == "bad"
-    assert trial_summary(replace(r, checks=(outside,))).verdict == "care"
-    assert "mass: look at it" in trial_summary(replace(r, checks=(outside,))).remarks
-    assert trial_summary(replace(r, predicted_m=r.predicted_m + 0.02)).verdict == "care"
+    lost = np.zeros(r.frames, bool)
+    lost[: r.frames // 4] = True
+    heavy = Finding("mass against plates", 50.0, 1.0, "%", 5.0, "outside", "the plates give 90 kg")
+    assert trial_summary(r).verdict == "use" and trial_summary(r).left_out == ""
+    assert trial_summary(replace(r, tracked=lost)).verdict == "do not use"
+    accused = trial_summary(replace(r, checks=(heavy,)))
+    assert accused.verdict == "do not use"
+    assert accused.left_out == "loads of both legs, loads of the trunk"
+    assert accused.remarks[0].startswith(f"do not use: {accused.left_out}; mass against plates +50 %")
+    light = replace(heavy, value=9.0)
+    assert trial_summary(replace(r, checks=(light,))).verdict == "look"
+    assert trial_summary(replace(r, checks=(light,))).left_out == ""
+
+
+def test_measures_of_a_trial_whose_legs_may_not_be_used_are_left_out():
+    first, second = walks()[:2]
+    turned = Verdict.of([Reason("left_leg", "do not use", "turned over", "wrong", "check names")])
+    both, one = (session_of([r, second], "x").gaits[0] for r in (first, replace(first, verdict=turned)))
+    assert {name for m in both.measures for names in m.trials.values() for name in names} == {
+        "walk 0",
+        "walk 1",
+    }
+    assert {name for m in one.measures for names in m.trials.values() for name in names} == {"walk 1"}
+    assert [trial.left_out for trial in session_of([replace(first, verdict=turned)], "x").trials] == [
+        "left leg"
+    ]
 
 
 def test_results_are_found_in_folders_and_read(tmp_path):

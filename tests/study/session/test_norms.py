@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, MbkfWarning
 from mbkf.io.results_folder import write_reconstruction
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.study.session.cycles import Key
 from mbkf.study.session.gather import session_of
 from mbkf.study.session.norms import build_norms, norms_of
@@ -53,3 +54,16 @@ def test_folders_of_a_batch_are_persons(tmp_path):
             write_reconstruction(r, summarise(r), tmp_path / person / "walk")
     norms = build_norms([tmp_path], "ours")
     assert norms.curves[KNEE].persons == 2
+
+
+def test_a_trial_that_may_not_be_used_is_left_out_and_named():
+    turned = Verdict.of([Reason("left_leg", "do not use", "turned over", "wrong", "check names")])
+    one, two = session_of([replace(walks()[0], verdict=turned)], "Ana"), session(count=1, first=6)
+    with pytest.warns(
+        MbkfWarning, match="Ana: walk 0 is left out of the norms where it may not be used: left leg"
+    ):
+        norms = norms_of([one, two], "ours")
+    assert norms.curves[KNEE].persons == 2, "the right knee counts"
+    right = one.gaits[0].sides[0].curves[Key("angle", "knee_angle")].values.mean(axis=0)
+    both = np.mean([right, person_mean(two, Key("angle", "knee_angle"))], axis=0)
+    np.testing.assert_allclose(norms.curves[KNEE].mean, both)

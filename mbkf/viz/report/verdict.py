@@ -1,0 +1,32 @@
+"""The report's first lines: the verdict on the trial, its parts and its reasons."""
+
+from __future__ import annotations
+
+from html import escape
+
+from mbkf.io.verdict import TITLES, WORDS, Verdict
+from mbkf.viz.markup import folded, table
+
+KINDS = dict(zip(WORDS, ("good", "care", "bad"), strict=True))
+"""CSS class of each word."""
+
+
+def verdict_banner(verdict: Verdict) -> str:
+    """The word, the gravest reason, the words on all parts, and all reasons.
+
+    Args:
+        verdict: The verdict.
+    """
+    hidden = [part for part in TITLES if part not in verdict.shown]
+    parts = "".join(
+        f'<span class="part {"none" if part in hidden else KINDS[word]}"><b>{escape(TITLES[part])}</b> '
+        f"{'not shown' if part in hidden else word}</span>"
+        for part, word in verdict.parts.items()
+    )
+    shown = [one for one in verdict.reasons if one.part in verdict.shown]
+    shown = [one for one in verdict.reasons if one.part in verdict.shown]
+    rows = [(TITLES[one.part], one.word, one.found, one.means, one.do) for one in shown]
+    reasons = table(("part", "word", "found", "meaning", "what to do"), rows, "reasons") if rows else ""
+    lines = f'<p class="line">{escape(verdict.line)}</p><p class="parts">{parts}</p>'
+    more = folded("All reasons", reasons) if reasons else ""
+    return f'<div id="verdict" class="verdict {KINDS[verdict.overall]}">{lines}{more}</div>'
