@@ -37,7 +37,7 @@ from mbkf.cli.following import (
     report_outcome,
     say,
 )
-from mbkf.cli.options import add_out, asked_spreads, body_mass, lag_seconds, port
+from mbkf.cli.options import add_out, add_strict, asked_spreads, body_mass, lag_seconds, port, strict_exit
 
 if TYPE_CHECKING:
     from mbkf.io.subject import Subject
@@ -70,6 +70,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="default: dynamic")
     parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
+    add_strict(parser)
     add_out(parser, "DIR", "folder to write")
     parser.add_argument(
         "--recover", metavar="DIR", help="make the results of a run that broke off, from its log in DIR"
@@ -138,7 +139,8 @@ def run(args: argparse.Namespace) -> int:
 
     with _waiting_page(args) as waiting:
         outcome = follow(args, source, begin, waiting)
-    return report_outcome(outcome, folder)
+    told = None if outcome.summary is None else outcome.summary["verdict"]
+    return report_outcome(outcome, folder) or strict_exit(args, told)
 
 
 def _person(args: argparse.Namespace) -> Subject | KnownPerson:

@@ -13,16 +13,14 @@ from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.estimate import Recording
 from mbkf.filters.plant import PlantMaker
 from mbkf.filters.tracking import track
-from mbkf.io.findings import Finding
-from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.correction import correct_markers
 from mbkf.sensors.block import AnyBlock
-from mbkf.sensors.supports.block import BEARING
 from mbkf.trial.axes.captures import checked_for_subject
-from mbkf.trial.checks.judge import marker_checks, plate_checks
+from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.preparation.coverage import use_by_subject
 from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right
@@ -86,8 +84,8 @@ def reconstruct(
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = plates_without(capture, settings.without_plates)
-        fixed = settings.correct_markers
-        subject = correct_markers(subject, shown) if fixed else subject.in_neutral_posture()
+        before = subject if settings.correct_markers else None
+        subject = subject.in_neutral_posture() if before is None else correct_markers(before, shown)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
@@ -108,7 +106,7 @@ def reconstruct(
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-        checks = _checks(shown, subject, inputs, recording, alone) if settings.checks else ()
+        checks = trial_checks(shown, subject, inputs, recording, alone, before) if settings.checks else ()
         return judged_result(
             replace(
                 found,
@@ -144,28 +142,3 @@ def _markers_alone(
         return None
     followed = None if progress is None else partial(progress, "Following markers alone")
     return markers_alone(inputs, recording, followed)
-
-
-def _checks(
-    shown: MarkerTrajectories,
-    subject: Subject,
-    inputs: FilterInputs,
-    recording: Recording,
-    alone: Motion | None,
-) -> tuple[Finding, ...]:
-    """All checks of the trial, those of the plates first.
-
-    Args:
-        shown: The markers that are used.
-        subject: The person.
-        inputs: What the filter was built from.
-        recording: What the instruments read, with what bears besides the feet.
-        alone: The motion of markers alone; None without plates.
-    """
-    found = marker_checks(shown, subject)
-    if alone is None or not inputs.plates:
-        return found
-    others = recording.readings.get(BEARING)
-    bears = None if others is None else np.asarray(np.asarray(others).any(axis=1))
-    model = inputs.sensor.model
-    return (*plate_checks(model, alone, shown.times_s, shown.rate_hz, inputs.plates, bears), *found)

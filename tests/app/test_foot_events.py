@@ -43,9 +43,9 @@ def starts(folder):
 
 def test_the_page_and_the_frames_are_given_out(server, cookie, run):
     _, told = run
-    assert {"scene", "rows", "found", "events", "version", "frame_s", "span_s"} == set(told) and told[
-        "events"
-    ] is None
+    assert {"scene", "rows", "found", "events", "version", "frame_s", "span_s", "verdict"} == set(
+        told
+    ) and told["events"] is None
     kinds = {(one["side"], one["kind"]) for one in told["found"]}
     assert kinds == {(side, kind) for side in ("right", "left") for kind in ("strike", "off")}
     answer, text = asked(server, "/trial/look?session=P1&trial=walk1", Cookie=cookie)

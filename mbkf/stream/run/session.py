@@ -177,6 +177,7 @@ class LiveSession:
             statistics,
             unlogged,
             unexplained=loads.plain(),
+            verdict=None if written.summary is None else written.summary["verdict"],
             ended_by=ended_by,
             frames_written=logged,
             frames_not_written=unlogged,

@@ -7,24 +7,32 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.errors import NotObservable
+from mbkf.errors import MbkfError, NotObservable
 from mbkf.filters.offset_change import OffsetChanges
 from mbkf.filters.record import Track
 from mbkf.filters.tracking import track_of
 from mbkf.imu.segments import segment_of
+from mbkf.io.findings import Finding
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, read_subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
+from mbkf.trial.checks.judge import messages
+from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.motion_result import Timeline, motion_result
-from mbkf.trial.live.filter import live_inputs
+from mbkf.trial.live.filter import NUMERICAL, live_inputs
 from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
+from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.warnings import unexplained_remarks
 from mbkf.trial.verdict.judge import judged_result
+
+CHECKED_S = 60.0
+"""Longest part of a run whose plates are compared with the motion of its markers alone, from its beginning."""
 
 
 def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
@@ -74,8 +82,23 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
             changes.follow_all(logged.rows)
             result = changes.added_to(result, logged.rows)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-    warnings = (*unexplained_remarks(found.unexplained), *found.warnings)
-    return judged_result(replace(found, settings=logged.settings, warnings=warnings))
+        checks = _checks(logged, measured, subject, settings)
+    warnings = (*messages(checks), *unexplained_remarks(found.unexplained), *found.warnings)
+    return judged_result(replace(found, settings=logged.settings, warnings=warnings, checks=checks))
+
+
+def _checks(
+    logged: Logged, measured: MarkerTrajectories, subject: Subject, settings: ReconstructSettings
+) -> tuple[Finding, ...]:
+    """The checks of ``reconstruct`` on the frames of a run; of a long run on its first :data:`CHECKED_S`."""
+    frames = min(measured.frames, round(CHECKED_S * measured.rate_hz))
+    shown = replace(measured, positions_m=measured.positions_m[:frames])
+    try:
+        inputs, recording = trial_inputs(shown, logged.stream.plates, subject.in_neutral_posture(), settings)
+        alone = markers_alone(inputs, recording) if inputs.plates else None
+        return trial_checks(shown, subject, inputs, recording, alone)
+    except (MbkfError, *NUMERICAL):  # the first frames of a run may show nobody, or nonsense
+        return ()
 
 
 def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracked: Track) -> Reconstruction:

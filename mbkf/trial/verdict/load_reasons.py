@@ -8,7 +8,7 @@ from typing import NamedTuple
 from mbkf.io.findings import Finding
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, TITLES, Reason, Word, gravest
-from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, rigidity
+from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.motion_reasons import Bounds
 from mbkf.trial.verdict.parts import LEGS, PELVIS, TRUNK
@@ -69,6 +69,9 @@ LAW_NAMES = (newton.FORCE, newton.MOMENT)
 LAW = Bounds(3.0, 4.0)
 """Force or moment that plates lack, over their bound or the part that noise explains; at most 2.7 in right trials."""
 
+PLACES_LEAVE = 2.5
+"""Displacement of a leg's markers over their usual spread from which its motion is not to be used."""
+
 SPOILT = Bounds(0.0, 0.1)
 """Share of the frames that an unexplained force spoils."""
 
@@ -106,6 +109,18 @@ def check_reasons(evidence: Evidence) -> Iterator[Reason]:
         part = evidence.part_of.get(loose.segment, PELVIS)
         means = "a marker came loose, or belongs to another segment"
         yield Reason(part, "look", found, means, todo, _times(loose))
+    moved = outside.get(places.NAME)
+    if moved is not None:
+        found, todo = _stated(moved, "scale again")
+        means, own = (
+            "the body was scaled from other names, or another person",
+            evidence.part_of.get(moved.segment),
+        )
+        leaves = _size(moved) >= PLACES_LEAVE
+        for leg in LEGS:
+            yield Reason(
+                leg, "do not use" if leaves and leg == own else "look", found, means, todo, _times(moved)
+            )
     uneven = outside.get(lengths.NAME)
     if uneven is not None:
         found, todo = _stated(uneven, "scale again")

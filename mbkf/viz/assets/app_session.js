@@ -2,6 +2,7 @@
 "use strict";
 
 const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", turn: "turn", stairs: "stairs", sit_to_stand: "sit_to_stand", unknown: "unknown" };
+const VERDICT_WORDS = { "use": "verdict_use", "look": "verdict_look", "do not use": "verdict_do_not_use" };
 const STAGE_WORDS = { "Reading": "stage_reading", "Following markers alone": "stage_markers", "Filtering": "stage_filtering", "Writing": "stage_writing" };
 
 function sessionView(data, act) {
@@ -90,7 +91,7 @@ function underWay(trial) {
 }
 
 function verdictBadge({ word: said, line }, status = "") {
-  return element("span", { className: `status ${status} verdict-${said.replaceAll(" ", "-")}`, title: line || "" }, word(`verdict_${said.replaceAll(" ", "_")}`));
+  return element("span", { className: `status ${status} verdict-${said.replaceAll(" ", "-")}`, title: line || "" }, word(VERDICT_WORDS[said]));
 }
 
 function trialRow(data, one, act) {

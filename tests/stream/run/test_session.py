@@ -66,6 +66,9 @@ def test_results_are_the_causal_ones_of_reconstruct(tmp_path, capture, subject, 
     assert counts == {"frames_in": 80, "frames_lost": 0, "frames_processed": 80, "starts": 1}
     assert report["state"] == "finished"
     assert report["events"] == []
+    assert found.verdict is not None and expected.verdict is not None
+    assert found.verdict.parts == expected.verdict.parts == report["verdict"]["parts"]
+    assert [one.name for one in found.checks] == [one.name for one in expected.checks]
 
 
 def test_lagged_results_are_those_of_reconstruct(tmp_path, capture, subject):

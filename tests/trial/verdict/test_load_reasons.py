@@ -1,12 +1,14 @@
 """Reasons against loads: checks by their size, unexplained forces by cause and share, contacts, motion below them."""
 
+from dataclasses import replace
+
 import pytest
 
 from mbkf.io.contacts import ContactInterval
 from mbkf.io.findings import Finding, judged
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, Reason, gravest
-from mbkf.trial.checks import clocks, lengths, mass, newton, rigidity
+from mbkf.trial.checks import clocks, lengths, mass, newton, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.load_reasons import check_reasons, load_reasons
 
@@ -104,6 +106,17 @@ def test_loads_rest_on_the_motion_below_them():
 
 def test_loads_that_are_not_shown_have_no_reasons_of_their_own():
     assert words(checks=(outside(mass.NAME, 53.0),), unshown=LOAD_PARTS) == all_of("use")
+
+
+def test_a_leg_whose_markers_sit_elsewhere_is_not_to_be_used():
+    moved = Finding(
+        places.NAME, 9.0, 0.6, "times", 2.5, "outside", "half of them; scale again", segment="left_thigh"
+    )
+    found = check_reasons(Evidence(checks=(moved,), part_of={"left_thigh": "left_leg"}))
+    assert {one.part: one.word for one in found} == {"right_leg": "look", "left_leg": "do not use"}
+    less = replace(moved, value=1.7)
+    found = check_reasons(Evidence(checks=(less,), part_of={"left_thigh": "left_leg"}))
+    assert {one.word for one in found} == {"look"}
 
 
 def test_checks_without_plates_concern_motions():
