@@ -6,7 +6,8 @@ at while the search was made, 3 and 4 only afterwards.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
+from mbkf.synthesis.capture import SyntheticCapture
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.synth import synthesise
@@ -25,6 +27,12 @@ PERSONS = (0, 2, 3, 4)
 FORCE_PERCENT = {"sit_to_stand": 6.0, "kneel": 10.0, "rail": 10.0}
 TORQUE_NM_KG, FOUND_S = 0.15, 0.1
 SPREAD, COVER = (0.7, 1.3), (90.0, 98.0)
+SEATED_PERCENT, SEATED_FROM = 95.0, 0.01
+"""A seat is found for so much of the time in which it bears more than this share of body weight."""
+
+OTHER_MASSES = (0.96, 1.04)
+"""Stated over true mass of persons who are weighed with their shoes, or remember what they weighed."""
+
 BEARS_SHARE = 0.05
 """Share of body weight from which a part bears, for its beginning and end to be judged by."""
 
@@ -48,6 +56,8 @@ def other_rows(context: Context) -> list[Check]:
             settings = ReconstructSettings(smooth=smooth)
             trials = [Trial(s, c.truth, reconstruct(c.trial, s, settings=settings)) for s, c in made]
             rows += _motion_rows(motion, name, trials)
+            if motion == "sit_to_stand":
+                rows += _other_mass_rows(f"{motion}, {name}", made, settings)
             over_sd[name] += [_over_sd(trial) for trial in trials]
     for name, several in over_sd.items():
         errors = np.concatenate(several)
@@ -70,9 +80,29 @@ def _motion_rows(motion: str, name: str, trials: list[Trial]) -> Iterator[Check]
     if motion == "sit_to_stand":
         yield Check(f"{title}: hip and knee torque, worst", torque, TORQUE_NM_KG, "<=", "N m/kg")
         yield Check(f"{title}: seat found and lost, worst", late, FOUND_S, "<=", "s")
+        seated, beyond = zip(*(seated_percent(t) for t in trials), strict=True)
+        yield Check(f"{title}: time on the seat that is found, least", min(seated), SEATED_PERCENT, ">=", "%")
+        yield Check(
+            f"{title}: seat found beyond that time, most", max(beyond), 100.0 - SEATED_PERCENT, "<=", "%"
+        )
     else:
         yield information(f"{title}: hip and knee torque, worst", torque, "N m/kg")
         yield information(f"{title}: parts found and lost, worst", late, "s")
+
+
+def _other_mass_rows(
+    title: str, made: Sequence[tuple[Subject, SyntheticCapture]], settings: ReconstructSettings
+) -> Iterator[Check]:
+    """The seat where the mass is wrong by 4 %."""
+    for factor in OTHER_MASSES:
+        persons = [(replace(s, mass_kg=factor * s.mass_kg), c) for s, c in made]
+        trials = [Trial(s, c.truth, reconstruct(c.trial, s, settings=settings)) for s, c in persons]
+        seated, beyond = zip(*(seated_percent(t) for t in trials), strict=True)
+        words = f"{title}, mass {100.0 * (factor - 1.0):+.0f} %"
+        yield Check(f"{words}: time on the seat that is found, least", min(seated), SEATED_PERCENT, ">=", "%")
+        yield Check(
+            f"{words}: seat found beyond that time, most", max(beyond), 100.0 - SEATED_PERCENT, "<=", "%"
+        )
 
 
 def _errors(trial: Trial) -> dict[str, tuple[Array, Array, Array]]:
@@ -92,6 +122,20 @@ def support_percent(trial: Trial) -> dict[str, float]:
     """RMS of the vertical force on every part while it bears, % of body weight."""
     weight_n = trial.subject.mass_kg * GRAVITY_M_S2
     return {part: 100.0 * rms(off[true > 0.0]) / weight_n for part, (true, off, _) in _errors(trial).items()}
+
+
+def seated_percent(trial: Trial) -> tuple[float, float]:
+    """Share of the time on a part in which it is found, and of the time in which it is found beyond, %; the worst part.
+
+    A part bears from :data:`SEATED_FROM` of body weight on; the time beyond begins where it bears nothing.
+    """
+    weight_n = trial.subject.mass_kg * GRAVITY_M_S2
+    within, beyond = [], []
+    for true, off, _ in _errors(trial).values():
+        bears, seen = true > SEATED_FROM * weight_n, true + off != 0.0
+        within.append(100.0 * float(seen[bears].mean()))
+        beyond.append(100.0 * float((seen & (true <= 0.0)).sum() / bears.sum()))
+    return min(within), max(beyond)
 
 
 def _feet_percent(trial: Trial) -> float:

@@ -27,7 +27,7 @@ from mbkf.trial.scale import scale
 
 LIFTS = {"stoop1": "t169_f620f800", "stoop2": "t169_f1395f1590", "stoop3": "t169_f2101f2300"}
 STANDING, LIFTER_KG = "neu_t169_f250f350.c3d", 81.7
-BOX_N, BOX_SHARE, LIFTED_N = 147.0, 0.2, 40.0
+BOX_N, BOX_SHARE, LIFTED_N = 147.0, 0.15, 40.0
 FOUND_S, LEAST_R, TORQUE_NM_KG = 0.2, 0.95, 0.25
 
 PRONE = "KneeltoProne01_labelled.c3d"

@@ -52,7 +52,15 @@ ON_FLOOR_M, RESTS_M_S, RESTS_S = 0.05, 0.4, 0.1
 """Largest height over the soles' floor, largest speed and least duration of a part that lies on the floor."""
 
 ALWAYS_SHARE = 0.9
-"""A force missing in more than this share of the frames is an error of mass or plates, not a contact."""
+"""A force missing in more than this share of the frames is an error of mass or plates, not a contact, unless more is
+missing than a mass is wrong by, and feet bear the rest: then a person sits throughout."""
+
+MASS_SHARE, SEATED_SHARE = 0.4, 0.02
+"""No mass is wrong by the first share; feet of a seated person bear at least the second."""
+
+FREE_S, MASS_ERROR = 0.5, 0.06
+"""A mass is corrected, for this search alone and by no more than this share, where frames without a missing force last
+so long: else the error of a mass lasts on as a seat that was left."""
 
 
 @dataclass(frozen=True)
@@ -140,14 +148,19 @@ def _missing(
     slow, fast = (body.missing_wrench(given, rate_hz, s) for s in (WINDOW_S, EDGE_WINDOW_S))
     # Windows have to lie within judged frames.
     clear = judged & ~dilated(~judged, round(0.5 * WINDOW_S * rate_hz))
+    lacks = clear & (np.linalg.norm(slow[:, :3], axis=1) > LEAST_SHARE * weight_n)
+    if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
+        share = float(np.mean(slow[lacks, 2])) / weight_n
+        if abs(share) < MASS_SHARE or np.median(given[lacks, 2]) < SEATED_SHARE * weight_n:
+            return flags, (
+                f"the motion requires {100.0 * share:+.0f} % of body weight more than the plates read, throughout: "
+                "check the mass, the plates' scale and the axes",
+            )
+    lighter = _lighter(slow[:, 2], given[:, 2], clear & ~lacks, rate_hz)
+    for missing in (slow, fast):
+        missing[:, :3] -= lighter * (missing[:, :3] + given[:, :3])
     size = np.where(clear, np.linalg.norm(slow[:, :3], axis=1), 0.0)
     lacks = size > LEAST_SHARE * weight_n
-    if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
-        share = 100.0 * float(np.mean(slow[lacks, 2])) / weight_n
-        return flags, (
-            f"the motion requires {share:+.0f} % of body weight more than the plates read, throughout: check the mass, "
-            "the plates' scale and the axes",
-        )
     remarks = []
     for run in _lasting(size > LASTING_SHARE * weight_n, rate_hz):
         force = slow[run, :3].mean(axis=0)
@@ -166,6 +179,22 @@ def _missing(
         else:
             flags[frames[:, None], list(parts)] = True
     return _bridged(flags, judged, rate_hz), tuple(remarks)
+
+
+def _lighter(missing_n: Array, given_n: Array, free: BoolArray, rate_hz: float) -> float:
+    """Share by which the body is lighter than stated, by frames in which feet bear it alone; 0 where they are too few.
+
+    Args:
+        missing_n: (T,) vertical force that the motion requires besides the given one.
+        given_n: (T,) vertical force of the feet.
+        free: (T,) those frames.
+        rate_hz: Frame rate.
+    """
+    required = missing_n + given_n
+    free = free & (required > 0.5 * np.median(required[free])) if free.any() else free
+    if free.sum() < FREE_S * rate_hz:
+        return 0.0
+    return float(np.clip(np.median(missing_n[free] / required[free]), -MASS_ERROR, MASS_ERROR))
 
 
 def _bridged(flags: BoolArray, judged: BoolArray, rate_hz: float) -> BoolArray:

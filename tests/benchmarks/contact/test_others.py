@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmarks.contact.others import BEARS_SHARE, Trial, lateness_s, support_percent
+from benchmarks.contact.others import BEARS_SHARE, Trial, lateness_s, seated_percent, support_percent
 from mbkf.conventions import GRAVITY_M_S2
 
 MASS_KG, RATE_HZ, FRAMES = 70.0, 100.0, 300
@@ -47,3 +47,12 @@ def test_errors_are_of_the_frames_in_which_a_part_bears():
     assert support_percent(trial(100, 0.02 * WEIGHT_N))["right_hand"] == pytest.approx(2.0)
     missed = support_percent(trial(0, named=False))["right_hand"]
     assert 15.0 < missed < 20.0
+
+
+@pytest.mark.parametrize(
+    ("begins", "within", "beyond"), [(101, 100.0, 0.0), (151, 75.0, 0.0), (81, 100.0, 10.0)]
+)
+def test_time_on_a_seat_is_found_and_exceeded(begins, within, beyond):
+    made = trial(begins)
+    made.found.support_wrench[begins:, 0, 2] += 1.0
+    assert seated_percent(made) == pytest.approx((within, beyond), abs=1.5)

@@ -65,6 +65,26 @@ def test_a_seat_is_found_when_it_bears():
     assert abs(ours[-1] - theirs[-1]) <= late
 
 
+@pytest.mark.parametrize("factor", [0.96, 1.04])
+def test_a_seat_is_left_at_its_time_by_a_body_of_another_mass(factor):
+    """Standing, the motion then requires 4 % more or less than the plates read: that is not the seat's."""
+    made = seated()
+    other = body_of(replace(made.subject, mass_kg=factor * made.subject.mass_kg))
+    (right,), (found_by_other,) = (
+        stretches(found(made, made.motion.foot_wrench, model).flags[:, SEAT]) for model in (None, other)
+    )
+    assert abs(right[0] - found_by_other[0]) <= 2 and abs(right[-1] - found_by_other[-1]) <= 2
+
+
+def test_who_sits_throughout_sits():
+    made = seated()
+    sits = np.linalg.norm(seat(made.motion)[:, :3], axis=1) > 0.5 * weight_n(made)
+    m, wrench = made.motion, made.motion.foot_wrench[sits]
+    read = np.ones(len(wrench), dtype=bool)
+    result = other_contacts(made.model, m.q[sits], m.v[sits], m.rate_hz, foot_loads(wrench), read)
+    assert result.flags[:, SEAT].all() and bearing(result.flags) == [SEAT] and result.remarks == ()
+
+
 def test_a_seat_on_a_plate_is_nothing_else():
     made = seated()
     whole = made.motion.foot_wrench.copy()
