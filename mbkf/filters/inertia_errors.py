@@ -11,13 +11,9 @@ import pinocchio as pin
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
-from mbkf.model.inertia_spread import inertia_precision
+from mbkf.model.inertia_spread import CENTRE_SD, MASS_SD, WHOLE_SD, inertia_precision
 from mbkf.model.inertial_regressor import PER_SEGMENT, InertialRegressor
 from mbkf.numerics.principal import of_unit_length, principal_directions
-
-MASS_SD, CENTRE_SD, WHOLE_SD = 0.15, 0.1, 0.01
-"""Standard deviations of a segment's mass, relative, of its centre of mass, in units of its distance from the segment's
-origin, and of the whole mass, relative."""
 
 KEPT_VARIANCE = 0.99
 """Share of the variance of forces that is kept, over random motions."""

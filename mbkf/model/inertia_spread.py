@@ -8,6 +8,10 @@ from mbkf.conventions import Array
 from mbkf.model.inertial_regressor import PER_OWN, InertialRegressor
 from mbkf.model.sides import mirrored
 
+MASS_SD, CENTRE_SD, WHOLE_SD = 0.15, 0.1, 0.01
+"""Standard deviations of a segment's mass, relative, of its centre of mass, in units of its distance from the segment's
+origin, and of the whole mass, relative."""
+
 LEAST_CENTRE_M = 0.005
 """Standard deviation of a centre of mass, at least."""
 

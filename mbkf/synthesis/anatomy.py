@@ -1,9 +1,9 @@
 """Variation among people: a synthetic person as a draw from the spreads that scaling and filters count on.
 
 These are of joint centres that lie elsewhere than scale factors put them, of the zero of some angles, of skin that
-moves as joints flex (``[[joint_centre]]``, ``zero_sd_deg`` and ``[[skin]]`` of the body file), and of how straight
-people hold their joints. On people who have all of this, stated intervals can be judged; those without it suit exact
-comparisons.
+moves as joints flex (``[[joint_centre]]``, ``zero_sd_deg`` and ``[[skin]]`` of the body file), of how straight people
+hold their joints, and of segment masses and centres of mass (:mod:`mbkf.model.inertia_spread`). On people who have all
+of this, stated intervals can be judged; those without it suit exact comparisons.
 """
 
 from __future__ import annotations
@@ -13,10 +13,13 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.conventions import Array, read_only
+from mbkf.io.inertia import SegmentInertia
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel, reference_body
+from mbkf.model.inertia_spread import CENTRE_SD, MASS_SD, WHOLE_SD, inertia_precision
+from mbkf.model.inertial_regressor import InertialRegressor
 from mbkf.model.joint_centres import centre_covariance, centre_names
 from mbkf.sensors.flexed_skin import flexions_of
 from mbkf.synthesis.plan import JOINTS
@@ -33,7 +36,7 @@ MOST_SD = 2.5
 
 
 def varied(person: Subject, seed: int) -> Subject:
-    """The person with joint centres, zeros of angles, skin and posture drawn from the stated spreads.
+    """The person with joint centres, zeros of angles, skin, posture and masses drawn from the stated spreads.
 
     Args:
         person: A synthetic person without them.
@@ -50,6 +53,7 @@ def varied(person: Subject, seed: int) -> Subject:
         angle_zeros_deg=zeros,
         markers=_on_skin(person.markers, body, rng),
         habit_deg=_habit_deg(HumanModel.of(person), rng),
+        inertia=_inertia(HumanModel.of(person), rng),
     )
 
 
@@ -64,6 +68,17 @@ def _habit_deg(model: HumanModel, rng: np.random.Generator) -> dict[str, float]:
             if not (name.endswith("shank") and axis == "y"):
                 found[f"{name}_{axis}"] = float(sd * drawn)
     return found
+
+
+def _inertia(model: HumanModel, rng: np.random.Generator) -> dict[str, SegmentInertia]:
+    """Masses and centres of mass of the segments, beside the table."""
+    regressor = InertialRegressor(model)
+    root = np.linalg.cholesky(np.linalg.inv(inertia_precision(regressor, MASS_SD, CENTRE_SD, WHOLE_SD)))
+    away = (root @ _drawn(rng, len(root))).reshape(len(regressor.names), -1)
+    return {
+        name: SegmentInertia(float(1.0 + own[0]), read_only(own[1:]))
+        for name, own in zip(regressor.names, away, strict=True)
+    }
 
 
 def _on_skin(

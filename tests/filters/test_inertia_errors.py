@@ -5,8 +5,8 @@ import pinocchio as pin
 import pytest
 
 from mbkf.filters import inertia_errors
-from mbkf.filters.inertia_errors import CENTRE_SD, KEPT_VARIANCE, MASS_SD, WHOLE_SD, InertiaErrors
-from mbkf.model.inertia_spread import inertia_precision
+from mbkf.filters.inertia_errors import KEPT_VARIANCE, InertiaErrors
+from mbkf.model.inertia_spread import CENTRE_SD, MASS_SD, WHOLE_SD, inertia_precision
 from mbkf.model.inertial_regressor import PER_OWN, PER_SEGMENT, InertialRegressor
 from tests.motions import moderate_pose, reference_model
 

@@ -9,6 +9,7 @@ from mbkf.errors import UnknownName
 from mbkf.io.subject import read_subject, write_subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import reference_body
+from mbkf.model.inertia_spread import CENTRE_SD, MASS_SD, SIDES_ALIKE, WHOLE_SD
 from mbkf.model.joint_centres import centre_covariance, centre_names
 from mbkf.model.skeleton import joint_origin
 from mbkf.scaling.records import ScalingSettings
@@ -37,6 +38,7 @@ def test_the_other_numbers_of_a_person_do_not_depend_on_the_variation(person):
         joint_centres_m={},
         angle_zeros_deg={},
         habit_deg={},
+        inertia={},
         markers=tuple(
             replace(m, slides_m=p.slides_m, slid=p.slid)
             for m, p in zip(person.markers, plain.markers, strict=True)
@@ -55,6 +57,21 @@ def test_joint_centres_and_zeros_have_the_stated_spread(people):
     zeros = np.array([list(one.angle_zeros_deg.values()) for one in people])
     assert people[0].angle_zeros_deg.keys() == {"elbow_flex_r", "elbow_flex_l"}
     assert zeros.std() == pytest.approx(4.5, rel=0.1)
+
+
+def test_segment_masses_and_centres_have_the_stated_spread_at_a_whole_mass_that_is_known(people):
+    """A draw ends at 2.5 standard deviations; of the torso the known whole mass leaves less."""
+    own = np.array([one.inertia["right_thigh"].mass_factor for one in people])
+    other = np.array([one.inertia["left_thigh"].mass_factor for one in people])
+    assert own.mean() == pytest.approx(1.0, abs=0.03)
+    assert 0.8 < own.std() / MASS_SD < 1.05
+    assert np.corrcoef(own, other)[0, 1] == pytest.approx(SIDES_ALIKE, abs=0.05)
+    segments = reference_body(people[0]).segments
+    whole = [sum(one.inertia[s.name].mass_factor * s.mass_kg for s in segments) for one in people]
+    assert np.std(whole) / np.mean(whole) < 1.5 * WHOLE_SD
+    thigh = next(s for s in segments if s.name == "right_thigh")
+    shifts = np.array([one.inertia["right_thigh"].centre_shift_m for one in people])
+    assert shifts.std() == pytest.approx(CENTRE_SD * np.linalg.norm(thigh.com_m), rel=0.15)
 
 
 def test_skin_moves_by_the_stated_spread_common_to_a_segment_and_own(people):

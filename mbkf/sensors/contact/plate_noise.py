@@ -21,6 +21,9 @@ from mbkf.sensors.white_noise import WhiteNoise
 LEAST_FORCE_N, LEAST_MOMENT_NM = 0.1, 0.02
 """Least noise of a plate's forces and moments: readings are stored in steps of such a size."""
 
+_OTHERS = 1.0 - np.eye(3)
+"""Of squares by axis, the sums of the other two."""
+
 
 @dataclass(frozen=True)
 class PlateNoise:
@@ -65,7 +68,7 @@ class PlateNoise:
         if not len(self.origins_m):
             return spread_about_origin(self.force.sd, self.moment.sd, middles_m)
         away = middles_m[:, None] - self.origins_m
-        nearest = (away * away).sum(axis=2).argmin(axis=1)
+        nearest = np.einsum("fki,fki->fk", away, away).argmin(axis=1)
         return spread_about_origin(self.force.sd, self.moment.sd, self.origins_m[nearest])
 
 
@@ -77,8 +80,10 @@ def spread_about_origin(force_n: float, moment_nm: float, points_m: Array) -> Ar
         moment_nm: Spread of each moment about the points, N m.
         points_m: The points, m.
     """
-    squares = points_m * points_m
-    found = np.full((len(points_m), 6), force_n)
-    lever = squares.sum(axis=1, keepdims=True) - squares
-    found[:, 3:] = np.sqrt(moment_nm**2 + force_n**2 * lever)
+    found = np.empty((len(points_m), 6))
+    found[:, :3] = force_n
+    levers = (points_m * points_m) @ _OTHERS
+    levers *= force_n**2
+    levers += moment_nm**2
+    np.sqrt(levers, out=found[:, 3:])
     return found
