@@ -21,6 +21,7 @@ from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.verdict.fit import PartFit, part_fits
 from mbkf.trial.verdict.parts import PELVIS, TRUNK, main_segments, part_of_segment
 from mbkf.trial.verdict.ranges import Beyond, joints_beyond
+from mbkf.trial.verdict.standing import Stood, stood_bent
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Evidence:
         contacts: Stretches in which parts besides the feet bear load; nothing measures these.
         checks: Checks of the capture.
         doubts: Doubts of the subject's file.
+        stood: Joints of the legs that were bent in the static trial, where no one stands bent.
         explained: Share of the capture's markers that the protocol knows.
         part_of: Part by segment of the body.
     """
@@ -58,6 +60,7 @@ class Evidence:
     contacts: tuple[ContactInterval, ...] = ()
     checks: tuple[Finding, ...] = ()
     doubts: tuple[str, ...] = ()
+    stood: tuple[Stood, ...] = ()
     explained: float = 1.0
     part_of: Mapping[str, str] = field(default_factory=dict)
 
@@ -101,6 +104,7 @@ def evidence_of(r: Reconstruction) -> Evidence:
         contacts=tuple(one for one in r.contacts if one.part not in FEET),
         checks=r.checks,
         doubts=doubts_of(r.subject),
+        stood=stood_bent(model, r.subject),
         explained=r.markers_explained,
         part_of=part_of_segment(body),
     )

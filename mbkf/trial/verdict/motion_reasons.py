@@ -12,6 +12,7 @@ from typing import NamedTuple
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, TITLES, Reason, Word
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.parts import ARMS, TRUNK
+from mbkf.trial.verdict.standing import Stood
 
 
 class Bounds(NamedTuple):
@@ -44,6 +45,9 @@ ARM_SPREAD_DEG = Bounds(20.0, 40.0)
 REFUSED = Bounds(0.1, 0.3)
 """Share of a part's samples that were refused."""
 
+STOOD_DEG = Bounds(30.0, 45.0)
+"""Rotation of a joint of a leg in the static trial: at most 21° in right ones, from 93° on where names are crossed."""
+
 IN_DOUBT = Bounds(0.05, 0.2)
 """Share of the trial in which a limb was in doubt."""
 
@@ -66,6 +70,7 @@ def motion_reasons(evidence: Evidence) -> Iterator[Reason]:
     yield from _fits(evidence)
     yield from _ranges(evidence)
     yield from _doubtful_limbs(evidence)
+    yield from _stood(evidence)
     yield from _spreads(evidence)
     yield from _whole(evidence)
 
@@ -176,6 +181,24 @@ def _doubtful_limbs(evidence: Evidence) -> Iterator[Reason]:
             "look at the limb in 3-D then" if one.mended else CHECK_NAMES,
             off[1],
         )
+
+
+def _stood(evidence: Evidence) -> Iterator[Reason]:
+    """The joint of each leg that was bent most in the static trial."""
+    worst: dict[str, Stood] = {}
+    for one in evidence.stood:
+        worst.setdefault(one.part, one)
+    for part, one in worst.items():
+        off = STOOD_DEG.reached(abs(one.degrees))
+        if off is not None:
+            yield Reason(
+                part,
+                off[0],
+                f"in the static trial the joint of the {one.segment.replace('_', ' ')} is turned by {one.degrees:.0f}°",
+                "no one stands so: the body was scaled from exchanged or misplaced markers",
+                "check the names of the static trial's markers, and scale again",
+                off[1],
+            )
 
 
 def _spreads(evidence: Evidence) -> Iterator[Reason]:

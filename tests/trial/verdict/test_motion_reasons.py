@@ -10,6 +10,7 @@ from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.fit import PartFit
 from mbkf.trial.verdict.motion_reasons import FIT, INNOVATION, RANGE_DEG, Bounds, motion_reasons
 from mbkf.trial.verdict.ranges import Beyond
+from mbkf.trial.verdict.standing import Stood
 
 LEG = PartFit("left_leg", 8, 5.0, 0.5, 1.0, 0.0, "LANK")
 
@@ -103,3 +104,10 @@ def test_a_limb_in_doubt_counts_by_its_share_of_the_trial(share, mended, word):
     doubt = LimbDoubt("left_thigh", "turned over", 0.0, 1.0, misfit_m=0.03, mended=mended)
     evidence = {"doubtful_limbs": ((doubt, share),), "part_of": {"left_thigh": "left_leg"}}
     assert word_on("left_leg", **evidence) == word
+
+
+@pytest.mark.parametrize(("degrees", "word"), [(-21.0, "use"), (-42.0, "look"), (93.0, "do not use")])
+def test_a_static_in_which_no_one_stands_so_has_its_word(degrees, word):
+    stood = (Stood("left_leg", "left_foot", degrees), Stood("left_leg", "left_shank", 16.0))
+    assert word_on("left_leg", stood=stood) == word and word_on("right_leg", stood=stood) == "use"
+    assert len(list(motion_reasons(Evidence(stood=stood)))) == (word != "use"), "one reason for a leg"
