@@ -37,6 +37,10 @@ class SectionErrors:
         """
         self._sections, self._along, self._inertia = TrunkSections(model), along, inertia
         self._varied = [TrunkSections(one) for one in varied]
+        here = self._sections.transports
+        self._moved = [
+            np.array([one.transports[k] for one in self._varied]) - here[k] for k in range(len(here))
+        ]
         self._columns = [self._shares(model, k) for k in range(len(self._sections.levels))]
 
     def _shares(self, model: Body, k: int) -> tuple[Array, Array]:
@@ -109,7 +113,6 @@ class SectionErrors:
             (6, n) changes of the wrench, and (n, 3, 6) of the moment by a wrench, each by level.
         """
         there = [one.upper_wrenches(q, v, a) for one in self._varied]
-        turned = [one.by_root(q) for one in self._varied]
         levels = range(len(self._sections.levels))
         changes = [np.array([one[k] for one in there]).T - state.wrench[0, k][:, None] for k in levels]
-        return changes, [np.array([one[k] for one in turned]) - state.by_root[k] for k in levels]
+        return changes, [state.by_root[k][:, 3:] @ self._moved[k] for k in levels]

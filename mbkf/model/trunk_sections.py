@@ -24,7 +24,6 @@ from mbkf.model.body import Body
 from mbkf.model.description import TrunkLevel
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, NewtonEuler
-from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew
 
 WAYS = ("top_down", "bottom_up")
@@ -56,6 +55,7 @@ class TrunkSections:
         levels: The levels.
         names: Their names.
         places_m: (L, 3) their middles in the root's frame.
+        transports: (3, 6) by level, moment about the level by a wrench about the root's origin, in its axes.
     """
 
     def __init__(self, model: Body) -> None:
@@ -72,7 +72,7 @@ class TrunkSections:
                 for level in self.levels
             ]
         ).reshape(-1, 3)
-        self._transport = [np.hstack([-skew(place), np.eye(3)]) for place in self.places_m]
+        self.transports = [np.hstack([-skew(place), np.eye(3)]) for place in self.places_m]
 
     @cached_property
     def _upper(self) -> list[NewtonEuler]:
@@ -176,9 +176,9 @@ class TrunkSections:
             q: (nq,) configuration.
         """
         turns = {
-            name: quaternion_matrices(q[None, self._model.joint(name).q])[0]
+            name: pin.Quaternion(*np.roll(q[self._model.joint(name).q], 1)).toRotationMatrix()
             for name in {level.above for level in self.levels}
         }
         return np.array(
-            [turns[level.above].T @ X for level, X in zip(self.levels, self._transport, strict=True)]
+            [turns[level.above].T @ X for level, X in zip(self.levels, self.transports, strict=True)]
         )

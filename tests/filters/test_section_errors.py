@@ -47,7 +47,7 @@ def test_a_level_that_lies_elsewhere_has_the_force_times_the_distance(one, roots
     for axis in range(3):
         elsewhere = TrunkSections(one.model)
         elsewhere.places_m[2, axis] += moved
-        elsewhere._transport[2][:, :3] = -skew(elsewhere.places_m[2])
+        elsewhere.transports[2][:, :3] = -skew(elsewhere.places_m[2])
         there = elsewhere.moments(one.q, one.v, one.a, carried, residual)
         slope = (there - here)[:, 2] / moved * one.model.description.levels[2].sd_m[axis]
         for way in range(2):

@@ -44,8 +44,11 @@ def trunk_moments(model: Body, track: Track, ground: GroundReactions) -> TrunkMo
     for k, one in enumerate(above):
         moments[~ground.judged | bears[:, ~one].any(axis=1), 1, k] = np.nan
     sd, offset = _spreads(track, moments)
+    maps = {
+        name: _velocity_map(own, name, track.q, followed) for name in {one.above for one in sections.levels}
+    }
     for k, level in enumerate(sections.levels):
-        B = _velocity_map(own, level.above, track.q, followed)
+        B = maps[level.above]
         moments[:, :, k] = np.einsum("tij,twi->twj", B, moments[:, :, k])
         for spread in (sd, offset):
             spread[:, :, k] = np.sqrt(np.einsum("tij,twi->twj", B**2, spread[:, :, k] ** 2))
