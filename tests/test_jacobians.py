@@ -77,6 +77,7 @@ ELSEWHERE = {
     "sensors.flexed_skin.FlexedSkin.linearised": "sensors/test_flexed_skin.py",
     "scaling.problem.ScalingProblem.places_by_unknowns": "scaling/test_covariance.py",
     "sensors.gating.ObservedDofs.carried_by": "sensors/test_gating.py",
+    "scaling.shoulders.TrialShoulders.by_displacements": "scaling/test_shoulders.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
     "model.scale_derivatives.OriginLevers.summed": "model/test_scale_derivatives.py",
     "scaling.standing.UprightPosture.linearised": "scaling/test_standing.py",

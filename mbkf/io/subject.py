@@ -80,7 +80,9 @@ _FACTOR = fields.number("factor", "a scale factor", SCALES)
 _INERTIA = fields.part("inertia", "a segment's own inertia", "[inertia.SEGMENT]")
 _MARKERS = fields.part("marker", "a marker", "[[marker]]")
 _CENTRES = fields.part(
-    "joint_centres_m", "displacements of joint centres, known of synthetic persons alone", "[joint_centres_m]"
+    "joint_centres_m",
+    "displacements of joint centres, of shoulders or synthetic persons",
+    "[joint_centres_m]",
 )
 _CENTRE = fields.number("centre", "displacement along one axis", (-FARTHEST_CENTRE_M, FARTHEST_CENTRE_M), "m")
 _ZEROS = fields.part(
@@ -174,8 +176,9 @@ class Subject:
         covariance: Uncertainty of scale factors and marker places; None for a body that counts as known exactly, or
             that an older version scaled.
         joint_centres_m: Displacement of joint centres from where the scale factors put them, m, by the names of
-            :func:`mbkf.model.joint_centres.centre_names`; those without a name stay there. Known of synthetic persons
-            alone: scaling finds no displacements, only their effect on what it finds.
+            :func:`mbkf.model.joint_centres.centre_names`; those without a name stay there. Those of the shoulders are
+            found by correction on a trial. Others are known of synthetic persons alone: scaling finds only their effect
+            on what it finds.
         angle_zeros_deg: By angle, the degrees to add to its value in the body's axes for its value by this person's
             bones. Known of synthetic persons alone.
         habit_deg: By joint and axis (``"torso_y"``), the rotation in which the person holds a joint besides what a

@@ -33,7 +33,7 @@ from mbkf.model.description import (
     Sole,
 )
 from mbkf.model.sides import mirrored
-from mbkf.model.spread_tables import joint_centres, segment_skin
+from mbkf.model.spread_tables import joint_centres, segment_skin, shoulder_girdle
 from mbkf.model.trunk_levels import trunk_levels
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
@@ -51,6 +51,7 @@ KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
         "landmark", "sole", "clinical_joint", "shape", "bearing", "joint_centre", "skin", "level",
+        "girdle",
     ),
     "segment": _SEGMENT_KEYS,
     "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
@@ -69,6 +70,7 @@ KNOWN = {
     "level": (
         "name", "above", "position_m", "sd_mm", "part_mass_kg", "part_com_m", "part_inertia_kg_m2", "opensim",
     ),
+    "girdle": ("segment", "mean_mm", "sd_mm", "held_mm"),
 }  # fmt: skip
 """Entries of a body's file."""
 
@@ -157,6 +159,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         joint_centres=joint_centres(table.get("joint_centre", []), names, path),
         skin=segment_skin(table.get("skin", []), names, path),
         levels=trunk_levels(table.get("level", []), segments, path),
+        girdle=shoulder_girdle(table.get("girdle", []), segments, path),
         text=kept,
     )
 

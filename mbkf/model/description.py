@@ -213,6 +213,23 @@ class TrunkLevel:
         return self.opensim or self.name.replace("/", "_").lower()
 
 
+@dataclass(frozen=True)
+class ShoulderGirdle:
+    """Displacement of a shoulder on the trunk as its arm is raised, with the clavicle and the shoulder blade.
+
+    Attributes:
+        segment: The segment after the shoulder, a spherical joint.
+        mean_m: (3,) expected displacement along the axes of the segment before it, the arm horizontal, m.
+        sd_m: (3,) its spread among people, m.
+        held_m: (3,) spread of the displacement in which the shoulder is held throughout a trial, m.
+    """
+
+    segment: str
+    mean_m: Array
+    sd_m: Array
+    held_m: Array
+
+
 @dataclass(frozen=True, eq=False)
 class BodyDescription:
     """A reference body; equal to itself only, so that results for it can be cached.
@@ -232,6 +249,7 @@ class BodyDescription:
         joint_centres: Joint centres that differ from the scale factors' by a spread.
         skin: Movement of the skin, by segment; that of other segments does not depend on the posture.
         levels: Levels of the spine at which the trunk's net moment is stated, from the highest one down.
+        girdle: Shoulders that are displaced as the arms are raised.
         text: The file it was read from, word for word; "" for the bodies that come with mbkf.
     """
 
@@ -249,6 +267,7 @@ class BodyDescription:
     joint_centres: tuple[JointCentre, ...]
     skin: dict[str, SegmentSkin]
     levels: tuple[TrunkLevel, ...] = ()
+    girdle: tuple[ShoulderGirdle, ...] = ()
     text: str = ""
 
     @property

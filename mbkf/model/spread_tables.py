@@ -1,4 +1,4 @@
-"""Tables of a body file that state how persons differ from the reference body: joint centres and skin."""
+"""Tables of a body file that state how persons differ from the reference body: joint centres, skin, shoulder girdle."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.conventions import TomlTable, read_only
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.model.description import JointCentre, SegmentSkin
+from mbkf.model.description import JointCentre, Segment, SegmentSkin, ShoulderGirdle
 from mbkf.model.sides import mirrored
 
 LARGEST_M = 0.1
@@ -72,6 +72,44 @@ def segment_skin(entries: Sequence[TomlTable], segments: Sequence[str], path: Pa
             turned = tuple(tuple(mirrored(joint) for joint in one) for one in flexions)
             found.setdefault(other, SegmentSkin(other, turned, *sizes))
     return found
+
+
+def shoulder_girdle(
+    entries: Sequence[TomlTable], segments: Sequence[Segment], path: Path
+) -> tuple[ShoulderGirdle, ...]:
+    """Displacements of the shoulders; that of a right one is mirrored to the left one, where that exists.
+
+    Args:
+        entries: The tables.
+        segments: The segments.
+        path: The body file.
+
+    Raises:
+        UnknownName: A segment does not exist.
+        FileFormatError: A displacement or spread is impossible, or the joint is not spherical.
+    """
+    joints = {segment.name: segment.joint for segment in segments}
+    found: dict[str, ShoulderGirdle] = {}
+    for entry in entries:
+        segment = _known(entry["segment"], list(joints), f"{path}, girdle")
+        keys = ("mean_mm", "sd_mm", "held_mm")
+        mean_m, *spreads = (1e-3 * np.array(entry[key], dtype=float) for key in keys)
+        possible = all(one.shape == (3,) and (np.abs(one) < LARGEST_M).all() for one in (mean_m, *spreads))
+        if not possible or not all((one > 0.0).all() for one in spreads):
+            raise FileFormatError(
+                path,
+                f"girdle of {segment}: {', '.join(keys)} need three numbers below {1e3 * LARGEST_M:.0f} each, the last "
+                "two positive ones",
+            )
+        if joints[segment] != "spherical":
+            raise FileFormatError(path, f"girdle of {segment}: its joint must be spherical")
+        for name, turned in ((segment, 1.0), (mirrored(segment), -1.0)):
+            if name in joints:
+                mirror = np.array([1.0, turned, 1.0])
+                found.setdefault(
+                    name, ShoulderGirdle(name, read_only(mirror * mean_m), *map(read_only, spreads))
+                )
+    return tuple(found.values())
 
 
 def _known(name: str, segments: Sequence[str], where: str) -> str:

@@ -1,8 +1,9 @@
-"""Positive definite matrices: their inverse, and the nearest one to a covariance that rounding has spoilt."""
+"""Positive definite matrices: inverse, elimination, and the nearest one to a covariance that rounding has spoilt."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
@@ -36,3 +37,20 @@ def inverse(matrix: Array) -> Array:
         return np.asarray(np.linalg.inv(matrix))
     found = np.asarray(lapack.dpotri(root, lower=1)[0])
     return np.asarray(np.tril(found) + np.tril(found, -1).T)
+
+
+def eliminated(information: Array, unknowns: NDArray[np.intp]) -> Array:
+    """Information (n - k, n - k) on the other unknowns where k of n are unknown, too: the inverse of their covariance.
+
+    Args:
+        information: (n, n) on all of them.
+        unknowns: (k,) numbers of those to eliminate.
+
+    Raises:
+        numpy.linalg.LinAlgError: Nothing is known about one of them.
+    """
+    if not len(unknowns):
+        return information
+    others = np.delete(np.arange(len(information)), unknowns)
+    across, alone = information[np.ix_(others, unknowns)], information[np.ix_(unknowns, unknowns)]
+    return np.asarray(information[np.ix_(others, others)] - across @ np.linalg.solve(alone, across.T))

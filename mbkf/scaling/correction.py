@@ -3,6 +3,7 @@
 Skin shifts between standing with spread arms and walking, and markers are attached anew. With the scale factors fixed,
 each marker's offset in its segment is found anew over frames of the whole trial, near its place in the subject file.
 Displacements by flexion stay as scaling found them; the place of a marker is that in the trial's usual posture.
+Shoulders are displaced as they are held in the trial (:mod:`mbkf.sensors.shoulder_girdle`), with the markers there.
 
 A trial does not separate a rigid displacement of all markers of a segment from another pose of that segment. Left to
 the offsets of single markers, it would move joint centres by a centimetre, and torques with them. On the segments
@@ -20,6 +21,7 @@ from mbkf.errors import NotConverged
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body, scale_of
 from mbkf.model.joint_centres import centres_of
 from mbkf.model.protocol import Protocol, ProtocolMarker
@@ -32,6 +34,7 @@ from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, ScalingProblem
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingState
 from mbkf.sensors.flexed_skin import flexions_of, slide_covariance
 from mbkf.sensors.pose_fit import segment_by_segment
+from mbkf.sensors.shoulder_girdle import OWN_M, around_shoulders, shoulder_names
 
 FRAMES = 40
 OBSERVATIONS = 10.0
@@ -69,7 +72,9 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     """
     problem = _problem(subject, trial)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
-    state = problem.start(segment_by_segment(sensor, problem.measured_m))
+    poses = segment_by_segment(sensor, problem.measured_m)
+    problem = problem.with_shoulders(poses)
+    state = problem.start(poses)
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     outliers = problem.outliers(state, OUTLIER_M)
@@ -80,7 +85,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         )
     moved = np.linalg.norm(state.offsets_m, axis=1) > MOVED_M
     if outliers.any() or moved.any():
-        precision = _offset_precision(problem.markers, subject, problem.body.roles.steady, ~moved)
+        precision = _offset_precision(problem.markers, subject, problem.body, ~moved)
         problem = _with_precision(problem.without(outliers), precision)
         solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
         state = solution.state
@@ -89,6 +94,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
+    local += problem.shoulders.girdle.on_trunk @ state.girdle_m.reshape(-1, 3)
     shares = problem.usual_shares(state.poses)
     before = covariance_of(subject, problem.body)
     if before is not None:
@@ -97,7 +103,17 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         marker.name: (position, problem.prior.slides_m[:, m], shares[:, m])
         for m, (marker, position) in enumerate(zip(problem.markers, local, strict=True))
     }
-    return replace(subject, markers=tuple(_moved(m, found) for m in subject.markers), covariance=before)
+    centres = _centres(subject, problem.body, state)
+    markers = tuple(_moved(m, found) for m in subject.markers)
+    return replace(subject, markers=markers, covariance=before, joint_centres_m=centres)
+
+
+def _centres(subject: Subject, body: BodyDescription, state: ScalingState) -> dict[str, float]:
+    """Displacements of the joints' centres with those of the shoulders in the trial."""
+    found = dict(subject.joint_centres_m)
+    for name, moved in zip(shoulder_names(body), state.girdle_m.tolist(), strict=True):
+        found[name] = found.get(name, 0.0) + moved
+    return found
 
 
 def _corrected(before: BodyCovariance, problem: ScalingProblem, state: ScalingState) -> BodyCovariance:
@@ -135,9 +151,7 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         factors=factors,
         factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
         offsets_m=np.zeros((len(markers), 3)),
-        offset_precision=_offset_precision(
-            markers, subject, body.roles.steady, np.ones(len(markers), dtype=bool)
-        ),
+        offset_precision=_offset_precision(markers, subject, body, np.ones(len(markers), dtype=bool)),
     )
     keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)
     if not keypoints:
@@ -157,12 +171,15 @@ def _slides_m(subject: Subject, markers: tuple[ProtocolMarker, ...], flexions: i
 
 
 def _offset_precision(
-    markers: tuple[ProtocolMarker, ...], subject: Subject, steady: tuple[str, ...], unmoved: BoolArray
+    markers: tuple[ProtocolMarker, ...], subject: Subject, body: BodyDescription, unmoved: BoolArray
 ) -> Array:
     """(3 M, 3 M): spread of each marker, and the small common displacement of unmoved ones of a steady segment."""
-    own_sd = {marker.name: marker.session_sd_m for marker in subject.markers}
-    precision = np.diag(np.repeat([own_sd[marker.name] ** -2 for marker in markers], 3))
-    for segment in steady:
+    session_sd = {marker.name: marker.session_sd_m for marker in subject.markers}
+    segments, places_m = [m.segment for m in markers], np.array([m.position_m for m in markers])
+    beside = OWN_M * around_shoulders(body, segments, places_m).sum(axis=1)
+    own_sd = np.hypot([session_sd[marker.name] for marker in markers], beside)
+    precision = np.diag(np.repeat(own_sd**-2.0, 3))
+    for segment in body.roles.steady:
         here = np.array([marker.segment == segment for marker in markers]) & unmoved
         if here.any():
             rigid = rigid_displacements(np.array([m.position_m for m in markers])[here])

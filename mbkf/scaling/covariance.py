@@ -72,7 +72,7 @@ def corrected_covariance(
         information: (K + E + 3 M (1 + D), …) that on (k, e, δ, c) at the minimum
             (:meth:`ScalingProblem.information`); e acts as k does.
     """
-    factors, prior = len(problem.body.scale_factors), problem.prior
+    factors, prior = len(problem.body.scale_factors), problem.prior.without_girdle()
     count = before.sizes
     found_anew = slice(count, len(information))
     precision = block_diag(

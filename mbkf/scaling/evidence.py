@@ -22,6 +22,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.positive import inverse
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.scaling.records import ScalingPrior, ScalingState
+from mbkf.scaling.shoulders import without_shoulders
 
 PRIOR_WEIGHT = 1.0
 """b: weight of the prior's own spread, in unknowns that the data determine."""
@@ -42,11 +43,18 @@ def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Arra
     Args:
         problem: The problem that was solved; offsets of markers of different kinds are independent beforehand.
         state: Its solution.
-        information: (K + 3 M (1 + D), …) information on factors, offsets and displacements there, frames eliminated.
+        information: (K + 3 T G + 3 M (1 + D), …) information there, frames eliminated. The spreads of the
+            shoulders' displacements are not learnt: they are few.
     """
     prior, kinds = problem.prior, _kinds(problem)
     groups = {str(kind): kinds == kind for kind in np.unique(kinds)}
-    squares = variance_factors(information, prior.precision, prior.away(state), list(groups.values()))
+    known = prior.without_girdle()
+    squares = variance_factors(
+        without_shoulders(information, prior, len(problem.body.scale_factors)),
+        known.precision,
+        known.away(state),
+        list(groups.values()),
+    )
     learnt = dict(zip(groups, squares, strict=True))
     of_offsets = np.array([learnt[m.kind] for m in problem.markers for _ in range(3)])
     return replace(

@@ -71,9 +71,9 @@ def scale_subject(
         raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
     problem = scaling_problem(frames, len(static), protocol, height_m, settings)
-    freed = problem.with_prior(with_skin(problem)) if dynamic and settings.skin else problem
-    tolerance = COARSE if freed.prior.flexions else FINE
-    start = first_state(problem) if freed.prior.flexions else problem.start(first_poses(problem))
+    moving = len(dynamic) > 0 and settings.skin and with_skin(problem).flexions > 0
+    problem, start, tolerance = _started(problem, moving)
+    freed = problem.with_prior(with_skin(problem)) if moving else problem
     solution = minimum(problem, start, progress, tolerance)
     dropped = problem.outliers(solution.state, settings.outlier_m)
     if dropped.sum() > 0.5 * problem.seen.sum():
@@ -119,6 +119,13 @@ def scale_subject(
         model = problem.posture.model
         subject.report[STANDING_KEY] = [round(float(x), 7) for x in _middle(model, standing)]
     return subject
+
+
+def _started(problem: ScalingProblem, moving: bool) -> tuple[ScalingProblem, ScalingState, float]:
+    """The problem with shoulders as the arms of a first state let expect, that state, and the search's tolerance."""
+    start = first_state(problem) if moving else problem.start(first_poses(problem))
+    problem = problem.with_shoulders(start.poses)
+    return problem, replace(start, girdle_m=problem.prior.girdle_m), COARSE if moving else FINE
 
 
 def _with_learnt_prior(
@@ -204,7 +211,15 @@ def scaling_problem(
         offsets_m=np.zeros((len(frames.markers), 3)),
         offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
     )
-    return ScalingProblem(body, frames.markers, frames.measured_m, weights, prior, settings.standing_sd_rad)
+    return ScalingProblem(
+        body,
+        frames.markers,
+        frames.measured_m,
+        weights,
+        prior,
+        settings.standing_sd_rad,
+        trial=frames.trial.astype(np.intp),
+    )
 
 
 def with_skin(problem: ScalingProblem) -> ScalingPrior:

@@ -1,12 +1,14 @@
 """Scaling as one least-squares problem over many frames (thesis eq. 4.1): residuals and analytic derivatives.
 
 Unknowns: the pose x_t of every frame, the independent scale factors k, an offset δ of every marker from its reference
-place and its displacements c_d by flexion (:mod:`mbkf.sensors.flexed_skin`), shared by all frames. Residuals, each
-divided by its standard deviation:
+place and its displacements c_d by flexion (:mod:`mbkf.sensors.flexed_skin`), shared by all frames, and by those of a
+trial the shoulders' displacement h (:mod:`mbkf.sensors.shoulder_girdle`). Residuals, each divided by its standard
+deviation:
 
-    markers    r_b(x, k) + A_b(x) (D_b(k) m̄ + δ + Σ_d f_d(x) c_d) − measured
+    markers    r_b(x, k) + A_b(x) (D_b(k) m̄ + δ + Σ_d f_d(x) c_d) + w A_trunk(x) h − measured
     placement  δ − δ₀                (tight for anatomical markers, loose for technical ones)
     skin       c_d − c₀_d            (markers of a segment move together, for the most part)
+    shoulders  h − h₀                (they rise with the arms)
     factors    k − k₀                (bodies are alike in proportion, less so in size)
     posture    joint rotations       (dofs without markers stay near standing, :mod:`mbkf.scaling.usual_posture`)
     upright    inclination of feet and root, where keypoints are scaled from standing (:mod:`mbkf.scaling.standing`)
@@ -15,7 +17,7 @@ divided by its standard deviation:
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +29,8 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
 from mbkf.numerics.elimination import Border
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
-from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingSettings, ScalingState
+from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingSettings, ScalingState, ShownMarkers
+from mbkf.scaling.shoulders import TrialShoulders, without_shoulders
 from mbkf.scaling.standing import UprightPosture
 from mbkf.scaling.usual_posture import UsualPosture
 from mbkf.sensors.flexed_skin import FlexedSkin
@@ -50,25 +53,6 @@ OUTLYING_SD = 4.0
 """Least distance of an outlier in standard deviations of its noise: of three coordinates 0.1 % lie further."""
 
 
-@dataclass(frozen=True)
-class _Shown:
-    """Errors of N frames of M markers with derivatives, whitened; 0 where a marker is missing.
-
-    Attributes:
-        errors: (N, M, 3) modelled minus measured.
-        by_pose: (N, M, 3, nv) derivative by the frame's pose.
-        by_factors: (N, M, 3, K) by the scale factors.
-        axes: (N, M, 3, 3) by the marker's own offset.
-        shares: (1 + D, N, M) 1 and f: derivative by an unknown displacement, over that by the offset.
-    """
-
-    errors: Array
-    by_pose: Array
-    by_factors: Array
-    axes: Array
-    shares: Array
-
-
 class ScalingProblem:
     """Residuals of N frames of M markers.
 
@@ -82,6 +66,8 @@ class ScalingProblem:
         standing_sd_rad: Spread of a joint's angle about neutral in straight standing.
         centres_m: (E,) displacements of joint centres (:mod:`mbkf.model.joint_centres`); 0 where they are not known.
         seen: (N, M) True where a marker is present.
+        trial: (N,) number of the trial of each frame; all are of one trial by default.
+        shoulders: The shoulders, displaced in each trial.
     """
 
     def __init__(
@@ -93,6 +79,7 @@ class ScalingProblem:
         prior: ScalingPrior,
         standing_sd_rad: float = ScalingSettings.standing_sd_rad,
         centres_m: Array | None = None,
+        trial: NDArray[np.intp] | None = None,
     ) -> None:
         self._centres_m = centres_m
         self.body, self.markers, self.prior, self.weights = body, markers, prior, weights
@@ -109,18 +96,22 @@ class ScalingProblem:
         self._usual = UsualPosture(self.posture, standing_sd_rad)
         self._upright = UprightPosture(model)
         self._worn = ScaledMarkers(model, self.segments, self.reference_m)
-        self._last: tuple[ScalingState, _Shown, ArrowEquations] | None = None
+        self._last: tuple[ScalingState, ShownMarkers, ArrowEquations] | None = None
+        number = np.zeros(len(self.measured_m), dtype=np.intp) if trial is None else trial
+        self.shoulders = TrialShoulders(self._worn.girdle, number)
 
     def _model(self, factors: Array) -> HumanModel:
         return HumanModel(self.body, factors, self.body.reference_mass_kg, centres_m=self._centres_m)
 
     def start(self, poses: Array) -> ScalingState:
         """State with the prior's factors, offsets and displacements."""
-        return ScalingState(poses, self.prior.factors, self.prior.offsets_m, self.prior.slides_m)
+        return ScalingState(
+            poses, self.prior.factors, self.prior.offsets_m, self.prior.slides_m, self.prior.girdle_m
+        )
 
     def start_from(self, state: ScalingState) -> ScalingState:
         """A state of a problem with another number of flexions, with the prior's displacements."""
-        return ScalingState(state.poses, state.factors, state.offsets_m, self.prior.slides_m)
+        return replace(state, slides_m=self.prior.slides_m)
 
     def local_m(self, factors: Array, offsets_m: Array) -> Array:
         """(M, 3) marker positions in their segments' frames: D_b(k) m̄ + δ."""
@@ -145,7 +136,12 @@ class ScalingProblem:
     def errors_m(self, state: ScalingState) -> Array:
         """(N, M, 3) modelled minus measured, NaN where a marker is missing."""
         moved = self._displacements_m(state, self._shares(state.poses))
-        return self._worn.places(state.poses, state.factors, moved) - self.measured_m
+        raised = self.shoulders.displaced_m(state.girdle_m)
+        return self._worn.places(state.poses, state.factors, moved, raised) - self.measured_m
+
+    def with_shoulders(self, poses: Array) -> ScalingProblem:
+        """The same problem with shoulders that are displaced in each trial as configurations (N, nq) let expect."""
+        return self.with_prior(self.shoulders.expected(self.prior, self.body, poses))
 
     def usual_shares(self, poses: Array) -> Array:
         """(D, M) mean share of each displacement in the frames (N, nq) that show the marker."""
@@ -192,6 +188,7 @@ class ScalingProblem:
             chosen: Their numbers.
         """
         other = self.with_measurements(self.measured_m[chosen])
+        other.shoulders = self.shoulders.of_frames(chosen)
         other.weights = FrameWeights(
             *(getattr(self.weights, one.name)[chosen] for one in fields(FrameWeights))
         )
@@ -202,7 +199,7 @@ class ScalingProblem:
         other = copy(self)
         other.prior = prior
         other._precision = prior.precision
-        if prior.flexions != self.prior.flexions:
+        if (prior.flexions, prior.raised) != (self.prior.flexions, self.prior.raised):
             other._last = None
         return other
 
@@ -232,19 +229,22 @@ class ScalingProblem:
         Args:
             state: Before the step.
             own: (N, nv) step of each frame's pose, in the tangent space.
-            shared: (s,) step of factors, offsets and displacements.
+            shared: (s,) step of factors, shoulders, offsets and displacements by flexion.
         """
         model = self.posture.model
         largest = np.abs(own[:, model.root.v.stop :]).max(axis=1, initial=0.0)
         own = own * np.minimum(1.0, MOST_TURNED_RAD / np.maximum(largest, 1e-12))[:, None]
-        count, end = len(state.factors), len(state.factors) + state.offsets_m.size
+        count = len(state.factors)
+        first = count + self.prior.raised
+        end = first + state.offsets_m.size
         return ScalingState(
             np.array([model.integrate(q, dq) for q, dq in zip(state.poses, own, strict=True)]),
             np.clip(state.factors + shared[:count], *FACTOR_BOUNDS),
-            state.offsets_m + shared[count:end].reshape(state.offsets_m.shape),
+            state.offsets_m + shared[first:end].reshape(state.offsets_m.shape),
             state.slides_m + shared[end:].reshape(state.slides_m.shape)
             if self.prior.flexions
             else state.slides_m,
+            state.girdle_m + shared[count:first] if self.prior.raised else state.girdle_m,
         )
 
     def linearise(self, state: ScalingState) -> ArrowEquations:
@@ -253,21 +253,24 @@ class ScalingProblem:
         return self._with_prior(data, self._precision, self.prior.away(state))
 
     def information(self, state: ScalingState) -> Array:
-        """(K + E + 3 M (1 + D), …) information on factors, joint centres, offsets and displacements, frames eliminated.
+        """(K + E + 3 M (1 + D), …) information on factors, joint centres, offsets and displacements by flexion.
 
-        That on the centres is the data's alone, without a prior.
+        Frames and shoulders are eliminated. That on the centres is the data's alone, without a prior.
         """
         count, (shown, data) = len(self.body.scale_factors), self._by_data(state)
-        shown = replace(shown, by_factors=np.concatenate([shown.by_factors, self._by_centres(state)], axis=3))
-        centres = shown.by_factors.shape[3] - count
+        by_centres = self._by_centres(state)
+        by_size = np.split(shown.by_factors, [count], axis=3)
+        shown = replace(shown, by_factors=np.concatenate([by_size[0], by_centres, by_size[1]], axis=3))
+        centres = by_centres.shape[3]
         precision = block_diag(
             self._precision[:count, :count], np.zeros((centres, centres)), self._precision[count:, count:]
         )
         away = np.insert(self.prior.away(state), [count] * centres, 0.0)
         data = self._equations(shown, data.frames, data.frame_gradient, data.cost)
-        return self._with_prior(data, precision, away).schur_complement()
+        found = self._with_prior(data, precision, away).schur_complement()
+        return without_shoulders(found, self.prior, count + centres)
 
-    def _by_data(self, state: ScalingState) -> tuple[_Shown, ArrowEquations]:
+    def _by_data(self, state: ScalingState) -> tuple[ShownMarkers, ArrowEquations]:
         """Whitened errors, and the equations without prior; kept for the next call, often with another prior."""
         if self._last is None or self._last[0] is not state:
             shown = self._shown(state)
@@ -291,7 +294,9 @@ class ScalingProblem:
         """(N, M, 3, E) whitened derivatives of the markers by displacements of joint centres."""
         return self._worn.by_centres(state.poses) * self._whiten()[..., None]
 
-    def _equations(self, shown: _Shown, frames: Array, frame_gradient: Array, cost: float) -> ArrowEquations:
+    def _equations(
+        self, shown: ShownMarkers, frames: Array, frame_gradient: Array, cost: float
+    ) -> ArrowEquations:
         """Gauss–Newton equations of frames and of unknowns without prior."""
         count, (poses, markers, _, nv) = shown.by_factors.shape[3], shown.by_pose.shape
         columns = np.empty((poses, count + 3 * markers, nv))
@@ -312,7 +317,7 @@ class ScalingProblem:
         border = Border(columns.swapaxes(1, 2), of, factors)
         return ArrowEquations(frames, border, corner, frame_gradient, gradient, cost)
 
-    def _frame_equations(self, state: ScalingState, shown: _Shown) -> tuple[Array, Array]:
+    def _frame_equations(self, state: ScalingState, shown: ShownMarkers) -> tuple[Array, Array]:
         """(N, nv, nv) matrices and (N, nv) gradients of the poses."""
         nv, weights = self.posture.model.nv, self.weights
         flat = shown.by_pose.reshape(len(state.poses), -1, nv)
@@ -328,7 +333,7 @@ class ScalingProblem:
                 gradient[t] += weights.upright[t] * (by_tilt.T @ tilt)
         return frames, gradient
 
-    def _add_shared(self, shown: _Shown, corner: Array, gradient: Array) -> None:
+    def _add_shared(self, shown: ShownMarkers, corner: Array, gradient: Array) -> None:
         """Adds the markers' terms of what frames share: offsets of two markers have no term in common."""
         count, markers = shown.by_factors.shape[3], np.arange(len(self.markers))
         flat = shown.by_factors.reshape(-1, count)
@@ -354,21 +359,27 @@ class ScalingProblem:
         """(N, M, 1) root of a marker's weight over its noise; 0 where it is missing."""
         return np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
 
-    def _shown(self, state: ScalingState) -> _Shown:
+    def _shown(self, state: ScalingState) -> ShownMarkers:
         """Whitened errors of all frames and their derivatives."""
         shares = self._shares(state.poses)
-        reading = self._worn.reading(state.poses, state.factors, self._displacements_m(state, shares))
+        moved = self._displacements_m(state, shares)
+        reading = self._worn.reading(
+            state.poses, state.factors, moved, self.shoulders.displaced_m(state.girdle_m)
+        )
         whiten = self._whiten()
         errors = np.array([one.positions_m for one in reading.markers]) - self.measured_m
         by_pose = np.array([one.jacobian for one in reading.markers])
         if state.slides_m.any():
             by_share = np.array([self.skin.linearised(q)[1] for q in state.poses])
             by_pose += (reading.axes @ np.moveaxis(state.slides_m, 0, 2)) @ by_share
+        by_factors = reading.by_factors
+        if self.prior.raised:
+            by_factors = np.concatenate([by_factors, self.shoulders.by_displacements(reading.trunks)], axis=3)
         by_pose *= whiten[..., None]
-        return _Shown(
+        return ShownMarkers(
             np.where(self.seen[..., None], errors, 0.0) * whiten,
             by_pose,
-            reading.by_factors * whiten[..., None],
+            by_factors * whiten[..., None],
             reading.axes * whiten[..., None],
             shares[: 1 + self.prior.flexions],
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -47,6 +47,9 @@ class ScalingSettings:
 RIGID = read_only(np.zeros((0, 0, 3)))
 """Displacements of markers whose skin does not move with the posture."""
 
+FIXED = read_only(np.zeros(0))
+"""Displacements of shoulders that stay on the trunk."""
+
 
 @dataclass(frozen=True)
 class ScalingState:
@@ -57,12 +60,14 @@ class ScalingState:
         factors: (K,) scale factors.
         offsets_m: (M, 3) offsets of the markers.
         slides_m: (D, M, 3) their displacements by flexion.
+        girdle_m: (3 T G,) displacements of G shoulders in T trials.
     """
 
     poses: Array
     factors: Array
     offsets_m: Array
     slides_m: Array = field(default_factory=lambda: RIGID)
+    girdle_m: Array = field(default_factory=lambda: FIXED)
 
 
 @dataclass(frozen=True)
@@ -108,6 +113,9 @@ class ScalingPrior:
         slides_m: (D, M, 3) expected displacements by flexion c₀.
         slide_precision: (3 M, 3 M) inverse covariance of those of one flexion; flexions are independent. Without
             rows the displacements are known, and are no unknowns.
+        girdle_m: (3 T G,) expected displacements h₀ of G shoulders in T trials; no numbers where shoulders stay on the
+            trunk.
+        girdle_covariance: (3 T G, 3 T G) their covariance; without rows the displacements are known.
     """
 
     factors: Array
@@ -116,6 +124,8 @@ class ScalingPrior:
     offset_precision: Array
     slides_m: Array = field(default_factory=lambda: RIGID)
     slide_precision: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    girdle_m: Array = field(default_factory=lambda: FIXED)
+    girdle_covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def flexions(self) -> int:
@@ -123,14 +133,44 @@ class ScalingPrior:
         return len(self.slides_m) if self.slide_precision.size else 0
 
     @property
+    def raised(self) -> int:
+        """3 T G: number of unknown displacements of the shoulders."""
+        return len(self.girdle_covariance)
+
+    def without_girdle(self) -> ScalingPrior:
+        """The prior with known displacements of the shoulders."""
+        return replace(self, girdle_covariance=np.zeros((0, 0)))
+
+    @property
     def precision(self) -> Array:
-        """(K + 3 M (1 + D), …) inverse covariance of factors, offsets and unknown displacements."""
-        blocks = [np.linalg.inv(self.factor_covariance), self.offset_precision]
-        return block_diag(*blocks, *[self.slide_precision] * self.flexions)
+        """(K + 3 T G + 3 M (1 + D), …) inverse covariance of factors, shoulders, offsets and unknown displacements."""
+        blocks = [np.linalg.inv(self.factor_covariance)]
+        if self.raised:
+            blocks.append(np.linalg.inv(self.girdle_covariance))
+        return block_diag(*blocks, self.offset_precision, *[self.slide_precision] * self.flexions)
 
     def away(self, state: ScalingState) -> Array:
-        """(K + 3 M (1 + D),) factors, offsets and unknown displacements of a state minus the expected ones."""
+        """(K + 3 T G + 3 M (1 + D),) the unknowns of a state that frames share, minus the expected ones."""
         slides = (state.slides_m - self.slides_m) if self.flexions else RIGID
-        return np.concatenate(
-            [state.factors - self.factors, (state.offsets_m - self.offsets_m).ravel(), slides.ravel()]
-        )
+        girdle = (state.girdle_m - self.girdle_m) if self.raised else FIXED
+        offsets = (state.offsets_m - self.offsets_m).ravel()
+        return np.concatenate([state.factors - self.factors, girdle, offsets, slides.ravel()])
+
+
+@dataclass(frozen=True)
+class ShownMarkers:
+    """Errors of N frames of M markers with derivatives, whitened; 0 where a marker is missing.
+
+    Attributes:
+        errors: (N, M, 3) modelled minus measured.
+        by_pose: (N, M, 3, nv) derivative by the frame's pose.
+        by_factors: (N, M, 3, K + 3 T G) by the scale factors and unknown displacements of the shoulders.
+        axes: (N, M, 3, 3) by the marker's own offset.
+        shares: (1 + D, N, M) 1 and f: derivative by an unknown displacement, over that by the offset.
+    """
+
+    errors: Array
+    by_pose: Array
+    by_factors: Array
+    axes: Array
+    shares: Array

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.model.spread_tables import joint_centres, segment_skin
+from mbkf.model.body_file import load_body
+from mbkf.model.spread_tables import joint_centres, segment_skin, shoulder_girdle
 
 SEGMENTS, PATH = ("pelvis", "right_thigh", "left_thigh", "right_shank", "left_shank"), Path("body.toml")
 CENTRE = {"segment": "right_thigh", "sd_mm": [8.0, 6.0, 7.0]}
@@ -16,6 +17,25 @@ SKIN = {
     "common_mm": 12.0,
     "own_mm": 6.0,
 }
+GIRDLE = {
+    "segment": "right_upper_arm",
+    "mean_mm": [-30.0, 20.0, 40.0],
+    "sd_mm": [15.0, 12.0, 15.0],
+    "held_mm": [10.0, 10.0, 20.0],
+}
+
+
+def test_shoulders_are_mirrored_and_must_be_spherical_and_possible():
+    segments = load_body().segments
+    right, left = shoulder_girdle([GIRDLE], segments, PATH)
+    assert (right.segment, left.segment) == ("right_upper_arm", "left_upper_arm")
+    np.testing.assert_allclose([right.mean_m, left.mean_m], [[-0.03, 0.02, 0.04], [-0.03, -0.02, 0.04]])
+    np.testing.assert_allclose([left.sd_m, left.held_m], [[0.015, 0.012, 0.015], [0.01, 0.01, 0.02]])
+    for wrong in ({"sd_mm": [15.0, 0.0, 15.0]}, {"mean_mm": [0.0, 200.0, 0.0]}, {"held_mm": [1.0, 2.0]}):
+        with pytest.raises(FileFormatError, match="girdle of right_upper_arm: mean_mm"):
+            shoulder_girdle([GIRDLE | wrong], segments, PATH)
+    with pytest.raises(FileFormatError, match="its joint must be spherical"):
+        shoulder_girdle([GIRDLE | {"segment": "right_toes"}], segments, PATH)
 
 
 def test_the_right_side_is_mirrored():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.numerics.positive import inverse, made_positive
+from mbkf.numerics.positive import eliminated, inverse, made_positive
 
 SCALES = np.array([1e-4, 1.0, 1e3, 30.0])
 
@@ -43,3 +43,12 @@ def test_the_inverse_is_the_general_one_of_indefinite_matrices_too(columns, shif
 def test_a_singular_matrix_has_no_inverse():
     with pytest.raises(np.linalg.LinAlgError):
         inverse(np.zeros((3, 3)))
+
+
+def test_elimination_keeps_the_covariance_of_the_others():
+    A = np.random.default_rng(1).normal(size=(6, 6))
+    information, unknowns = A @ A.T + np.eye(6), np.array([1, 4])
+    others = np.array([0, 2, 3, 5])
+    expected = np.linalg.inv(np.linalg.inv(information)[np.ix_(others, others)])
+    np.testing.assert_allclose(eliminated(information, unknowns), expected, rtol=1e-10)
+    assert eliminated(information, unknowns[:0]) is information

@@ -14,9 +14,17 @@ from mbkf.scaling import correction
 from mbkf.scaling.correction import correct_markers, rigid_displacements
 from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.pose_fit import fit_pose
+from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.shoulder_girdle import ShoulderGirdle, shoulder_names
 from tests.motions import marker_positions, moderate_pose, random_model, subject_of
 
 SHIFTED = ("RTHI", "LTHI", "RTUB")
+LOWER = {
+    f"{side}_upper_arm_centre_{axis}": moved
+    for side in ("right", "left")
+    for axis, moved in zip("xyz", (0.0, 0.0, -0.04), strict=True)
+}
 SHIFT_M = np.array([0.012, -0.008, 0.015])
 
 
@@ -124,6 +132,40 @@ def test_a_tight_marker_moves_less_than_a_loose_one(model, subject):
     loose_moved, tight_moved = (moved_mm(s, correct_markers(s, one)) for s in (subject, tight))
     for name in SHIFTED:
         assert tight_moved[name] < 0.7 * loose_moved[name]
+
+
+def test_shoulders_that_hang_lower_in_the_trial_leave_the_pelvis_where_it_is():
+    """Shoulders 4 cm lower, as after a static trial with raised arms: found, and the pelvis does not tilt for it.
+
+    With shoulders that stay on the trunk it tilts by some degrees.
+    """
+    rng = np.random.default_rng(7)
+    person = subject_of(random_model(rng))
+    body = reference_body(person)
+    truth = HumanModel.of(replace(person, joint_centres_m=LOWER))
+    segments = [m.segment for m in person.markers]
+    girdle = ShoulderGirdle(truth, segments, np.array([m.position_m for m in person.markers]))
+    places = np.array([m.position_m for m in person.markers])
+    places += girdle.on_trunk @ np.array([LOWER[name] for name in shoulder_names(body)]).reshape(-1, 3)
+    poses = np.array([moderate_pose(truth, rng, spread=0.3) for _ in range(20)])
+    shown = marker_positions(MarkerSensor(truth, segments, places), list(poses))
+    found = correct_markers(person, MarkerTrajectories(tuple(m.name for m in person.markers), shown, 100.0))
+    assert tilted_deg(found, shown, poses) < 1.0
+    for name, moved in LOWER.items():
+        assert abs(found.joint_centres_m[name] - moved) < 0.015
+    fixed = replace(found, joint_centres_m={}, markers=person.markers)
+    assert tilted_deg(fixed, shown, poses) > 2.0
+
+
+def tilted_deg(person, shown, poses):
+    """Mean tilt of the pelvis away from the true poses, degrees, by the best fit of all markers."""
+    model = HumanModel.of(person)
+    sensor = MarkerSensor(model, [m.segment for m in person.markers], [m.position_m for m in person.markers])
+    noise_m = np.array([m.noise_m for m in person.markers])
+    posture = PostureSensor(model)
+    fits = [fit_pose(sensor, posture, one, noise_m, q).q for one, q in zip(shown, poses, strict=True)]
+    turns = [model.difference(q, fit)[4] for q, fit in zip(poses, fits, strict=True)]
+    return abs(np.degrees(np.mean(turns)))
 
 
 def test_too_few_markers_are_refused(model, subject):

@@ -10,13 +10,16 @@ from mbkf.model.joint_centres import centre_names
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingProblem
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingState
+from mbkf.scaling.shoulders import without_shoulders
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.shoulder_girdle import shoulder_names
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_scale, reference_model
 
 MODEL = reference_model()
 BODY = MODEL.description
 MARKERS = load_protocol("reference36").markers[:20]
 FRAMES, FLEXIONS = 3, 2
+SHOULDERS, TRIAL = 6, np.array([0, 0, 1])
 ONE_FRAME = FrameWeights.moving(1, 1.0, 1.0)
 
 
@@ -25,14 +28,26 @@ def random_covariance(rng, size):
     return 0.01 * (A @ A.T / size + 0.3 * np.eye(size))
 
 
-@pytest.fixture(scope="module", params=[0, FLEXIONS], ids=["rigid", "skin"])
-def flexions(request):
-    """Number of flexions that displace markers."""
+@pytest.fixture(
+    scope="module", params=[(0, 0), (FLEXIONS, 0), (FLEXIONS, 2)], ids=["rigid", "skin", "shoulders"]
+)
+def kinds(request):
+    """Number of flexions that displace markers, and of trials in which shoulders are displaced."""
     return request.param
 
 
 @pytest.fixture(scope="module")
-def problem(flexions):
+def flexions(kinds):
+    return kinds[0]
+
+
+@pytest.fixture(scope="module")
+def trials(kinds):
+    return kinds[1]
+
+
+@pytest.fixture(scope="module")
+def problem(flexions, trials):
     """Some markers in some frames, one not at all, correlated prior, unequal weights of frames."""
     rng = np.random.default_rng(1)
     measured = rng.uniform(-1, 1, (FRAMES, len(MARKERS), 3))
@@ -50,18 +65,26 @@ def problem(flexions):
             slides_m=rng.uniform(-0.02, 0.02, (flexions, len(MARKERS), 3)),
             slide_precision=np.linalg.inv(0.01 * random_covariance(rng, 3 * len(MARKERS))),
         )
+    if trials:
+        size = trials * SHOULDERS
+        prior = replace(
+            prior,
+            girdle_m=rng.uniform(-0.03, 0.03, size),
+            girdle_covariance=0.01 * random_covariance(rng, size),
+        )
     weights = FrameWeights(
         np.array([1.0, 0.5, 0.2]), np.array([0.0, 0.3, 1.0]), np.zeros(FRAMES, dtype=bool), np.zeros(FRAMES)
     )
-    return ScalingProblem(BODY, MARKERS, measured, weights, prior)
+    return ScalingProblem(BODY, MARKERS, measured, weights, prior, trial=TRIAL if trials else None)
 
 
 @pytest.fixture(scope="module")
-def state(flexions):
+def state(flexions, trials):
     rng = np.random.default_rng(2)
     poses = np.array([moderate_pose(MODEL, rng) for _ in range(FRAMES)])
     displacements = rng.uniform(-0.03, 0.03, (1 + flexions, len(MARKERS), 3))
-    return ScalingState(poses, random_scale(rng), displacements[0], displacements[1:])
+    raised = rng.uniform(-0.04, 0.04, trials * SHOULDERS)
+    return ScalingState(poses, random_scale(rng), displacements[0], displacements[1:], raised)
 
 
 def flexing(segment):
@@ -75,17 +98,31 @@ def bend(model, q, segment):
     return model.difference(model.neutral(), q)[dofs][0 if dofs.stop - dofs.start == 1 else 1]
 
 
+def body_of_frame(problem, state, t):
+    """The body whose shoulders are where they are in the trial of frame t, and (M, 3) displacements on the trunk."""
+    if not state.girdle_m.size:
+        return HumanModel(BODY, state.factors, 80.0), np.zeros((len(MARKERS), 3))
+    raised = state.girdle_m.reshape(-1, 2, 3)[TRIAL[t]]
+    moved = dict(zip(shoulder_names(BODY), raised.ravel(), strict=True))
+    centres = np.array([moved.get(name, 0.0) for name in centre_names(BODY)])
+    return HumanModel(
+        BODY, state.factors, 80.0, centres_m=centres
+    ), problem.shoulders.girdle.on_trunk @ raised
+
+
 def residuals(problem, state):
     """All whitened residuals in one vector, from the module's description and not its code."""
-    model = HumanModel(BODY, state.factors, 80.0)
     rows = []
     for t, q in enumerate(state.poses):
+        model, beside = body_of_frame(problem, state, t)
         rotations, origins = model.placements(q)
         for i, marker in enumerate(MARKERS):
             if not np.isnan(problem.measured_m[t, i]).any():
                 joint = model.joint(marker.segment).joint_id
                 local = (
-                    model.axis_scale(BODY.segment(marker.segment)) * marker.position_m + state.offsets_m[i]
+                    model.axis_scale(BODY.segment(marker.segment)) * marker.position_m
+                    + state.offsets_m[i]
+                    + beside[i]
                 )
                 for d, joints in enumerate(flexing(marker.segment)[: len(state.slides_m)]):
                     theta = np.mean([bend(model, q, joint) for joint in joints])
@@ -95,6 +132,9 @@ def residuals(problem, state):
                 rows.append((at - problem.measured_m[t, i]) / noise_m)
         deviation = problem.posture.reading(q).deviation / problem.posture.sd
         rows.append(np.sqrt(problem.weights.posture[t]) * deviation)
+    if state.girdle_m.size:
+        away = state.girdle_m - problem.prior.girdle_m
+        rows.append(np.linalg.solve(np.linalg.cholesky(problem.prior.girdle_covariance), away))
     whiten = np.linalg.inv(np.linalg.cholesky(problem.prior.factor_covariance))
     rows.append(whiten @ (state.factors - problem.prior.factors))
     offsets = (state.offsets_m - problem.prior.offsets_m).ravel()
@@ -105,7 +145,7 @@ def residuals(problem, state):
 
 
 def shared_size(state):
-    return 18 + 3 * len(MARKERS) * (1 + len(state.slides_m))
+    return 18 + state.girdle_m.size + 3 * len(MARKERS) * (1 + len(state.slides_m))
 
 
 def numeric_jacobian(problem, state, h=1e-6):
@@ -144,7 +184,8 @@ def test_gradient_is_half_the_slope_of_the_cost(problem, state, stands):
     weights = replace(
         problem.weights, standing=np.full(FRAMES, stands), upright=np.full(FRAMES, 0.7 * stands)
     )
-    problem = ScalingProblem(BODY, MARKERS, problem.measured_m, weights, problem.prior)
+    trial = TRIAL if state.girdle_m.size else None
+    problem = ScalingProblem(BODY, MARKERS, problem.measured_m, weights, problem.prior, trial=trial)
     equations = problem.linearise(state)
     for _ in range(5):
         own, shared = rng.normal(size=(FRAMES, MODEL.nv)), rng.normal(size=shared_size(state))
@@ -171,7 +212,10 @@ def test_the_information_is_that_of_the_equations_with_joint_centres(problem, st
     e = np.arange(count, count + len(names))
     kept = np.delete(np.arange(len(found)), e)
     fitted = problem.linearise(state).schur_complement()
+    fitted = without_shoulders(fitted, problem.prior, count)
     assert_near(found[np.ix_(kept, kept)] / np.abs(fitted).max(), fitted / np.abs(fitted).max(), 1e-9)
+    if state.girdle_m.size:
+        return  # the rows of the centres are compared without shoulders, which move the same joints
     shares = np.array([problem.skin.shares(q) for q in state.poses])[:, :, : len(state.slides_m)]
     local = problem.local_m(state.factors, state.offsets_m)
     whiten = np.sqrt(problem.weights.markers)[:, None] / problem.noise_m
@@ -205,13 +249,14 @@ def test_the_information_is_that_of_the_equations_with_joint_centres(problem, st
 def test_missing_markers_say_nothing(problem, state):
     errors = problem.errors_m(state)
     np.testing.assert_array_equal(np.isnan(errors), np.isnan(problem.measured_m))
-    columns = 18 + 3 * 4 + np.arange(3)  # the marker never seen
+    columns = 18 + state.girdle_m.size + 3 * 4 + np.arange(3)  # the marker never seen
     assert (problem.linearise(state).border.terms[:, :, columns] == 0).all()
 
 
 def test_other_samples_make_the_problem_that_they_alone_would(problem, state):
     other = np.where(np.isnan(problem.measured_m), 0.1, np.nan)
-    alone = ScalingProblem(BODY, MARKERS, other, problem.weights, problem.prior)
+    trial = TRIAL if state.girdle_m.size else None
+    alone = ScalingProblem(BODY, MARKERS, other, problem.weights, problem.prior, trial=trial)
     found = problem.with_measurements(other)
     assert (found.seen == alone.seen).all()
     assert (found.seen != problem.seen).all()

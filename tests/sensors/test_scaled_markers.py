@@ -57,3 +57,24 @@ def test_without_offsets_markers_are_at_their_places(scene):
     np.testing.assert_array_equal(
         markers.places(poses, factors), markers.places(poses, factors, 0.0 * offsets)
     )
+
+
+def test_raised_shoulders_are_those_of_a_body_with_displaced_centres(scene):
+    """Arms move as on a body whose shoulders lie there, markers around the shoulder with them, others not at all."""
+    markers, poses, factors, offsets = scene
+    raised = RNG.normal(0.0, 0.04, (2, 3))
+    centres = np.zeros((len(BODY.joint_centres), 3))
+    for own, moved in zip(BODY.girdle, raised, strict=True):
+        centres[[one.segment for one in BODY.joint_centres].index(own.segment)] = moved
+    model = HumanModel(BODY, factors, 70.0, centres_m=centres)
+    local = (SCALE @ factors) * REFERENCE_M + offsets + markers.girdle.on_trunk @ raised
+    sensor = MarkerSensor(model, SEGMENTS, local)
+    every = np.tile(raised, (len(poses), 1, 1))
+    places = markers.places(poses, factors, offsets, every)
+    for q, placed, found in zip(
+        poses, places, markers.reading(poses, factors, offsets, every).markers, strict=True
+    ):
+        expected = sensor.reading(q)
+        np.testing.assert_allclose(placed, expected.positions_m, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(found.positions_m, placed, rtol=0, atol=0)
+        np.testing.assert_allclose(found.jacobian, expected.jacobian, rtol=0, atol=1e-14)
