@@ -51,7 +51,10 @@ class ErrorSettings:
         skin_rate_rad_s: How fast skin moves, ω.
         sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
         lag_s, smoothed_lag_s: Time by which reactions without plates lag behind, causally and smoothed.
-        edge_force_n: Spread e of the vertical force on a foot without a plate that carries next to nothing.
+        edge_share: Spread e of the vertical force on a foot without a plate that carries next to nothing, as a share
+            of body weight.
+        push_share: Spread of the force by which two feet without a plate push apart, side by side and a step apart, as
+            a share of the push of forces that point to the pelvis.
         frame_share: Share of a plate's change since the frame before, and of the change of that change, by which its
             mean over a frame may be off.
     """
@@ -64,7 +67,8 @@ class ErrorSettings:
     sharing_scale: float = 1.3
     lag_s: float = 0.033
     smoothed_lag_s: float = 0.008
-    edge_force_n: float = 60.0
+    edge_share: float = 0.08
+    push_share: tuple[float, float] = (0.2, 0.3)
     frame_share: tuple[float, float] = (0.005, 0.15)
 
 

@@ -27,10 +27,10 @@ from mbkf.sensors.contact.records import Contact, ContactDecision, FreeStance, K
 from mbkf.sensors.contact.sharing import (
     LEAST_SHARE,
     LEVER_M,
-    STEP_M,
     TWIST_M,
     SharedLoad,
     shear_to_pelvis,
+    step_apart,
 )
 from mbkf.sensors.states import LoadedState
 
@@ -51,7 +51,10 @@ class FootContactSettings:
         free_push_share: Spread of the share of the load on a foot that pushes off, as part of that share.
         free_shear_share: Spread of an unmeasured foot's shear force about the direction to the pelvis in double
             support, as a share of its vertical force.
-        free_sway_m: Further spread of its centre of pressure along the sole where the feet stand side by side, m.
+        free_direction: Share of the direction to the pelvis that shear forces follow, where the feet stand side by side
+            and where they are a step apart.
+        free_sway_m: Spread of both centres of pressure together along the soles where the feet stand side by side, m:
+            Newton's law knows their sum, and a lean lasts.
         landing_force_n, landing_moment_nm: Spread of the wrench of a foot in the air that is about to touch a floor
             that no plate reads, or has just left it: the instant is known to some 40 ms.
     """
@@ -67,7 +70,8 @@ class FootContactSettings:
     pulling_force_n: float = 10.0
     free_push_share: float = 1.6
     free_shear_share: float = 0.08
-    free_sway_m: float = 0.06
+    free_direction: tuple[float, float] = (0.3, 0.9)
+    free_sway_m: float = 0.5
     landing_force_n: float = 120.0
     landing_moment_nm: float = 6.0
 
@@ -78,6 +82,9 @@ PUSH_LEAST = 0.07
 TOGETHER = 0.1
 """Weight of the direction of both feet's shear together, over that of their difference, where no plate reads."""
 
+
+HALF = 0.5**0.5
+"""Sum and difference of two rows times this are as independent as the rows."""
 
 BELT_FORCE = 2.0
 """Force in body weights whose moment about the world's origin changes as a belt takes it along."""
@@ -251,15 +258,14 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         centres = free.stance.centres_at(right / (right + left))
         x, y = free.stance.forward.tolist()
         X = _about(centres)
-        X[:, :2, 2] -= shear_to_pelvis(free.pelvis_m, centres)
+        step = step_apart(free.stance)
+        beside, stepped = s.free_direction
+        X[:, :2, 2] -= (beside + step * (stepped - beside)) * shear_to_pelvis(free.pelvis_m, centres)
         X[:, 3:5] = np.array([[x, y], [-y, x]]) @ X[:, 3:5]
-        (x_right, y_right, _), (x_left, y_left, _) = centres.tolist()
-        ahead = abs((x_right - x_left) * x + (y_right - y_left) * y)
-        along = LEVER_M + s.free_sway_m * (1.0 - min(ahead / STEP_M, 1.0))
         shear, vertical = s.free_shear_share * 0.5 * (right + left), s.free_force_share * weight
         sd = np.array(
             [
-                (shear, shear, vertical, LEVER_M * force, along * force, TWIST_M * force)
+                (shear, shear, vertical, LEVER_M * force, LEVER_M * force, TWIST_M * force)
                 for force in (right, left)
             ]
         )
@@ -278,6 +284,11 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         for kept in (rows, values):
             of_right, of_left = kept[:2].copy(), kept[6:8].copy()
             kept[:2], kept[6:8] = of_right - of_left, TOGETHER * (of_right + of_left)
+        # Likewise the centres of pressure of both feet together, where they stand side by side.
+        together = LEVER_M / (LEVER_M + s.free_sway_m * (1.0 - step))
+        for kept in (rows, values):
+            of_right, of_left = kept[4].copy(), kept[10].copy()
+            kept[4], kept[10] = HALF * (of_right - of_left), together * HALF * (of_right + of_left)
         return Rows(rows, values, self.layout.wrench.start, 0)
 
     def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:

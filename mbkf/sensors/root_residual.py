@@ -19,6 +19,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.model.layout import ROOT_RESIDUAL, ExtraState
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
+from mbkf.sensors.contact.records import unread
 from mbkf.sensors.states import LoadedState
 
 
@@ -30,11 +31,14 @@ class RootResidualSettings:
         residual_share: σ_F of each component, as a share of body weight; 0 leaves the residual out of the state.
         residual_lever_m: σ_M of each component, as a lever of body weight.
         residual_memory_s: τ.
+        unread_residual_scale: Factor by which the decay's readings of the force are sharper while feet stand and no
+            plate reads: the feet's forces take up every load, and the mean force has to change the momentum.
     """
 
     residual_share: float = 0.05
     residual_lever_m: float = 0.03
     residual_memory_s: float = 0.2
+    unread_residual_scale: float = 3.0
 
 
 class DecayingLoad(Block[LoadedState, None, Notes, None]):
@@ -87,3 +91,11 @@ class RootResidual(DecayingLoad):
         s = settings
         sd = weight_n * np.repeat([s.residual_share, s.residual_lever_m], 3)
         super().__init__(ROOT_RESIDUAL, sd, s.residual_memory_s, dt_s)
+        self._unread = np.repeat([s.unread_residual_scale, 1.0], 3)
+
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
+        """Rows on the load, one a component; sharper while feet stand and no plate reads."""
+        rows = super().linearise(at, decision)
+        if decision.contact is None or not unread(decision.contact.contacts):
+            return rows
+        return Rows(rows.jacobian * self._unread[:, None], rows.innovation * self._unread, rows.first)

@@ -10,7 +10,7 @@ import pytest
 from mbkf.model.layout import Layout
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
-from mbkf.sensors.contact.sharing import SharedLoad, Stance
+from mbkf.sensors.contact.sharing import LEVER_M, STEP_M, SharedLoad, Stance
 from mbkf.sensors.foot_contact import BELT_FORCE, PUSH_LEAST, FootContact, FootContactSettings, FootDecision
 
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
@@ -117,9 +117,16 @@ def test_a_free_foot_that_pulls_carries_nothing(lifted):
     assert rows[2, 2] == pytest.approx(1.0 / SETTINGS.pulling_force_n)
 
 
-def both_free(share_right):
-    """Both feet on floor without a plate, 0.4 m apart, and wrenches that press where expected towards the pelvis."""
-    stance = Stance(np.array([[0.5, -0.1, 0.0], [0.1, 0.1, 0.0]]), np.zeros((2, 3)), np.array([1.0, 0.0]))
+BESIDE, STEPPED = SETTINGS.free_direction
+
+
+def both_free(share_right, ahead_m=0.4):
+    """Both feet on floor without a plate, the right one ahead, and wrenches that press where expected.
+
+    They point to the pelvis by the share that belongs to the distance.
+    """
+    centres = np.array([[0.1 + ahead_m, -0.1, 0.0], [0.1, 0.1, 0.0]])
+    stance = Stance(centres, np.zeros((2, 3)), np.array([1.0, 0.0]))
     pelvis = np.array([0.3, 0.0, 1.0])
     kinds = (Contact.UNMEASURED, Contact.UNMEASURED)
     loaded = ContactDecision(
@@ -128,12 +135,14 @@ def both_free(share_right):
     vertical = WEIGHT_N * np.array([share_right, 1.0 - share_right])
     arms = pelvis - stance.centres_m
     forces = arms / arms[:, 2:] * vertical[:, None]
+    forces[:, :2] *= BESIDE + min(ahead_m / STEP_M, 1.0) * (STEPPED - BESIDE)
     return loaded, np.concatenate([forces, np.cross(stance.centres_m, forces)], axis=1).ravel()
 
 
+@pytest.mark.parametrize("ahead_m", [0.0, 0.1, 0.4])
 @pytest.mark.parametrize("share_right", [0.2, 0.5, 0.9])
-def test_feet_in_double_support_press_where_they_stand_towards_the_pelvis(share_right):
-    loaded, w = both_free(share_right)
+def test_feet_in_double_support_press_where_they_stand_towards_the_pelvis(share_right, ahead_m):
+    loaded, w = both_free(share_right, ahead_m)
     _, values, plates = filled(loaded, w)
     assert plates == 0
     vertical = np.zeros(12, dtype=bool)
@@ -141,6 +150,25 @@ def test_feet_in_double_support_press_where_they_stand_towards_the_pelvis(share_
     np.testing.assert_allclose(values[~vertical], 0.0, atol=1e-9)
     expected = (0.5 * WEIGHT_N - w[[2, 8]]) / (SETTINGS.free_force_share * WEIGHT_N)
     np.testing.assert_allclose(values[vertical], expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("ahead_m", "loose"), [(0.0, 1.0), (0.15, 0.5), (0.4, 0.0)])
+def test_feet_side_by_side_may_lean_together_but_not_against_each_other(ahead_m, loose):
+    """Spread of the centres of pressure along the soles: of the feet together, and of one against the other."""
+    loaded, w = both_free(0.5, ahead_m)
+    rows, values, _ = filled(loaded, w)
+    force = 0.5 * WEIGHT_N
+
+    def over_sd(right_m, left_m):
+        moved = w.copy()
+        moved[[4, 10]] -= force * np.array([right_m, left_m])
+        return np.linalg.norm((filled(loaded, moved)[1] - values)[[4, 10]])
+
+    together = LEVER_M + loose * SETTINGS.free_sway_m
+    assert over_sd(0.1, 0.1) == pytest.approx(2.0**0.5 * 0.1 / together)
+    assert over_sd(0.1, -0.1) == pytest.approx(2.0**0.5 * 0.1 / LEVER_M)
+    step = np.random.default_rng(1).normal(size=12)
+    np.testing.assert_allclose(filled(loaded, w + 1e-6 * step)[1] - values, -1e-6 * rows @ step, atol=1e-10)
 
 
 @pytest.mark.parametrize("height_m", [0.0, -0.5])

@@ -8,6 +8,8 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.model.layout import ROOT_RESIDUAL, SUPPORT, UNSEEN_MOMENT, ExtraState
 from mbkf.model.newton_euler import NewtonEuler
+from mbkf.sensors.block import Notes
+from mbkf.sensors.contact.records import Contact, ContactDecision
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
 from mbkf.sensors.root_residual import RootResidual, RootResidualSettings
 from tests.dynamics import DT, dynamic_filter, prepared_at, random_state, singer, standing
@@ -29,12 +31,12 @@ def bound(dt_s=DT, before=()):
     return block, state, plant
 
 
-def decay(block, residual=None):
-    """Rows about a residual (6,)."""
+def decay(block, residual=None, contact=None):
+    """Rows about a residual (6,), while the feet stand so."""
     extra = np.zeros(block.layout.size - 3 * MODEL.nv - 12)
     extra[block.layout.extra_index(ROOT_RESIDUAL)] = 0.0 if residual is None else residual
     at = prepared_at(block, replace(random_state(MODEL, np.random.default_rng(0)), extra=extra))
-    return block.linearise(at, None)
+    return block.linearise(at, Notes(contact=contact))
 
 
 @pytest.mark.parametrize("dt_s", [0.005, 0.01, 0.02])
@@ -67,6 +69,28 @@ def test_rows_stand_at_the_residual_s_own_place():
     assert rows.first == plant.layout[ROOT_RESIDUAL].start == 3 * MODEL.nv + 14
     assert_near(rows.innovation, -rows.jacobian @ LOAD, 1e-12)
     assert rows.readings == 0 and block.prior
+
+
+@pytest.mark.parametrize(
+    ("contacts", "scale"),
+    [
+        ((Contact.UNMEASURED, Contact.UNMEASURED), 3.0),
+        ((Contact.AIR, Contact.UNMEASURED), 3.0),
+        ((Contact.AIR, Contact.AIR), 1.0),
+        ((Contact.MEASURED, Contact.UNMEASURED), 1.0),
+        ((Contact.MEASURED, Contact.AIR), 1.0),
+        ((Contact.SHARED, Contact.SHARED), 1.0),
+    ],
+)
+def test_the_force_is_read_as_zero_more_sharply_while_feet_stand_and_no_plate_reads(contacts, scale):
+    block, _, _ = bound()
+    usual = decay(block, LOAD)
+    contact = ContactDecision(contacts, np.zeros((2, 6)), np.zeros((2, 3)), False, None)
+    rows = decay(block, LOAD, contact)
+    each = np.repeat([scale, 1.0], 3)
+    assert_near(rows.jacobian, each[:, None] * usual.jacobian, 1e-12)
+    assert_near(rows.innovation, -rows.jacobian @ LOAD, 1e-12)
+    assert rows.first == usual.first
 
 
 @pytest.mark.parametrize("others", [(), (UNSEEN_MOMENT,), (SUPPORT,), (SUPPORT, UNSEEN_MOMENT)])

@@ -8,7 +8,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.filters.dynamic.filter import DynamicFilter, DynamicStep
 from mbkf.filters.dynamic.level_rows import LevelRows
 from mbkf.filters.dynamic.plant import DynamicState
@@ -22,7 +22,8 @@ from mbkf.filters.state_variances import StateVariances, state_variances
 from mbkf.model.layout import FEET
 from mbkf.sensors.block import NO_DOFS, Frame
 from mbkf.sensors.contact.plate_noise import PlateNoise, spread_about_origin
-from mbkf.sensors.contact.records import Contact, ContactDecision
+from mbkf.sensors.contact.records import Contact, ContactDecision, unread
+from mbkf.sensors.contact.sharing import push_apart, step_apart
 from mbkf.sensors.foot_contact import FootContact
 
 LATER_FADES_S = 0.1
@@ -69,6 +70,7 @@ class DynamicReport(StateReport[DynamicState]):
         self._usual = kalman.settings.contact.plate_force_n, kalman.settings.contact.plate_moment_nm
         origins_m = feet[0].detector.origins_m if feet else np.zeros((0, 3))
         self._plate_noise = PlateNoise.before(origins_m, *self._usual)
+        self._edge_n = kalman.settings.errors.edge_share * GRAVITY_M_S2 * self.model.mass_kg
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
         self._read: tuple[Posterior, StateVariances, int] | None = None
@@ -259,7 +261,6 @@ class DynamicReport(StateReport[DynamicState]):
         all_seen = len(seen) + len(self._unobservable) == self.model.nv
         contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
         free = tuple(foot for foot, on in enumerate(contacts) if on == Contact.UNMEASURED)
-        unread = bool(free) and not {Contact.MEASURED, Contact.SHARED} & set(contacts)
         noise = None
         if changes.plate_noise is not None and notes.contact is not None:
             noise = changes.plate_noise.on_feet(notes.contact.centres_m)
@@ -273,7 +274,7 @@ class DynamicReport(StateReport[DynamicState]):
             s.errors.skin_rate_rad_s,
             free,
             s.errors.sharing_scale,
-            changes.lag if unread or notes.supports else None,
+            changes.lag if unread(contacts) or notes.supports else None,
             self._edges(estimate, free, noise),
             self.loads.slice if notes.supports and all_seen else None,
             s.errors.smoothed_new_rates if changes.smoothed else s.errors.new_rates,
@@ -298,14 +299,14 @@ class DynamicReport(StateReport[DynamicState]):
         if contact is None:
             return np.zeros((0, FEET))
         s, change = self.kalman.settings.errors, _changes(estimate).wrench
-        edges = np.zeros((4, 2, 6))
+        edges = np.zeros((5, 2, 6))
         for foot in (0, 1):
             if foot in free:
                 size = 0.0
-                if s.edge_force_n > 0.0:
-                    size = float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * s.edge_force_n)) ** 2))
+                if self._edge_n > 0.0:
+                    size = float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * self._edge_n)) ** 2))
                 x, y, _ = contact.centres_m[foot]
-                edges[foot, foot] = s.edge_force_n * size * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
+                edges[foot, foot] = self._edge_n * size * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
             elif contact.contacts[foot] == Contact.AIR:
                 edges[foot, foot] = 0.0 if contact.below is None else contact.below
             elif change is not None:
@@ -316,7 +317,13 @@ class DynamicReport(StateReport[DynamicState]):
                         np.maximum(bend**2 - (OF_WHITE_NOISE * noise[foot]) ** 2, 0.0)
                     )
                 edges[2 + foot, foot] = s.frame_share[1] * bend
-        return edges.reshape(4, FEET)
+        if len(free) == FEET // 6 and contact.free is not None:
+            stance = contact.free.stance
+            beside, stepped = s.push_share
+            vertical = np.maximum(estimate.wrench[:, 2], 1.0)
+            edges[4] = push_apart(stance, contact.free.pelvis_m, vertical)
+            edges[4] *= beside + step_apart(stance) * (stepped - beside)
+        return edges.reshape(5, FEET)
 
 
 def _step(estimate: Posterior) -> DynamicStep:

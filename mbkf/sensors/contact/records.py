@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import inf
@@ -29,6 +30,11 @@ class Contact(IntEnum):
     AIR = 0
     MEASURED = 1
     SHARED = 2
+
+
+def unread(contacts: Sequence[Contact]) -> bool:
+    """True where feet bear and no plate reads any of them."""
+    return Contact.UNMEASURED in contacts and not {Contact.MEASURED, Contact.SHARED} & set(contacts)
 
 
 class Pressed(NamedTuple):

@@ -170,6 +170,31 @@ def _spread(share: float, force_n: float, line_m: Array, forward: Array) -> Arra
     return force_n * np.array([SHEAR_SHARE, SHEAR_SHARE, vertical, lever, lever, TWIST_M])
 
 
+def step_apart(stance: Stance) -> float:
+    """Distance of the feet along their heading in steps: 0 side by side, 1 a step apart or more."""
+    ahead = float((stance.centres_m[0] - stance.centres_m[1])[:2] @ stance.forward)
+    return min(abs(ahead) / STEP_M, 1.0)
+
+
+def push_apart(stance: Stance, pelvis_m: Array, vertical_n: Array) -> Array:
+    """(2, 6) wrenches about the world's origin by which both feet push apart, as forces to the pelvis would.
+
+    They lie on the line between the centres of pressure, so that their sum is zero: Newton's law cannot show them.
+
+    Args:
+        stance: Where the feet are expected to be loaded.
+        pelvis_m: (3,) point to which the forces point.
+        vertical_n: (2,) vertical forces on right and left foot, above 0.
+    """
+    centres = stance.centres_at(float(vertical_n[0] / vertical_n.sum()))
+    line = (centres[0] - centres[1])[:2]
+    right, left = shear_to_pelvis(pelvis_m, centres) * vertical_n[:, None]
+    force = np.zeros(3)
+    force[:2] = line * (0.5 * float((right - left) @ line) / max(float(line @ line), LEAST_APART_M**2))
+    forces = np.array([force, -force])
+    return np.concatenate([forces, np.cross(centres, forces)], axis=1)
+
+
 def expected_stance(soles: Sequence[Sole], surface_m: float) -> Stance:
     """Expected centres of pressure of right and left foot on a surface, from their places along the heading.
 

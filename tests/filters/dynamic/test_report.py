@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.filters.dynamic.report import ROUNDS
+from mbkf.filters.dynamic.report import ROUNDS, DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.records import Contact, FreeStance
+from mbkf.sensors.contact.sharing import Stance, push_apart
 from tests.dynamics import settings_with
 from tests.followed import FRAMES, SETTLED, estimates, made, made_filter, recording, torques, tracked
-from tests.motions import worst
+from tests.motions import assert_near, worst
 
 RIGHT, LEFT = 0, 1
 
@@ -180,3 +182,44 @@ def test_white_noise_of_a_plate_is_not_counted_again_as_a_change_within_the_fram
     still = force_sd(0.0)
     assert force_sd(2.4) == still
     assert force_sd(25.0) ** 2 - still**2 == pytest.approx(share**2 * (25.0**2 - 6.0))
+
+
+def on_free_floor(estimate, ahead_m):
+    """The estimate with both feet on unread floor, the right one ahead; and the push of forces to the pelvis."""
+    record = estimate.record
+    notes = record.step.decisions.notes
+    centres = np.array([[ahead_m, -0.15, 0.0], [0.0, 0.15, 0.0]])
+    stance, pelvis = Stance(centres, np.zeros((2, 3)), np.array([1.0, 0.0])), np.array([0.1, 0.0, 0.9])
+    free = FreeStance(stance, pelvis)
+    kinds = (Contact.UNMEASURED,) * 2
+    notes = replace(notes, contact=replace(notes.contact, contacts=kinds, centres_m=centres, free=free))
+    step = record.step._replace(decisions=record.step.decisions._replace(notes=notes))
+    found = estimate._replace(record=record._replace(step=step))
+    return found, push_apart(stance, pelvis, estimate.wrench[:, 2])
+
+
+@pytest.mark.parametrize(("ahead_m", "place"), [(0.0, 0), (0.5, 1)])
+def test_how_two_feet_without_a_plate_push_apart_is_open(ahead_m, place):
+    """Their forces err by a share of the push, opposed, and the torques of the legs with them; the sum does not."""
+    tracking, found = estimates("dynamic")
+    free, push = on_free_floor(found[30], ahead_m)
+    share = tracking.kalman.settings.errors.push_share[place]
+    added = DynamicReport(tracking.kalman).errors(free).added[:, tracking.kalman.layout.wrench]
+    assert_near(added[4], share * push.ravel(), 1e-9)
+    assert_near(added[4].reshape(2, 6).sum(axis=0), np.zeros(6), 1e-9)
+    assert (tracking.wrench_sd(free)[:, :2] >= np.abs(share * push[:, :2])).all()
+    assert not DynamicReport(tracking.kalman).errors(found[30]).added[4].any()
+
+
+def test_a_hardly_loaded_foot_without_a_plate_may_bear_a_share_of_body_weight():
+    tracking, found = estimates("dynamic")
+    free, _ = on_free_floor(found[30], 0.0)
+    report = DynamicReport(tracking.kalman)
+    weight_n = GRAVITY_M_S2 * tracking.kalman.model.mass_kg
+    most = tracking.kalman.settings.errors.edge_share * weight_n
+    loaded, light = (
+        report.errors(one).added[RIGHT, tracking.kalman.layout.wrench][2]
+        for one in (free, free._replace(wrench=np.zeros((2, 6))))
+    )
+    assert light == pytest.approx(most)
+    assert loaded < 0.1 * most

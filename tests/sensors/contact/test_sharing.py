@@ -16,9 +16,11 @@ from mbkf.sensors.contact.sharing import (
     ROLL,
     STEP_M,
     expected_stance,
+    push_apart,
     push_share,
     share_load,
     shear_to_pelvis,
+    step_apart,
 )
 from tests.dynamics import about
 from tests.motions import assert_near
@@ -205,3 +207,37 @@ def test_forces_point_to_the_pelvis_and_are_bounded_where_that_is_near_the_floor
         shear_to_pelvis(centres[0], centres), shear_to_pelvis(centres[0] + [0.0, 0.0, LEAST_RISE_M], centres)
     )
     np.testing.assert_allclose(shear_to_pelvis(low, centres), (low - centres)[:, :2] / LEAST_RISE_M)
+
+
+@given(
+    st.floats(-0.6, 0.6), st.floats(0.1, 0.5), st.floats(50.0, 900.0), st.floats(50.0, 900.0), small, small
+)
+def test_feet_that_push_apart_leave_the_sum_of_their_wrenches(ahead, width, right_n, left_n, x, y):
+    """It is the part of forces to the pelvis that acts along the line between both centres of pressure."""
+    pelvis, vertical = np.array([x, y, 0.9]), np.array([right_n, left_n])
+    stance = expected_stance(soles(ahead, width).tolist(), 0.0)
+    found = push_apart(stance, pelvis, vertical)
+    np.testing.assert_allclose(found.sum(axis=0), 0.0, atol=1e-9)
+    centres = stance.centres_at(right_n / (right_n + left_n))
+    np.testing.assert_allclose(found[:, 3:], np.cross(centres, found[:, :3]), atol=1e-9)
+    line = (centres[RIGHT] - centres[LEFT])[:2]
+    to_pelvis = shear_to_pelvis(pelvis, centres) * vertical[:, None]
+    assert found[RIGHT, 2] == 0.0
+    np.testing.assert_allclose(np.cross(found[RIGHT, :3], [*line, 0.0]), 0.0, atol=1e-9)
+    half = 0.5 * (to_pelvis[RIGHT] - to_pelvis[LEFT]) @ line
+    np.testing.assert_allclose(found[RIGHT, :2] @ line, half, rtol=1e-9, atol=1e-9)
+
+
+def test_feet_on_one_point_push_nothing_apart():
+    stance = expected_stance(soles(0.0, 0.0).tolist(), 0.0)
+    assert not push_apart(stance, PELVIS, np.array([300.0, 300.0])).any()
+
+
+@pytest.mark.parametrize(("ahead_m", "steps"), [(0.0, 0.0), (0.6, 1.0), (-0.6, 1.0)])
+def test_feet_are_side_by_side_or_a_step_apart(ahead_m, steps):
+    assert step_apart(expected_stance(soles(ahead_m).tolist(), 0.0)) == pytest.approx(steps, abs=1e-9)
+
+
+def test_steps_grow_with_the_distance_ahead():
+    steps = [step_apart(expected_stance(soles(ahead).tolist(), 0.0)) for ahead in (0.05, 0.1, 0.15)]
+    assert 0.0 < steps[0] < steps[1] < steps[2] < 1.0
