@@ -15,6 +15,7 @@ BOUNDS = {
     "numerics/levenberg_marquardt.py minimise": "the damping grows faster than powers of 2, up to 1e10",
     "numerics/line_search.py maximise": "each round calls the function, of which calls are given, or shrinks a step",
     "sensors/observability.py observability_matrix": "n blocks",
+    "filters/tracking_loop.py followed": "the frame grows by one, and goes back at most eight times",
     "sensors/supports/sharing.py shares": "each round leaves out one of the parts",
     "labelling/keyframes.py _differing": "count frames",
     "imu/checks.py _mean_force": "each round doubles the reach",

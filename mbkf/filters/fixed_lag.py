@@ -45,8 +45,18 @@ class FixedLagSmoother:
         self._first = 0
         self._given = 0
 
+    @property
+    def earliest(self) -> int:
+        """The first frame whose estimate still waits; it may be given again, as a start."""
+        return self._first + self._given
+
     def push(self, t: int, estimate: Posterior) -> list[tuple[int, Posterior]]:
-        """Frame t's estimate in, smoothed earlier ones out; a restart ends the run before it."""
+        """Frame t's estimate in, smoothed earlier ones out; a restart ends the run before it.
+
+        A start at a frame that is known takes the place of the frames from there on.
+        """
+        if estimate.started:
+            del self._run[max(t - self._first, 0) :]
         done = self.finish() if estimate.started else []
         if not self._run:
             self._first = t

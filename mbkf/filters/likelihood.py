@@ -16,7 +16,7 @@ from mbkf.filters.estimate import Recording
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.plant import StateT
 from mbkf.filters.tracking_filter import TrackingFilter
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
 
 OUTLIER = 0.0
@@ -63,7 +63,7 @@ def trial_likelihood(
     frames = len(seen)
     markers, loads = OUTLIER * 3.0 * seen.sum(axis=1), np.zeros(frames)
     load_readings, known = np.zeros(frames, dtype=int), np.zeros(frames, dtype=bool)
-    for t, estimate, _ in followed(filter, recording):
+    for t, estimate, _ in followed(TrackingLoop(filter), recording):
         known[t], step = True, estimate.record.step
         if not estimate.started and step is not None:
             found, load_readings[t] = step_likelihood(filter.kalman, step)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from mbkf.filters.offset_change import OffsetChanges
 from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_filter import TrackingFilter
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.io.quantities import LATER, quantities, unknown
 
 
@@ -66,10 +66,12 @@ def track(
             if covariance is not None:
                 covariance[t] = filter.covariance(posterior) + spread.offset_covariance
 
+    loop, earliest = TrackingLoop(filter), None
     later: FixedLag | FixedLagSmoother = FixedLag(filter, lag_s)
     if smoothing is not None:
-        later = FixedLagSmoother(filter, smoothing)
-    for t, fresh, seconds in followed(filter, recording):
+        later = smoother = FixedLagSmoother(filter, smoothing)
+        earliest = lambda: smoother.earliest  # noqa: E731
+    for t, fresh, seconds in followed(loop, recording, earliest):
         row = rows[t : t + 1]
         recorder.step(row, fresh, seconds)
         recorder.innovation(row, fresh)
@@ -83,6 +85,8 @@ def track(
         )
     keep(later.finish())
     found = track_of(rows, smoothed=smoothing is not None, covariance=covariance)
+    if loop.watch is not None:
+        found = replace(found, limb_doubts=tuple(loop.watch.doubts))
     return found if changes is None else changes.added_to(found, rows)
 
 

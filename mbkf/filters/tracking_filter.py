@@ -9,9 +9,11 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.innovations import Innovations
+from mbkf.filters.limb_mend import LimbMend, with_limb
 from mbkf.filters.report import AnyReport, FirstMotion
 from mbkf.numerics.later_frames import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.sensors.limb_fit import LimbFits
 
 
 class Start(Protocol):
@@ -20,10 +22,15 @@ class Start(Protocol):
     Attributes:
         restart_after_s: Time without enough readings after which the filter starts anew.
         placed: Instruments show at once where the body is.
+        limbs: Judges and fits limbs by their markers; None for a start without markers.
     """
 
     restart_after_s: float
     placed: bool
+
+    @property
+    def limbs(self) -> LimbFits | None:
+        """Limbs by their markers."""
 
     def __call__(self, recording: Recording, t: int, guess: Array | None) -> FirstMotion | None:
         """The motion at a frame, with a velocity known from the next frames.
@@ -47,6 +54,7 @@ class TrackingFilter:
         model: The body; ``clinical``: its clinical coordinates.
         dt_s: Time between frames.
         restart_after_s: Time without enough readings after which the filter starts anew.
+        limbs: Judges and fits limbs by their markers; None for a filter without markers.
         covariance, spread, wrench_sd, support_sd, level_variance, smooth, predict: Methods of the report.
     """
 
@@ -54,6 +62,7 @@ class TrackingFilter:
         self.report, self.kalman, self.model = report, report.kalman, report.model
         self.clinical, self.dt_s = report.reader.clinical, report.kalman.plant.dt_s
         self.restart_after_s, self._start, self._placed = start.restart_after_s, start, start.placed
+        self.limbs = start.limbs
         self.covariance, self.spread, self.smooth = report.covariance, report.spread, report.smooth
         self.wrench_sd, self.support_sd, self.predict = report.wrench_sd, report.support_sd, report.predict
         self.level_variance = report.level_variance
@@ -91,6 +100,28 @@ class TrackingFilter:
         except (np.linalg.LinAlgError, ValueError) as error:
             found = self.report.unsolved(error, before, frame)
         return found if self._placed else found._replace(placed=False)
+
+    def mended(
+        self, before: Posterior | None, recording: Recording, t: int, mend: LimbMend
+    ) -> Posterior | None:
+        """The estimate of frame t with a limb in a new pose, while the rest goes on; smoothing does not pass it.
+
+        Args:
+            before: Estimate of the frame before; None where the filter starts in frame t.
+            recording: The readings.
+            t: The frame.
+            mend: The limb.
+        """
+        if before is None or "u" in self.kalman.layout:  # torques as states belong to the old pose
+            return self.start(recording, t, mend.q)
+        was, frame, kalman = before.record, recording.frame(t), self.kalman
+        prior = kalman.predict(was.state, was.memory)
+        state = with_limb(self.model, prior.state, kalman.layout, mend)
+        step = kalman.correct(kalman.prepared(state, prior.noise, was.memory), was.memory, frame)
+        found = self.report.posterior(step, before, frame)
+        a = found.a.copy()
+        a[mend.dofs] = 0.0
+        return found._replace(a=a, started=True, tracked=True, lost=False)
 
     def innovations(self, estimate: Posterior) -> Innovations | None:
         """Innovations of an estimate's frame against their expected spread; None at a start."""

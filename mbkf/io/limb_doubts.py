@@ -20,13 +20,15 @@ class LimbDoubt:
     Attributes:
         limb: The limb by the first of its segments (``left_thigh``).
         kind: One of :data:`DoubtKind`.
-        from_s, to_s: Times of its first and its last frame; of a limb that was mended, the frame before the mended one.
+        from_s, to_s: Times of its first and its last frame.
         joint: The segment whose joint lies furthest beyond its range; empty where every joint is within it.
         beyond_rad: How far, rad.
         misfit_m: RMS distance of the limb's markers from the body, m.
         others_m: RMS distance of all other markers, m.
-        mended: The limb was fitted anew, and the frames after ``to_s`` have the better pose.
+        mended: The limb was fitted anew.
         exchanged: Pairs of markers whose names were put right to mend it.
+        right_from_s: Time from which frames have the better pose: after ``to_s``, or earlier where a smoother carried
+            it back; None for a limb that was not mended.
     """
 
     limb: str
@@ -39,6 +41,7 @@ class LimbDoubt:
     others_m: float = 0.0
     mended: bool = False
     exchanged: tuple[tuple[str, str], ...] = ()
+    right_from_s: float | None = None
 
     def __post_init__(self) -> None:
         """Refuses an unknown kind.
@@ -62,7 +65,11 @@ class LimbDoubt:
     def _remedy(self) -> str:
         if self.exchanged:
             pairs = ", ".join(f"{a} and {b}" for a, b in self.exchanged)
-            return f"the names of {pairs} were exchanged and are put right from there on"
+            return f"the names of {pairs} were exchanged and are put right from {self._right} on"
         if self.mended:
-            return "the limb was fitted anew from there on"
+            return f"the limb was fitted anew from {self._right} on"
         return "no better pose was found: check the names of its markers and the subject file"
+
+    @property
+    def _right(self) -> str:
+        return "there" if self.right_from_s is None else f"{self.right_from_s:.2f} s"

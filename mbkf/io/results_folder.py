@@ -76,6 +76,7 @@ class LimbDoubtTold(TypedDict):
     others_m: float
     mended: bool
     exchanged: list[list[str]]
+    right_from_s: float | None
 
 
 class UnexplainedTold(TypedDict):

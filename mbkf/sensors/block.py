@@ -80,6 +80,7 @@ class Notes:
         unobserved: Unmarked dofs that no inertial sensor observes either.
         observed: True if enough instruments read for the body to count as tracked.
         lost: True if most markers lie far from the predicted body.
+        squared_m2: (M,) squared length of the innovation of used markers, 0 of others; None without markers.
         lasting: Mean square of the markers' lasting errors over that of their assumed noise.
         imus: (S, 6) inertial readings that are used; None without any.
         contact: Contact of the feet; None without a block that decides it.
@@ -94,6 +95,7 @@ class Notes:
     unobserved: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
     observed: bool = False
     lost: bool = False
+    squared_m2: Array | None = None
     lasting: float = 1.0
     imus: Array | None = None
     contact: ContactDecision | None = None

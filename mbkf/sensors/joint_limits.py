@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.kernel.tree import CompiledTree
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -63,26 +62,28 @@ class JointLimits(Block[State, Information | None, Notes, None]):
 
         The deviation (nv,) and its Jacobian (nv, nv) are those of :meth:`PostureSensor.deviation`.
         """
+        beyond = self.beyond(deviation)
+        if beyond is None:
+            return None
+        tree = self._sensor.tree
+        if tree is not None:
+            weights = (beyond != 0.0) / self.sd_rad
+            return Information(*tree.posture_information(beyond, jacobian, weights), 0.0, 0)
+        passed = np.flatnonzero(beyond)
+        rows = jacobian[passed] / self.sd_rad
+        return Information(rows.T @ rows, -(beyond[passed] / self.sd_rad) @ rows, 0.0, 0)
+
+    def beyond(self, deviation: Array) -> Array | None:
+        """(nv,) distance of each rotation (nv,) from its range, rad; None where all lie within."""
         if self._sensor.tree is not None:
-            return self._compiled(self._sensor.tree, deviation, jacobian)
+            return self._sensor.tree.limit_excess(deviation, self.lower, self.upper)
         beyond = deviation - np.minimum(np.maximum(deviation, self.lower), self.upper)
         if not np.count_nonzero(beyond):
             return None
         for dofs in self._turning:
             if beyond[dofs].any() and self._is_within(_other_way_round(deviation[dofs]), dofs):
                 beyond[dofs] = 0.0
-        passed = np.flatnonzero(beyond)
-        if not len(passed):
-            return None
-        rows = jacobian[passed] / self.sd_rad
-        return Information(rows.T @ rows, -(beyond[passed] / self.sd_rad) @ rows, 0.0, 0)
-
-    def _compiled(self, tree: CompiledTree, deviation: Array, jacobian: Array) -> Information | None:
-        excess = tree.limit_excess(deviation, self.lower, self.upper)
-        if excess is None:
-            return None
-        weights = (excess != 0.0) / self.sd_rad
-        return Information(*tree.posture_information(excess, jacobian, weights), 0.0, 0)
+        return beyond if beyond.any() else None
 
     def _is_within(self, rotation: Array, dofs: slice) -> bool:
         return bool(((rotation >= self.lower[dofs]) & (rotation <= self.upper[dofs])).all())

@@ -194,6 +194,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
         notes.observed = trusted.tobytes().count(1) >= s.min_markers
         notes.lost = lost and self._track_loss
+        notes.squared_m2 = squared
         if memory.white is not None:
             notes.lasting = max(memory.lasting, 0.0) / memory.noise_scale
         moved = NO_DOFS

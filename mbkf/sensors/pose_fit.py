@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.model.body import SegmentJoint
 from mbkf.numerics.elimination import Border
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
 from mbkf.numerics.rotations import nearest_rotations, quaternion_of
@@ -83,7 +85,33 @@ def _with_root(sensor: MarkerSensor, target_m: Array, weight: Array) -> Array:
     return poses
 
 
-def _with_limbs(sensor: MarkerSensor, target_m: Array, seen: BoolArray, poses: Array) -> Array:
+def joint_by_joint(
+    sensor: MarkerSensor, measured_m: Array, q: Array, joints: Sequence[SegmentJoint]
+) -> Array:
+    """(nq,) the pose q with the ball joints among ``joints`` turned by the markers of their segments, one by one.
+
+    Args:
+        sensor: The markers on the body.
+        measured_m: (M, 3) measured positions of a frame, NaN where missing.
+        q: (nq,) the pose.
+        joints: Joints of a limb, the first one first.
+    """
+    pose, seen = q.copy(), np.asarray(~np.isnan(measured_m).any(axis=1))
+    for joint in joints:
+        pose[joint.q] = sensor.model.neutral()[joint.q]
+    found = _with_limbs(
+        sensor, np.where(seen[:, None], measured_m, 0.0)[None], seen[None], pose[None], joints
+    )
+    return np.asarray(found[0])
+
+
+def _with_limbs(
+    sensor: MarkerSensor,
+    target_m: Array,
+    seen: BoolArray,
+    poses: Array,
+    among: Iterable[SegmentJoint] | None = None,
+) -> Array:
     """The poses (N, nq) with each ball joint turned in place, from the root on.
 
     Args:
@@ -91,9 +119,11 @@ def _with_limbs(sensor: MarkerSensor, target_m: Array, seen: BoolArray, poses: A
         target_m: (N, M, 3) measured positions.
         seen: (N, M) measured markers.
         poses: (N, nq) poses whose joints are neutral.
+        among: Joints that are turned; None for all.
     """
     model, names = sensor.model, np.array(sensor.segments)
-    joints = [joint for joint in model.joints.values() if joint.kind == "spherical"]
+    every = model.joints.values() if among is None else among
+    joints = [joint for joint in every if joint.kind == "spherical"]
     placed = [model.placements(q) for q in poses]
     axes, origins = np.array([one for one, _ in placed]), np.array([one for _, one in placed])
     turns = []

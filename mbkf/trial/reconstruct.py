@@ -23,7 +23,7 @@ from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.preparation.coverage import use_by_subject
-from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right
+from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, renamed_by_filter
 from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import Motion, markers_alone
@@ -94,9 +94,8 @@ def reconstruct(
         alone = _markers_alone(settings, inputs, recording, progress)
         if alone is not None and settings.other_contacts and settings.filter == "dynamic":
             inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone)
-        all_blocks = [*standard(inputs), *blocks] if blocks else None
         result = track(
-            tracking_filter(settings.filter, inputs, all_blocks, plant),
+            tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None, plant),
             recording,
             smoothing=settings.smoothing if settings.smooths else None,
             lag_s=settings.lag_s,
@@ -105,6 +104,7 @@ def reconstruct(
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
+        measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
         checks = trial_checks(shown, subject, inputs, recording, alone, before) if settings.checks else ()
         return judged_result(
@@ -114,7 +114,7 @@ def reconstruct(
                 markers_ignored=dict(use.ignored),
                 markers_explained=use.share,
                 warnings=all_warnings(checks, subject, found),
-                names_exchanged=exchanged,
+                names_exchanged=(*exchanged, *taken_up),
             )
         )
 

@@ -12,7 +12,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.warm_start import WarmStart
 from mbkf.filters.likelihood import step_likelihood, trial_likelihood
 from mbkf.filters.tracking_filter import TrackingFilter
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.foot_contact import FootContact
@@ -98,7 +98,7 @@ def test_frames_of_the_kinematic_filter(kinematic, recording):
     np.testing.assert_array_equal(
         found.marker_readings, 3 * (~np.isnan(recording.markers_m[:, :, 0])).sum(axis=1)
     )
-    for t, estimate, _ in followed(kinematic, recording):
+    for t, estimate, _ in followed(TrackingLoop(kinematic), recording):
         if t not in (20, 25, 39):
             continue
         prior = estimate.record.step.prior.state

@@ -13,7 +13,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.warm_start import WarmStart
 from mbkf.filters.tracking import track
 from mbkf.filters.tracking_filter import TrackingFilter
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
 
 MODEL = reference_model()
@@ -32,7 +32,7 @@ def test_it_is_what_a_track_records():
     kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, everywhere, KinematicSettings())
     tracking = TrackingFilter(KinematicReport(kalman), WarmStart(kalman))
     recorded = track(tracking, recording)
-    course = list(followed(tracking, recording))
+    course = list(followed(TrackingLoop(tracking), recording))
     assert [t for t, _, _ in course] == list(range(3, FRAMES))
     assert tuple(t for t, estimate, _ in course if estimate.started) == recorded.starts
     assert len(recorded.starts) == 2

@@ -18,9 +18,10 @@ class PostureStart:
     Attributes:
         restart_after_s: Time without enough readings after which the filter starts anew.
         placed: False, since no instrument shows at once where the body is.
+        limbs: None, since there are no markers.
     """
 
-    placed = False
+    placed, limbs = False, None
 
     def __init__(self, first: KinematicState, unobservable: BoolArray, restart_after_s: float) -> None:
         """Makes the start.

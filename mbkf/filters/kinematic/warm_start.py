@@ -9,6 +9,7 @@ from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.report import FirstMotion
 from mbkf.sensors.block import Frame
+from mbkf.sensors.limb_fit import LimbFits
 
 WARM_UP_S = 0.25
 """Stretch of a trial that is first run through backwards to start with a velocity."""
@@ -29,12 +30,14 @@ class WarmStart:
         kalman: The kinematic filter that runs backwards.
         restart_after_s: Time without enough markers after which a filter starts anew.
         placed: Markers show at once where the body is.
+        limbs: Judges and fits limbs by their markers; None: limbs are not watched.
     """
 
     placed = True
 
-    def __init__(self, kalman: KinematicFilter) -> None:
+    def __init__(self, kalman: KinematicFilter, limbs: LimbFits | None = None) -> None:
         self.kalman, self.restart_after_s = kalman, kalman.settings.restart_after_s
+        self.limbs = limbs
 
     def __call__(self, recording: Recording, t: int, guess: Array | None) -> FirstMotion | None:
         """The motion at frame t; None where its markers do not fit the body.

@@ -14,7 +14,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Recording
 from mbkf.filters.tracking_filter import TrackingFilter
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.sensors.block import AnyBlock, Rows
 from mbkf.sensors.body_sensors import BodySensors
 from mbkf.sensors.standing_feet import StandingFeet
@@ -38,7 +38,7 @@ def misfit(filter: TrackingFilter, recording: Recording) -> float:
     """
     first, last = round(SETTLED_S / recording.dt_s), looked_at(recording)
     rates, feet = [], []
-    for t, posterior, _ in followed(filter, recording):
+    for t, posterior, _ in followed(TrackingLoop(filter), recording):
         if t >= last:
             break
         if t >= first:

@@ -10,7 +10,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.io.records import MarkerTrajectories
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.neighbours import exchanged, renamed
@@ -129,7 +129,7 @@ def smoothed_markers(
             HP = H @ filter.covariance(estimate)[:nv, :nv]
             places.variance_m2[t] = np.einsum("mij,mij->m", HP, H) / 3.0
 
-    for t, estimate, _ in followed(filter, recording):
+    for t, estimate, _ in followed(TrackingLoop(filter), recording):
         keep(smoother.push(t, estimate))
         progress(t)
     keep(smoother.finish())

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.exchanges import Distances, Exchange, body_distances, find_exchanges, undo_exchanges
@@ -15,6 +16,7 @@ from mbkf.labelling.turned_segments import find_turned
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.preparation.exchanged_sides import crosses, exchanged_by_pose
 
 STANDING_SD_M = 0.008
 """Spread of a marker about its place in the standing trial."""
@@ -39,7 +41,35 @@ def names_put_right(
     )
     placed = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in own])
     neutral = sensor.positions(sensor.model.neutral())
-    found = _found(markers.positions_m, sensor, neutral, body_distances(sensor, placed))
+    distances = body_distances(sensor, placed)
+    found = _found(markers.positions_m, sensor, neutral, distances)
+    if crosses(found, sensor.segments):
+        noise_m = np.array([m.noise_m for m in own])
+        by_pose = exchanged_by_pose(markers.positions_m, sensor, noise_m, 1.0 / markers.rate_hz)
+        if by_pose:
+            right = undo_exchanges(markers.positions_m, by_pose)
+            found = (*by_pose, *_found(right, sensor, neutral, distances))
+    return _changed(markers, found), _exchanges(markers, found)
+
+
+def renamed_by_filter(
+    markers: MarkerTrajectories, doubts: Sequence[LimbDoubt]
+) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...]]:
+    """A trial's trajectories under the names that a filter took up, and these exchanges.
+
+    Args:
+        markers: (T, M, 3) m, as the filter was given them.
+        doubts: Doubts about limbs, times in s since the first frame.
+    """
+    since = np.arange(markers.frames) / markers.rate_hz
+    found = tuple(
+        Exchange(
+            markers.names.index(a), markers.names.index(b), since >= one.right_from_s - 0.5 / markers.rate_hz
+        )
+        for one in doubts
+        for a, b in one.exchanged
+        if one.right_from_s is not None
+    )
     return _changed(markers, found), _exchanges(markers, found)
 
 

@@ -27,6 +27,7 @@ from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.limb_fit import LimbFits
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 Blocks = Sequence[AnyBlock] | None
@@ -56,6 +57,7 @@ class FilterInputs:
         remarks: Remarks on plate readings that were refused.
         other_contacts: Parts besides the feet bear load somewhere in the trial.
         contradictions: Unexplained forces by the motion of markers alone, with their causes.
+        names: (M,) names of the markers; empty where they have none.
         body: Errors of the estimates because the person's body is not known exactly; None where they are not reported.
     """
 
@@ -72,6 +74,7 @@ class FilterInputs:
     remarks: tuple[str, ...] = ()
     other_contacts: bool = False
     contradictions: tuple[UnexplainedLoad, ...] = ()
+    names: tuple[str, ...] = ()
     body: BodyErrors | None = None
 
 
@@ -114,7 +117,8 @@ def _torque(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
 
 
 def _started(report: AnyReport, inputs: FilterInputs) -> TrackingFilter:
-    return TrackingFilter(report, WarmStart(_starter(inputs)))
+    limbs = LimbFits(inputs.sensor, inputs.noise_m, inputs.unobservable, inputs.names)
+    return TrackingFilter(report, WarmStart(_starter(inputs), limbs))
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:

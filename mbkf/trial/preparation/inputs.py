@@ -79,6 +79,7 @@ def trial_inputs(
         settings.torque,
         spread_m=spread_m,
         remarks=remarks,
+        names=shown.names,
         body=_body_errors(sensor, noise_m, shown.names, subject, unobservable),
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)

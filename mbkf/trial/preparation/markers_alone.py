@@ -10,7 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.trial.preparation.filters import FilterInputs, motion_filter
 
 
@@ -39,7 +39,7 @@ def markers_alone(
             q[t], v[t] = posterior.q, posterior.v
 
     smoother = FixedLagSmoother(filter, SmoothingSettings())
-    for t, fresh, _ in followed(filter, recording):
+    for t, fresh, _ in followed(TrackingLoop(filter), recording, lambda: smoother.earliest):
         keep(smoother.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)

@@ -120,7 +120,15 @@ def assemble(
 def in_time(doubts: Sequence[LimbDoubt], times_s: Array) -> tuple[LimbDoubt, ...]:
     """Doubts since the first frame by the times of the trial."""
     begin = float(times_s[0])
-    return tuple(replace(one, from_s=begin + one.from_s, to_s=begin + one.to_s) for one in doubts)
+    return tuple(
+        replace(
+            one,
+            from_s=begin + one.from_s,
+            to_s=begin + one.to_s,
+            right_from_s=None if one.right_from_s is None else begin + one.right_from_s,
+        )
+        for one in doubts
+    )
 
 
 def balance_of(model: Body, result: Track, rate_hz: float, ground: GroundReactions) -> LoadBalance:

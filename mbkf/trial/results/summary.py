@@ -145,6 +145,7 @@ def limb_doubt_summary(doubt: LimbDoubt) -> LimbDoubtTold:
         "others_m": doubt.others_m,
         "mended": doubt.mended,
         "exchanged": [list(pair) for pair in doubt.exchanged],
+        "right_from_s": doubt.right_from_s,
     }
 
 

@@ -10,7 +10,7 @@ from mbkf.errors import FileFormatError, NotObservable
 from mbkf.filters.kinematic.warm_start import warm_up_frames
 from mbkf.filters.record import FrameRecorder, blank
 from mbkf.filters.tracking import track, track_of
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.io.frame_log import FrameLogWriter, read_frame_log
 from mbkf.io.subject import write_subject
 from mbkf.trial.live.filter import LiveFilter, live_inputs
@@ -59,7 +59,9 @@ def test_steps_are_those_of_a_whole_trial(name):
     positions[20:45] = np.nan
     inputs, recording = recorded(positions)
     steps, _ = steps_of(LiveFilter(tracking_filter(name, inputs)), recording)
-    expected = {t: estimate for t, estimate, _ in followed(tracking_filter(name, inputs), recording)}
+    expected = {
+        t: estimate for t, estimate, _ in followed(TrackingLoop(tracking_filter(name, inputs)), recording)
+    }
     assert [step.number for step in steps] == list(range(70))
     assert [step.number for step in steps if step.estimate is not None] == sorted(expected)
     assert sum(estimate.started for estimate in expected.values()) == 2

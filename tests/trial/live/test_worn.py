@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.estimate import Recording
-from mbkf.filters.tracking_loop import followed
+from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.sensors.block import Frame
@@ -47,7 +47,7 @@ def test_frame_by_frame_it_is_the_filter_on_the_whole_recording(turn, imus, cali
     ordered, rest = frames(calibrated, turn.model, imus[200:300])
     none = np.zeros((100, 0, 3)), np.zeros((100, 0, 6))
     recording = Recording(*none, 1.0 / RATE_HZ, ordered, {FOOT_REST: rest})
-    expected = [estimate for _, estimate, _ in followed(calibrated.filter, recording)]
+    expected = [estimate for _, estimate, _ in followed(TrackingLoop(calibrated.filter), recording)]
     live = LiveFilter(calibrated.filter)
     steps = [
         step
