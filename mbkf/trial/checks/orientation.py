@@ -25,6 +25,9 @@ BOUND = 1.5
 """Misfit over that of another way to lay the plate down from which that one is right. The right way's is 0.1 to 0.6
 times the best of the others."""
 
+BOUND_ALL = 2.0
+"""The same of all plates laid down alike. Right captures have 0.1 to 1.1."""
+
 TIMES_SD = 0.5
 """Standard deviation of that ratio between two ways that fit alike."""
 
@@ -58,7 +61,8 @@ def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateR
         outside = [p for p in others if judged[p][0].verdict == "outside"]
         if not outside:
             found |= {p: finding for p, (finding, _) in judged.items()}
-            return tuple(found[p] for p in sorted(found)), evidence.plates
+            alike, plates = (None, evidence.plates) if len(found) > len(others) else _all_axes(evidence)
+            return (*(found[p] for p in sorted(found)), *([] if alike is None else [alike])), plates
         worst = max(outside, key=lambda p: judged[p][0].value or 0.0)
         found[worst], laid_down = judged[worst]
         evidence = evidence.with_plate(worst, laid_down)
@@ -174,6 +178,29 @@ def _axes(evidence: Evidence, p: int) -> tuple[Finding, PlateReadings]:
     if verdict == "outside":
         hint = f"{ways[best][2]} it fits {times:.1f} times as well: check its corners and axes"
     return Finding(name, times, TIMES_SD, "times", BOUND, verdict, hint), tried[best]
+
+
+def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, ...]]:
+    """A finding on all plates laid down alike, as one wrong convention does, and the plates as they fit; None if right.
+
+    Where two feet share the load all along, as in a squat, one plate corrected beside a wrong one fits no better.
+    """
+    frames, gain = carried(evidence), _gain(evidence)
+    if len(evidence.plates) < 2 or frames.sum() < LEAST_S * evidence.rate_hz:
+        return None, evidence.plates
+    ways = tuple(_ways())
+    tried = [
+        tuple(laid(plate, quarters, mirrored) for plate in evidence.plates) for quarters, mirrored, _ in ways
+    ]
+    asked, weight_n = gain * evidence.asked[frames], gain * evidence.weight_n
+    misfit = _misfit(asked - evidence.total[frames], weight_n)
+    fits = [_misfit(asked - evidence.gives(one).sum(axis=1)[frames], weight_n) for one in tried]
+    best = int(np.nanargmin(fits)) if np.isfinite(fits).any() else 0
+    times = misfit / max(fits[best], 1e-9)
+    if not times > BOUND_ALL:
+        return None, evidence.plates
+    hint = f"all plates {ways[best][2]} fit {times:.1f} times as well: check corners and axes"
+    return Finding("axes of all plates", times, TIMES_SD, "times", BOUND_ALL, "outside", hint), tried[best]
 
 
 def _place(name: str, given: Array, missing: Array, rate_hz: float) -> Finding:

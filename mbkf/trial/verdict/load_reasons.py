@@ -38,7 +38,7 @@ class Rule(NamedTuple):
 RULES = (
     Rule(mass.NAME, Bounds(5.0, 15.0), "torques are those of another mass", "scale with the right mass"),
     Rule(
-        "axes of plate",
+        "axes of ",
         Bounds(2.0, 3.0),
         "shear and centre of pressure point the wrong way",
         "correct the plate's corners and axes",

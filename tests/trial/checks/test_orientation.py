@@ -79,3 +79,20 @@ def test_frames_count_in_which_plates_carry_all():
     )
     assert carried(given)[10:40].all()
     assert not carried(half)[:40].any()
+
+
+@pytest.mark.parametrize("quarters", [1, 3])
+def test_plates_that_share_the_load_all_along_are_found_where_all_lie_alike(quarters):
+    """In a squat no plate carries most of the load: one corrected beside the other, which is wrong, fits no better."""
+    right = plates("squat")
+    found, back = axes_findings(evidence("squat", read=tuple(laid(one, quarters, False) for one in right)))
+    assert [one.name for one in found if one.verdict == "outside"] == ["axes of all plates"]
+    assert f"turned by {360 - 90 * quarters}°" in found[-1].hint
+    for one, other in zip(back, right, strict=True):
+        np.testing.assert_allclose(one.force_n, other.force_n, atol=1e-9)
+
+
+def test_right_plates_under_a_squat_are_left_alone():
+    found, same = axes_findings(evidence("squat"))
+    assert "outside" not in {one.verdict for one in found}
+    assert all(one is other for one, other in zip(same, plates("squat"), strict=True))
