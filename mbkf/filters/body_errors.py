@@ -260,9 +260,11 @@ class BodyErrors:
 
 def _varied(model: Body, directions: Array) -> Sequence[HumanModel]:
     """The body with factors and joint centres a little further along each direction (n, K + E)."""
-    inertia = model.inertia if isinstance(model, HumanModel) else None
+    inertia, centres_m = (model.inertia, model.centres_m) if isinstance(model, HumanModel) else (None, 0.0)
     count = len(model.scale)
     return [
-        HumanModel(model.description, model.scale + one[:count], model.mass_kg, inertia, one[count:])
+        HumanModel(
+            model.description, model.scale + one[:count], model.mass_kg, inertia, centres_m + one[count:]
+        )
         for one in SIZE_STEP * directions
     ]

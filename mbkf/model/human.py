@@ -34,6 +34,7 @@ class HumanModel(Body):
 
     Attributes:
         inertia: By segment, the person's own mass and centre of mass, where they differ from the table.
+        centres_m: (E,) displacements of joint centres from where the scale factors put them.
     """
 
     def __init__(
@@ -64,8 +65,9 @@ class HumanModel(Body):
         self.inertia, self._unit_kg = _own_inertia(description, inertia or {})
         self.roles: Roles = description.roles
         self.scale = read_only(scale)
-        displaced = np.zeros((len(description.joint_centres), 3)) if centres_m is None else centres_m
         of_centres = [centre.segment for centre in description.joint_centres]
+        displaced = np.zeros(3 * len(of_centres)) if centres_m is None else np.ravel(centres_m)
+        self.centres_m = read_only(displaced)
         self._displaced = dict(zip(of_centres, np.reshape(displaced, (-1, 3)), strict=True))
         if self.scale.shape != (len(description.scale_factors),):
             raise ShapeError("scale", f"({len(description.scale_factors)},)", self.scale.shape)

@@ -41,7 +41,8 @@ class Case:
 
     def varied(self, step):
         """The markers on the body that is wrong by ``step`` times the root."""
-        factors, centres = self.model.scale + step * self.factors, step * self.centres
+        factors = self.model.scale + step * self.factors
+        centres = self.model.centres_m + step * self.centres
         body = HumanModel(self.model.description, factors, self.model.mass_kg, centres_m=centres)
         sensor = self.errors.sensor
         shares = FlexedSkin(self.model, sensor.segments).shares(self.q)
@@ -55,7 +56,9 @@ class Case:
 def case(*parts):
     """The errors of wrong factors, wrong places, wrong displacements by flexion, or several of them."""
     rng = np.random.default_rng(5)
-    model = random_model(rng)
+    drawn = random_model(rng)
+    shift = 0.01 * np.random.default_rng(7).normal(size=len(centre_names(drawn.description)))
+    model = HumanModel(drawn.description, drawn.scale, drawn.mass_kg, centres_m=shift)
     sensor, names = protocol_sensor(model)
     noise_m = rng.uniform(0.003, 0.015, len(names))
     factors = 0.03 * rng.normal(size=18) * ("factors" in parts)
