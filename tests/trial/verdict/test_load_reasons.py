@@ -8,7 +8,7 @@ from mbkf.io.contacts import ContactInterval
 from mbkf.io.findings import Finding, judged
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, Reason, gravest
-from mbkf.trial.checks import clocks, lengths, mass, newton, places, rigidity
+from mbkf.trial.checks import clocks, floor, lengths, mass, newton, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.load_reasons import check_reasons, load_reasons
 
@@ -39,6 +39,8 @@ def all_of(word):
         (clocks.NAME, -60.0, "do not use"),
         ("axes of plate '1'", 1.7, "use"),
         ("axes of plate '1'", 5.0, "do not use"),
+        (floor.NAME, -104.0, "use"),
+        (floor.NAME, 130.0, "look"),
         ("place of plate 'r'", 127.0, "look"),
         ("place of plate 'r'", 200.0, "do not use"),
     ],
