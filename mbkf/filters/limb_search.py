@@ -29,6 +29,9 @@ NAMES_LIKELIER = 0.4
 FITS_M, BEYOND_RAD = 0.03, np.radians(12.0)
 """A new pose fits its markers better than this (RMS), and no joint lies further beyond its range."""
 
+WORSE, CLOSE_M = 1.5, 0.005
+"""... nor so many times worse than the pose in doubt, unless it fits as well as this: ranges alone move no limb."""
+
 GOOD_M = 0.015
 """A pose that fits better than this, within its ranges, needs no other start, and no other names."""
 
@@ -181,7 +184,8 @@ class LimbSearch:
         """Limbs as they are estimated."""
         every = [(limb, look) for limb in of for look in looks]
         found = [self._fits.judged(limb, look.q, named(look.markers_m, order)) for limb, look in every]
-        return Hypothesis(of, order, (), sum(one.cost for one in found), 0.0, 0.0)
+        worst = max((one.rms_m for one in found), default=0.0)
+        return Hypothesis(of, order, (), sum(one.cost for one in found), worst, 0.0)
 
     def _fitted(
         self,
@@ -265,8 +269,10 @@ def _same(model: Body, q: Array, other: Array, dofs: NDArray[np.intp]) -> bool:
 
 
 def _better(one: Hypothesis, now: Hypothesis, frames: int) -> bool:
-    """True where a pose is possible and far likelier than the present one."""
-    return one.possible and one.cost <= min(LIKELIER * now.cost, now.cost - LESS * frames)
+    """True where a pose is possible, far likelier than the present one, and fits the markers about as well."""
+    if not one.possible or one.worst_m > max(WORSE * now.worst_m, CLOSE_M):
+        return False
+    return one.cost <= min(LIKELIER * now.cost, now.cost - LESS * frames)
 
 
 def _with(q: Array, other: Array, limb: Limb) -> Array:

@@ -109,6 +109,8 @@ def order_starts(fits: LimbFits, limb: Limb, measured_m: Array, misplaced: BoolA
     names = np.array(fits.sensor.segments, dtype=object)
     for joint in limb.joints:
         own = np.flatnonzero(names == joint.segment)
+        if len(own) == 2 and not misplaced[own].any():  # exchanged or not, they fit alike
+            continue
         if 2 <= len(own) <= MOST_PERMUTED and np.count_nonzero(~np.isnan(measured_m[own, 0])) >= 2:
             for pairs in likely_pairs(fits.sensor.local_m[own], measured_m[own]):
                 yield _exchanged(len(names), [(own[a], own[b]) for a, b in pairs])
