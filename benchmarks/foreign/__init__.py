@@ -10,13 +10,16 @@ from __future__ import annotations
 from benchmarks.checks import Check, Context, information
 from benchmarks.dynamic.methods import Mapper, in_parallel
 from benchmarks.foreign.errors import Judged
+from benchmarks.foreign.followed import CAUSAL
 from benchmarks.foreign.medians import median_rows, read_baseline
+from benchmarks.foreign.plate_free import plate_free_rows, without_plates
 from benchmarks.foreign.rows import (
     CHOSEN_ON,
     SHOWN_ON,
     bounded_rows,
     calibration_rows,
     shown_rows,
+    smoothing_rows,
     static_rows,
 )
 from benchmarks.foreign.score import score
@@ -42,6 +45,10 @@ def run(context: Context) -> list[Check]:
             everyone += found
             rows += _session_rows(one, found)
             rows += _other_rows(one, mapper)
+            rows += smoothing_rows(one.name, found, one.found(SESSION, mapper, CAUSAL))
+            if not one.own or one.shown:
+                followed = mapper(without_plates, one.persons)
+                rows += plate_free_rows(one.name, [each for held in followed for each in held])
     return [*rows, *calibration_rows("all persons, session", score(everyone))]
 
 

@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from benchmarks.checks import Check, information, within
+from benchmarks.foreign.errors import Judged
 from benchmarks.foreign.score import Score
+from benchmarks.references import rms
 
 GROUP_COVER = (0.88, 0.98)
 CALIBRATION = 0.05
@@ -115,3 +119,22 @@ def shown_rows(name: str, score: Score) -> list[Check]:
         ("expected calibration error of angles", score.angles.calibration, ""),
     )
     return [information(f"{name}: {what}", value, unit) for what, value, unit in numbers]
+
+
+def smoothing_rows(name: str, smoothed: Sequence[Judged], causal: Sequence[Judged]) -> list[Check]:
+    """Smoothing is never worse than filtering: moments of the same trials in frames that both state.
+
+    Args:
+        name: Whose rows they are.
+        smoothed: Their smoothed motions.
+        causal: The same motions, causal.
+    """
+    ratios = {}
+    for one, other in zip(smoothed, causal, strict=True):
+        late, early = (np.array([series.error for series in each.moments]) for each in (one, other))
+        both = np.isfinite(late) & np.isfinite(early)
+        if both.any():
+            ratios[f"{one.person}, {one.motion}"] = rms(late[both]) / rms(early[both])
+    worst = max(ratios, key=lambda trial: ratios[trial], default="")
+    most = ratios.get(worst, float("nan"))
+    return [Check(f"{name}: moments, smoothed over causal RMS, largest ({worst})", most, 1.0, "<=")]

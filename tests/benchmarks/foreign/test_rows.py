@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from benchmarks.checks import Check
-from benchmarks.foreign.rows import CHOSEN_ON, bounded_rows, calibration_rows, static_rows
+from benchmarks.foreign.errors import Judged, Series
+from benchmarks.foreign.rows import CHOSEN_ON, bounded_rows, calibration_rows, smoothing_rows, static_rows
 from benchmarks.foreign.score import AngleScore, OffsetScore, Score
 
 GOOD = AngleScore(2.0, 1.0, 0.94, 0.94, 0.03, 2.0)
@@ -51,3 +53,18 @@ def test_each_number_outside_fails_its_row(score: Score, name: str) -> None:
 
 def test_static_persons_have_a_bound_of_their_own() -> None:
     assert failed(replace(SCORE, legs=replace(GOOD, cover=0.87)))[1:] == ["s: legs, share in 95 % intervals"]
+
+
+def test_a_trial_that_smoothing_makes_worse_fails_by_name() -> None:
+    def moments(motion: str, error: list[float]) -> Judged:
+        values = np.array(error)
+        series = Series("one", motion, "legs", "knee_angle_r", values, values, values)
+        return Judged("one", motion, (), (series,), {})
+
+    smoothed = [moments("walk", [1.0, 1.0, np.nan]), moments("run", [3.0, 3.0, 9.0])]
+    causal = [moments("walk", [2.0, 2.0, 50.0]), moments("run", [2.0, 2.0, np.nan])]
+    (row,) = smoothing_rows("p", smoothed, causal)
+    assert "one, run" in row.name
+    assert row.value == pytest.approx(1.5)
+    assert not row.passed
+    assert smoothing_rows("p", smoothed[:1], causal[:1])[0].passed
