@@ -87,6 +87,15 @@ ELSEWHERE = {
     "sensors.marker_sensor.MarkerSensor.reading_of": "sensors/test_scaled_markers.py reading",
     "sensors.scaled_markers.ScaledMarkers.reading": "sensors/test_scaled_markers.py",
     "sensors.scaled_markers.ScaledReading.by_factors": "sensors/test_scaled_markers.py",
+    "filters.dynamic.level_rows.LevelRows.at": "filters/dynamic/test_level_rows.py",
+    "filters.section_errors.SectionErrors.at": "filters/test_section_errors.py",
+    "model.trunk_sections.SectionState.by_root": "model/test_trunk_sections.py",
+    "model.trunk_sections.SectionState.by_state": "model/test_trunk_sections.py",
+    "model.trunk_sections.TrunkSections.by_root": "model/test_trunk_sections.py",
+    "model.trunk_sections.TrunkSections.state": "model/test_trunk_sections.py",
+    "scaling.records.ShownMarkers.by_factors": "scaling/test_problem.py test_gradient_by_poses_factors_and_offsets",
+    "scaling.records.ShownMarkers.by_pose": "scaling/test_problem.py test_gradient_by_poses_factors_and_offsets",
+    "sensors.pose_fit.joint_by_joint": "sensors/test_pose_fit.py",
 }
 """What holds no derivative of its own or is algebra: the test file that checks each, and the name it has
 there where that is another."""

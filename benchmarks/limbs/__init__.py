@@ -1,7 +1,8 @@
 """Limbs turned over, mirrored or exchanged, at the start or at any frame: mended and reported, causally and smoothed.
 
 Faults are put into clean trials (:mod:`benchmarks.limbs.faults`); the same trial without a fault is the reference.
-Constants of :mod:`mbkf.filters.limb_watch` were chosen on the trials of :data:`benchmarks.limbs.trials.CHOSEN_ON`.
+Constants of :mod:`mbkf.filters.limb_watch` were chosen on the trials of :data:`benchmarks.limbs.trials.CHOSEN_ON`; the
+other trials are no independent proof, since four rules came from their first failures.
 """
 
 from __future__ import annotations

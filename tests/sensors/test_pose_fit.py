@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.pose_fit import fit_most_markers, fit_pose, segment_by_segment
+from mbkf.sensors.pose_fit import fit_most_markers, fit_pose, joint_by_joint, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model, worst
 
@@ -48,6 +48,22 @@ def test_the_body_may_face_anywhere(body, heading):
     measured = sensor.positions(truth)
     assert worst(model.difference(truth, segment_by_segment(sensor, measured))[3:6]) < 0.2
     assert pose_error(model, fitted(sensor, measured).q, truth) < 1e-6
+
+
+def test_a_limb_is_turned_by_its_own_markers_and_the_rest_stays(body):
+    """A hip turned back to front comes back from exact markers, whatever it was; no other joint moves."""
+    model, sensor, _ = body
+    truth = moderate_pose(model, np.random.default_rng(4))
+    balls = (joint for joint in model.joints.values() if joint.kind == "spherical")
+    ball = max(balls, key=lambda joint: sensor.segments.count(joint.segment))
+    assert sensor.segments.count(ball.segment) >= 3
+    wrong = truth.copy()
+    wrong[ball.q] = [0.0, 0.0, 1.0, 0.0]
+    found = joint_by_joint(sensor, sensor.positions(truth), wrong, [ball])
+    assert pose_error(model, found, truth) < 0.05
+    others = np.ones(len(truth), bool)
+    others[ball.q] = False
+    assert_near(found[others], wrong[others], 0.0)
 
 
 def test_the_fit_turns_with_the_markers(body):
