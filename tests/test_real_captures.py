@@ -61,13 +61,15 @@ def test_rajagopal_walk(real_data):
     found = followed(folder / "motion_capture_walk.trc", 85.07, static, forces, filter="kinematic")
     assert marker_rms_mm(found) <= 6.0
     assert found.names_exchanged == ()
+    # The static trial has raised arms: with shoulders that rise, the pelvis agrees better with its markers (0.3° for
+    # 1.0°), and the knee's torque worse with OpenSim's body, which has no clavicle (r 0.86 for 0.88).
     ours, theirs = (
         low_passed(opensim_table(found, "torques.sto")),
         read_storage(folder / "reference_walk" / "id_walk.sto"),
     )
     for coordinate, r, rms in (
         ("ankle_angle", 0.98, 0.1),
-        ("knee_angle", 0.88, 0.21),
+        ("knee_angle", 0.86, 0.21),
         ("hip_flexion", 0.88, 0.21),
     ):
         agree = worst_side(ours, theirs, coordinate, suffix="_moment", factor=1 / 85.07)

@@ -39,6 +39,7 @@ class MountErrors(BodyErrors):
         self._model, self._balance, self._inertia = model, NewtonEuler(model), InertiaErrors(model)
         self._joints = [model.joint(name).joint_id for name in segments]
         self._turns = np.asarray(turn_sd_rad)
+        self._varied, self._along = [], np.zeros((0, self._turns.size))  # sizes are taken as known
 
     def pose_roots(self, poses: Array) -> list[Array]:
         """W L (nv, 3 S) at each of the configurations (N, nq), L the spreads of the turns."""

@@ -39,7 +39,8 @@ class SectionErrors:
         self._varied = [TrunkSections(one) for one in varied]
         here = self._sections.transports
         self._moved = [
-            np.array([one.transports[k] for one in self._varied]) - here[k] for k in range(len(here))
+            np.array([one.transports[k] for one in self._varied]).reshape(-1, *here[k].shape) - here[k]
+            for k in range(len(here))
         ]
         self._columns = [self._shares(model, k) for k in range(len(self._sections.levels))]
 
@@ -114,5 +115,6 @@ class SectionErrors:
         """
         there = [one.upper_wrenches(q, v, a) for one in self._varied]
         levels = range(len(self._sections.levels))
-        changes = [np.array([one[k] for one in there]).T - state.wrench[0, k][:, None] for k in levels]
+        upper = [np.array([one[k] for one in there]).reshape(-1, ROOT).T for k in levels]
+        changes = [upper[k] - state.wrench[0, k][:, None] for k in levels]
         return changes, [state.by_root[k][:, 3:] @ self._moved[k] for k in levels]

@@ -73,7 +73,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     problem = _problem(subject, trial)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     poses = segment_by_segment(sensor, problem.measured_m)
-    problem = problem.with_shoulders(poses)
+    problem = problem.with_shoulders(poses, subject.standing_q)
     state = problem.start(poses)
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
@@ -94,7 +94,8 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
-    local += problem.shoulders.girdle.on_trunk @ state.girdle_m.reshape(-1, 3)
+    if state.girdle_m.size:
+        local += problem.shoulders.girdle.on_trunk @ state.girdle_m.reshape(-1, 3)
     shares = problem.usual_shares(state.poses)
     before = covariance_of(subject, problem.body)
     if before is not None:
@@ -111,6 +112,8 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
 def _centres(subject: Subject, body: BodyDescription, state: ScalingState) -> dict[str, float]:
     """Displacements of the joints' centres with those of the shoulders in the trial."""
     found = dict(subject.joint_centres_m)
+    if not state.girdle_m.size:
+        return found
     for name, moved in zip(shoulder_names(body), state.girdle_m.tolist(), strict=True):
         found[name] = found.get(name, 0.0) + moved
     return found

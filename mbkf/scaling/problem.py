@@ -139,9 +139,14 @@ class ScalingProblem:
         raised = self.shoulders.displaced_m(state.girdle_m)
         return self._worn.places(state.poses, state.factors, moved, raised) - self.measured_m
 
-    def with_shoulders(self, poses: Array) -> ScalingProblem:
-        """The same problem with shoulders that are displaced in each trial as configurations (N, nq) let expect."""
-        return self.with_prior(self.shoulders.expected(self.prior, self.body, poses))
+    def with_shoulders(self, poses: Array, standing: Array | None = None) -> ScalingProblem:
+        """The same problem with shoulders that are displaced in each trial as configurations (N, nq) let expect.
+
+        Args:
+            poses: (N, nq) configurations.
+            standing: (nq,) that in which the person was scaled before.
+        """
+        return self.with_prior(self.shoulders.expected(self.prior, self.body, poses, standing))
 
     def usual_shares(self, poses: Array) -> Array:
         """(D, M) mean share of each displacement in the frames (N, nq) that show the marker."""

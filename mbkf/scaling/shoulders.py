@@ -17,6 +17,10 @@ from mbkf.scaling.records import ScalingPrior
 from mbkf.sensors.shoulder_girdle import ShoulderGirdle, girdle_prior
 
 
+RAISED = 0.46
+"""f of an arm at 45°: shoulders stay on the trunk where no arm is raised beyond it, here or where one was scaled."""
+
+
 class TrialShoulders:
     """G shoulders in the T trials of N frames.
 
@@ -57,16 +61,22 @@ class TrialShoulders:
         found = np.einsum("mg,nt,ngij->nmitgj", self.girdle.carried, self.of_trial, trunks)
         return np.asarray(found.reshape(*found.shape[:3], -1))
 
-    def expected(self, prior: ScalingPrior, body: BodyDescription, poses: Array) -> ScalingPrior:
-        """A prior with displacements as the arms' elevation in each trial lets expect.
+    def expected(
+        self, prior: ScalingPrior, body: BodyDescription, poses: Array, standing: Array | None = None
+    ) -> ScalingPrior:
+        """A prior with displacements as the arms' elevation in each trial lets expect, if arms are raised in any.
 
         Args:
             prior: The prior of other unknowns.
             body: The reference body.
             poses: (N, nq) configurations.
+            standing: (nq,) that in which the person was scaled before.
         """
         frames = np.maximum(self.of_trial.sum(axis=0), 1.0)
         raised = (self.of_trial / frames).T @ self.girdle.raised(poses)
+        before = np.zeros(0) if standing is None else self.girdle.raised(standing)
+        if max(raised.max(initial=0.0), before.max(initial=0.0)) < RAISED:
+            return prior
         mean, covariance = girdle_prior(body, raised)
         return replace(prior, girdle_m=mean, girdle_covariance=covariance)
 

@@ -7,6 +7,7 @@ import pytest
 
 from mbkf.errors import NotConverged, NotObservable
 from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import STANDING_KEY
 from mbkf.model.human import HumanModel, reference_body
 from mbkf.model.joint_centres import centre_names
 from mbkf.model.protocol import load_protocol
@@ -141,6 +142,9 @@ def test_shoulders_that_hang_lower_in_the_trial_leave_the_pelvis_where_it_is():
     """
     rng = np.random.default_rng(7)
     person = subject_of(random_model(rng))
+    raised = HumanModel.of(person).neutral()
+    raised[HumanModel.of(person).joint("left_upper_arm").q] = [np.sin(0.5), 0.0, 0.0, np.cos(0.5)]
+    person = replace(person, report={**person.report, STANDING_KEY: raised.tolist()})
     body = reference_body(person)
     truth = HumanModel.of(replace(person, joint_centres_m=LOWER))
     segments = [m.segment for m in person.markers]

@@ -30,6 +30,7 @@ def test_frames_of_a_trial_share_its_displacements_and_markers_follow_by_their_s
 
 def test_displacements_are_expected_by_the_mean_elevation_of_a_trial():
     poses = np.array([moderate_pose(MODEL, RNG) for _ in TRIAL])
+    poses[0, MODEL.joint("right_upper_arm").q] = [np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
     prior = ScalingPrior(np.ones(2), np.eye(2), np.zeros((1, 3)), np.eye(3))
     found = TrialShoulders(GIRDLE, TRIAL).expected(prior, MODEL.description, poses)
     raised = GIRDLE.raised(poses)
@@ -39,3 +40,15 @@ def test_displacements_are_expected_by_the_mean_elevation_of_a_trial():
     information = np.linalg.inv(np.diag(np.arange(1.0, 2 + 12 + 3 + 1)))
     others = np.diag(np.r_[1.0, 2.0, 15.0, 16.0, 17.0])
     np.testing.assert_allclose(np.linalg.inv(without_shoulders(information, found, 2)), others, rtol=1e-12)
+
+
+def test_shoulders_stay_on_the_trunk_where_no_arm_is_raised_here_or_where_one_was_scaled():
+    hanging, raised = MODEL.neutral(), MODEL.neutral()
+    raised[MODEL.joint("left_upper_arm").q] = [np.sin(0.5), 0.0, 0.0, np.cos(0.5)]
+    prior = ScalingPrior(np.ones(2), np.eye(2), np.zeros((1, 3)), np.eye(3))
+    low, high = np.array([hanging] * 3), np.array([hanging, hanging, raised])
+
+    def free(poses, standing=None):
+        return TrialShoulders(GIRDLE, TRIAL).expected(prior, MODEL.description, poses, standing).raised
+
+    assert (free(low), free(low, hanging), free(high), free(low, raised)) == (0, 0, 12, 12)

@@ -81,12 +81,15 @@ def test_torques_are_better_than_inverse_dynamics():
 
 
 def test_a_lag_without_plates_lies_between_the_filter_and_its_smoother():
-    """Errors of the feet's forces; what is still to come corrects them most where no plate reads them."""
+    """Errors of the force on both feet; what is still to come corrects it most where no plate reads it.
+
+    How much the feet push apart is known from no frame.
+    """
     names = tuple(plate.name for plate in capture().plates)
-    true = truth("foot_wrench")[LATE, :, :3]
+    true = truth("foot_wrench")[LATE, :, :3].sum(axis=1)
     runs = ({}, {"lag_s": 0.02}, {"lag_s": 0.06}, {"smooth": True})
     found = [made(without_plates=names, **run) for run in runs]
-    causal, short, lagged, smooth = (rms(one.foot_wrench[LATE, :, :3] - true) for one in found)
+    causal, short, lagged, smooth = (rms(one.foot_wrench[LATE, :, :3].sum(axis=1) - true) for one in found)
     assert smooth < 1.1 * lagged and lagged < short < causal
     assert lagged < 0.8 * causal
     assert [one.smoothed for one in found] == [False, False, False, True]
@@ -183,7 +186,12 @@ def test_without_plates_the_feet_carry_the_body():
     assert (found.foot_contact == -1).all(axis=1).mean() > 0.9
     total = found.foot_wrench[:, :, 2].sum(axis=1)
     assert rms((total - truth("foot_wrench")[:, :, 2].sum(axis=1))[LATE]) < 100.0
-    off = np.abs((found.tau - truth("tau")) / found.sd_tau)[LATE, 6:]
+    # This squat's feet push towards the pelvis, which persons in standing do by a half at most: frontal torques of the
+    # legs, which that push decides, are left out.
+    push = [name[-2:] in ("_x", "_z") and "_hand" not in name and "arm" not in name for name in found.dof_names]
+    decided = ~np.array(push)
+    decided[:6] = False
+    off = np.abs((found.tau - truth("tau")) / found.sd_tau)[LATE][:, decided]
     assert rms(off) < 1.0 and np.percentile(off, 99) < 3.0
     assert np.median(found.sd_tau[LATE]) > np.median(made().sd_tau[LATE])
 

@@ -197,7 +197,9 @@ def _frames(points: Array, neutral: Array, segments: NDArray[np.str_]) -> tuple[
     lengths, spread = np.linalg.norm(slopes, axis=2), (centred**2).sum(axis=(1, 2))
     clear = (lengths > 0.0).all(axis=1)
     units = slopes / np.where(clear[:, None], lengths, np.nan)[:, :, None]
-    handedness = np.linalg.det(units) if spread_enough.all() else unknown
+    handedness = unknown
+    if spread_enough.all():
+        handedness = np.where(clear, np.linalg.det(np.where(clear[:, None, None], units, 0.0)), np.nan)
     explained = 1.0 - (left**2).sum(axis=(0, 2)) / np.where(spread > 0.0, spread, np.inf)
     stretch = np.where(clear, lengths[:, -1], np.nan)
     return units[:, -1], stretch, handedness, np.where(spread > 0.0, explained, 0.0)

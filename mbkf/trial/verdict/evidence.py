@@ -66,8 +66,9 @@ class Evidence:
 
     @property
     def trunk_shown(self) -> bool:
-        """True where instruments show the trunk, half of the body's mass: without it Newton's law shows little."""
-        return TRUNK not in self.unshown
+        """True where instruments show the trunk, half of a person's mass: without it Newton's law shows little."""
+        modelled = not self.part_of or TRUNK in self.part_of.values()
+        return modelled and TRUNK not in self.unshown
 
 
 def evidence_of(r: Reconstruction) -> Evidence:
