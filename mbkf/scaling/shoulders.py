@@ -16,7 +16,6 @@ from mbkf.numerics.positive import eliminated
 from mbkf.scaling.records import ScalingPrior
 from mbkf.sensors.shoulder_girdle import ShoulderGirdle, girdle_prior
 
-
 RAISED = 0.46
 """f of an arm at 45°: shoulders stay on the trunk where no arm is raised beyond it, here or where one was scaled."""
 
