@@ -76,7 +76,7 @@ def _frame(r: Reconstruction, k: int) -> LiveFrame:
         wrench=r.foot_wrench[t],
         wrench_sd=np.full((2, 6), np.nan) if r.foot_wrench_sd is None else r.foot_wrench_sd[t],
         plates=np.full((0, 6), np.nan), measured_m=r.measured_m[t], predicted_m=r.predicted_m[t],
-        unlabelled_m=np.empty((0, 3)), angle_sd=r.sd_q[t], angle_offset=0.0 * r.sd_q[t],
+        unlabelled_m=np.empty((0, 3)), angle_sd=r.angles_sd[t], angle_offset=0.0 * r.angles_sd[t],
         torques_offset=0.0 * r.sd_tau[t], wrench_offset=np.zeros((2, 6)), latency_s=float(r.step_seconds[t]), lost=0,
         rate_hz=r.rate_hz, tracked=bool(r.tracked[t]), started=k == 0,
     )  # fmt: skip
