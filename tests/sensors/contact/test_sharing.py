@@ -69,9 +69,10 @@ def test_it_does_not_matter_where_the_laboratory_has_its_origin(reading, ahead, 
     R, shift = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), np.array([3 * east, 3 * north, up])
     turned = np.concatenate([R @ total[:3], R @ total[3:] + np.cross(shift, R @ total[:3])])
     here, there = shared(total, feet), shared(turned, feet @ R.T + shift, R @ PELVIS + shift, up)
-    assert_near(there.wrench[:, :3], here.wrench[:, :3] @ R.T, 1e-7)
+    # A foot that carries nothing but rounding ε takes √ε of a shear of up to 283 N: 4e-6 N.
+    assert_near(there.wrench[:, :3], here.wrench[:, :3] @ R.T, 1e-5)
     moments = here.wrench[:, 3:] @ R.T + np.cross(shift, there.wrench[:, :3])
-    np.testing.assert_allclose(there.wrench[:, 3:], moments, atol=1e-6)
+    np.testing.assert_allclose(there.wrench[:, 3:], moments, atol=1e-5)
     np.testing.assert_allclose(there.centres_m, here.centres_m @ R.T + shift, atol=1e-9)
     np.testing.assert_allclose(there.sd, here.sd, rtol=1e-9)
 
