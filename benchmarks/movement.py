@@ -1,7 +1,7 @@
 """Which movement a trial is, recognised from its markers: synthetic motions and public captures, named right or not.
 
-Limits were set on the first two persons of each synthetic motion, on ten captures of the list and on two persons made
-from OpenSim bodies; the other persons show them.
+All captures and the synthetic persons 0 to 4 were looked at while limits were set; the synthetic persons 10 to 12, of
+our own body and motions, were not.
 """
 
 from __future__ import annotations
@@ -9,15 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.checks import Check, Context
+from benchmarks.checks import Check, Context, information
 from mbkf.io.capture import read_capture
 from mbkf.io.session import TrialKind
 from mbkf.study.survey.movement import kind_of_markers
 from mbkf.trial.synth import synthesise
 
-PERSONS = range(5)
-CHOSEN = 2
-"""Persons on whom limits were set: the first ones."""
+PERSONS = {"chosen on": range(5), "shown on": range(10, 13)}
+"""Persons by their part in the choice of limits."""
 
 MADE_PERCENT, PUBLIC_PERCENT = 98.0, 95.0
 
@@ -106,7 +105,7 @@ CAPTURES = {
 def run(context: Context) -> list[Check]:
     """Shares of movements named right; those named wrong follow with the name that they got."""
     rows: list[Check] = []
-    for label, persons in (("chosen on", PERSONS[:CHOSEN]), ("shown on", PERSONS[CHOSEN:])):
+    for label, persons in PERSONS.items():
         named = {
             f"{motion} {seed}": (kind, kind_of_markers(synthesise(motion, seed=seed)[1].trial.markers))
             for motion, kind in MOTIONS.items()
@@ -115,7 +114,7 @@ def run(context: Context) -> list[Check]:
         rows += _rows(f"synthetic, {label}", named, MADE_PERCENT)
     data = context.require_data()
     public = {name: (kind, _kind(data / name)) for name, kind in CAPTURES.items()}
-    return [*rows, *_rows("public", public, PUBLIC_PERCENT)]
+    return [*rows, *_rows("public, chosen on", public, PUBLIC_PERCENT)]
 
 
 def _kind(path: Path) -> TrialKind:
@@ -127,4 +126,4 @@ def _rows(title: str, named: dict[str, tuple[TrialKind, TrialKind]], percent: fl
     yield Check(f"{title}: movements named right", 100.0 * right / len(named), percent, ">=", "%")
     for name, (kind, found) in named.items():
         if kind != found:
-            yield Check(f"{title}: {name}, {kind.value} named {found.value}", 1.0, float("inf"), "<=")
+            yield information(f"{title}: {name}, {kind.value} named {found.value}", 1.0)

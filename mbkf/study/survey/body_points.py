@@ -1,4 +1,4 @@
-"""Feet, pelvis and top of the body of a capture, found from the markers alone, whatever their names.
+"""Feet and pelvis of the body in a capture, found from the markers alone, whatever their names.
 
 Feet are the low markers that keep their distances among each other; the pelvis carries the markers half-way up.
 """
@@ -30,14 +30,12 @@ class BodyPoints:
         feet_m: (T, 2, 3) centres of the feet's markers.
         lifts_m: (T, 2) lowest marker of each foot above its lowest height.
         pelvis_m: (T, 3) centre of the markers half-way up.
-        top_m: (T,) height of the highest marker; NaN where it is not seen.
         yaw_rad: (T,) rotation of the pelvis's markers about the vertical against their mean shape, continuous.
     """
 
     feet_m: Array
     lifts_m: Array
     pelvis_m: Array
-    top_m: Array
     yaw_rad: Array
 
 
@@ -61,7 +59,6 @@ def body_points(markers: MarkerTrajectories) -> BodyPoints | None:
         np.stack([_centre(foot) for foot in feet], axis=1),
         lows - np.nanmin(lows, axis=0),
         _centre(pelvis),
-        positions[:, int(heights.argmax()), 2],
         _yaw(pelvis),
     )
 

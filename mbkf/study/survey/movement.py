@@ -118,7 +118,7 @@ def turned_deg(body: BodyPoints, rate_hz: float) -> float:
 
 
 def climbs(body: BodyPoints, rate_hz: float) -> bool:
-    """Whether a foot stands at two heights, and the pelvis is higher by a good part of that while it stands higher.
+    """True where a foot stands at two heights and the pelvis rises with it by at least :data:`ROSE_SHARE` of the step.
 
     Args:
         body: The points of the body.

@@ -61,7 +61,7 @@ def test_no_marker_tells_nothing():
 def body(feet_m, lifts_m, pelvis_m, yaw_rad=0.0):
     """Points of a body that faces one direction, or the one given."""
     frames = len(pelvis_m)
-    return BodyPoints(feet_m, lifts_m, pelvis_m, np.full(frames, 1.7), np.zeros(frames) + yaw_rad)
+    return BodyPoints(feet_m, lifts_m, pelvis_m, np.zeros(frames) + yaw_rad)
 
 
 def gait(flight, seconds=4.0, cycle_s=1.0):
