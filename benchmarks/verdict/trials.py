@@ -119,7 +119,7 @@ class Judged:
 
     Attributes:
         label: The trial.
-        word: The overall word; "refused" where there is no result.
+        word: The word of the whole trial; "refused" if `reconstruct` refuses the capture.
         angle_deg, torque_nm_per_kg: Largest error of a leg's sagittal angle or torque among results that may be used,
             against those without the fault; NaN of a right trial.
         line: The verdict in a line.

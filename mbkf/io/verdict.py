@@ -191,7 +191,9 @@ class Verdict:
         try:
             return cls.of(Reason(**one) for one in cast(list[dict[str, Any]], reasons))
         except TypeError as error:
-            raise InvalidInput(f"verdict: 'reasons' is no list of reasons ({error})") from error
+            raise InvalidInput(
+                f"verdict: the entry 'reasons' cannot be read as a list of reasons ({error}); reconstruct the trial again"
+            ) from error
 
 
 def gravest(words: Iterable[Word]) -> Word:

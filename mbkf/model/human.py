@@ -144,7 +144,7 @@ class HumanModel(Body):
         return model
 
     def with_inertias(self, inertias: Sequence[pin.Inertia]) -> HumanModel:
-        """The same body with other inertias, by joint (index 0 is the world)."""
+        """This body with the given inertia of each joint's segment (index 0 is the world)."""
         other = copy.copy(self)
         for kept in ("_data", "_frames"):
             other.__dict__.pop(kept, None)

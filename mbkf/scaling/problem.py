@@ -140,7 +140,7 @@ class ScalingProblem:
         return self._worn.places(state.poses, state.factors, moved, raised) - self.measured_m
 
     def with_shoulders(self, poses: Array, standing: Array | None = None) -> ScalingProblem:
-        """The same problem with shoulders that are displaced in each trial as configurations (N, nq) let expect.
+        """The problem with a displacement of each shoulder in each trial, with a prior by the arms' elevation.
 
         Args:
             poses: (N, nq) configurations.

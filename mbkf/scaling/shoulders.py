@@ -17,7 +17,8 @@ from mbkf.scaling.records import ScalingPrior
 from mbkf.sensors.shoulder_girdle import ShoulderGirdle, girdle_prior
 
 RAISED = 0.46
-"""f of an arm at 45°: shoulders stay on the trunk where no arm is raised beyond it, here or where one was scaled."""
+"""f of an arm at 45°: shoulders stay on the trunk where no arm is raised beyond it, here or where one was scaled.
+Set on gait2354, HC032A, HC044A and the rajagopal walk (benchmark ``real_truth``)."""
 
 
 class TrialShoulders:
@@ -39,7 +40,11 @@ class TrialShoulders:
         self.of_trial = np.eye(1 + trial.max(initial=0))[trial]
 
     def of_frames(self, chosen: NDArray[np.intp]) -> TrialShoulders:
-        """The same trials in some of the frames."""
+        """The trials of some of the frames.
+
+        Args:
+            chosen: Numbers of the frames.
+        """
         other = TrialShoulders(self.girdle, np.zeros(0, dtype=np.intp))
         other.of_trial = self.of_trial[chosen]
         return other

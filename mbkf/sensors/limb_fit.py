@@ -54,7 +54,7 @@ class LimbPose:
 
 @dataclass(frozen=True)
 class LimbEvidence:
-    """How limbs of a pose fit a frame; arrays by limb.
+    """Fit of a pose's limbs to the markers of a frame; arrays by limb.
 
     Attributes:
         seen: (L,) number of markers seen.

@@ -70,7 +70,7 @@ def test_plain_data_go_there_and_back():
     assert Verdict.of_table(table) == found
     assert set(table) == {"overall", "parts", "reasons"}
     assert set(table["reasons"][0]) == {"part", "word", "found", "means", "do", "weight", "shown"}
-    with pytest.raises(InvalidInput, match="no list of reasons"):
+    with pytest.raises(InvalidInput, match="cannot be read as a list of reasons"):
         Verdict.of_table({"reasons": [{"part": "trunk"}]})
 
 
