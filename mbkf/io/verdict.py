@@ -192,7 +192,7 @@ class Verdict:
             return cls.of(Reason(**one) for one in cast(list[dict[str, Any]], reasons))
         except TypeError as error:
             raise InvalidInput(
-                f"verdict: the entry 'reasons' cannot be read as a list of reasons ({error}); reconstruct the trial again"
+                f"verdict: 'reasons' cannot be read as a list of reasons ({error}); reconstruct the trial again"
             ) from error
 
 
