@@ -92,7 +92,7 @@ CAPTURES = {
     "rehazenter_walk/2014001_ST_static.c3d": TrialKind.STATIC,
     "ric_run/20140515T133244_run.c3d": TrialKind.RUN,
     "ric_run/20140515T133244_static.c3d": TrialKind.STATIC,
-    "start_off_treadmill/markers.trc": TrialKind.WALK,
+    "start_off_treadmill/markers.trc": TrialKind.UNKNOWN,  # stands astride the belt, then steps onto it sideways
     "stoop_lift_box/stoop1_t169_f620f800.c3d": TrialKind.UNKNOWN,
     "stoop_lift_box/stoop2_t169_f1395f1590.c3d": TrialKind.UNKNOWN,
     "stoop_lift_box/stoop3_t169_f2101f2300.c3d": TrialKind.UNKNOWN,

@@ -15,8 +15,11 @@ from mbkf.io.records import MarkerTrajectories
 LEAST_SEEN = 0.3
 """Markers that are seen in a smaller share of the frames are left out."""
 
-LOW, MIDDLE = 0.25, (0.45, 0.7)
-"""Heights of the feet's and the pelvis's markers, in shares of the highest one's."""
+LOW, MIDDLE, KNEES = 0.25, (0.45, 0.7), (0.15, 0.35)
+"""Heights of the markers of feet, pelvis and knees, in shares of the highest one's."""
+
+LOWEST_PERCENT = 10.0
+"""Of the frames so many count as the body's lowest ones, and as many as its highest."""
 
 RIGID_M = 0.03
 """Markers of a foot whose distance varies by less (a standard deviation) belong together."""
@@ -31,12 +34,15 @@ class BodyPoints:
         lifts_m: (T, 2) lowest marker of each foot above its lowest height.
         pelvis_m: (T, 3) centre of the markers half-way up.
         yaw_rad: (T,) rotation of the pelvis's markers about the vertical against their mean shape, continuous.
+        knee_travel: Horizontal way of the markers near the knees between the body's highest and lowest frames, over
+            the way by which its middle sinks; NaN where either is not shown.
     """
 
     feet_m: Array
     lifts_m: Array
     pelvis_m: Array
     yaw_rad: Array
+    knee_travel: float = float("nan")
 
 
 def body_points(markers: MarkerTrajectories) -> BodyPoints | None:
@@ -60,7 +66,31 @@ def body_points(markers: MarkerTrajectories) -> BodyPoints | None:
         lows - np.nanmin(lows, axis=0),
         _centre(pelvis),
         _yaw(pelvis),
+        _knee_travel(positions),
     )
+
+
+def _knee_travel(positions: Array) -> float:
+    """Way of the knees over that of the body's middle, as :attr:`BodyPoints.knee_travel`.
+
+    Markers are of the knees or of the middle by their heights in the body's highest frames.
+    """
+    height = _centre(positions)[:, 2]
+    low, high = np.nanpercentile(height, [LOWEST_PERCENT, 100.0 - LOWEST_PERCENT])
+    sunk, risen = positions[height <= low], positions[height >= high]
+    shown = (~np.isnan(sunk).any(axis=2)).any(axis=0) & (~np.isnan(risen).any(axis=2)).any(axis=0)
+    if not shown.any():
+        return float("nan")
+    upright = np.nanmedian(risen[:, shown], axis=0)
+    way = np.nanmedian(sunk[:, shown], axis=0) - upright
+    floor = float(np.nanmin(positions[..., 2]))
+    share = (upright[:, 2] - floor) / max(float(upright[:, 2].max()) - floor, 1e-6)
+    knees = way[(share > KNEES[0]) & (share < KNEES[1])]
+    middle = way[(share > MIDDLE[0]) & (share < MIDDLE[1])]
+    if not len(knees) or not len(middle):
+        return float("nan")
+    sinks = max(-float(np.median(middle[:, 2])), 1e-6)
+    return float(np.median(np.linalg.norm(knees[:, :2], axis=1))) / sinks
 
 
 def _steadiest(groups: list[Array], body: Array) -> Array:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.io.records import MarkerTrajectories
 from mbkf.study.survey.body_points import body_points
 from mbkf.trial.synth import synthesise
 
@@ -41,3 +42,16 @@ def test_a_turned_capture_turns_its_points_alone():
     gained = found.yaw_rad - plain.yaw_rad
     np.testing.assert_allclose(np.diff(gained[[half - 1, half]]), 0.5, atol=1e-9)
     np.testing.assert_allclose(found.lifts_m, plain.lifts_m, atol=1e-12)
+
+
+def test_knees_travel_beside_the_sinking_middle():
+    """A stick figure sinks by 0.4 m at the hips while its knees go 0.1 m forward: a quarter."""
+    heights = np.array([0.02, 0.03, 0.02, 0.03, 0.5, 0.5, 1.0, 1.0, 1.1, 1.1, 1.8])
+    positions = np.zeros((100, len(heights), 3))
+    positions[..., 2] = heights
+    positions[..., 1] = np.where(np.arange(len(heights)) % 2, 0.1, -0.1)
+    sunk = np.where(np.arange(100) < 50, 0.0, 1.0)[:, None]
+    positions[:, 4:6, 0] += 0.1 * sunk
+    positions[:, 6:, 2] -= 0.4 * sunk
+    markers = MarkerTrajectories(tuple(f"*{k}" for k in range(len(heights))), positions, 100.0)
+    np.testing.assert_allclose(body_points(markers).knee_travel, 0.25, atol=1e-12)

@@ -47,6 +47,7 @@ def test_synthetic_motions(motion, seed, kind):
         ("bmc_walk_run/run.trc", TrialKind.RUN),
         ("cgm24_lowerlimb_walk/CGM24_Walking01.c3d", TrialKind.WALK),
         ("biobuddy_functional/functional_right_knee.c3d", TrialKind.UNKNOWN),
+        ("stoop_lift_box/stoop2_t169_f1395f1590.c3d", TrialKind.UNKNOWN),
     ],
 )
 def test_real_captures(real_data, file, kind):
@@ -114,6 +115,17 @@ def test_a_foot_that_stands_higher_climbs_only_if_the_pelvis_follows():
         pelvis = np.tile([0.0, 0.0, 1.0], (frames, 1))
         pelvis[250:, 2] += rise
         assert climbs(body(feet, lifts, pelvis), RATE_HZ) is found
+
+
+def test_who_sinks_over_straight_legs_stoops():
+    """Feet stay and the pelvis sinks by 0.3 m; only knees that go forward with it make a squat."""
+    frames = 300
+    sinking = 0.15 * (1.0 - np.cos(2 * np.pi * np.arange(frames) / frames))
+    pelvis = np.column_stack([np.zeros(frames), np.zeros(frames), 1.0 - sinking])
+    feet, lifts = np.zeros((frames, 2, 3)), np.zeros((frames, 2))
+    for travel, kind in ((0.3, TrialKind.SQUAT), (0.1, TrialKind.UNKNOWN), (np.nan, TrialKind.SQUAT)):
+        found = BodyPoints(feet, lifts, pelvis, np.zeros(frames), travel)
+        assert kind_of_movement(found, RATE_HZ) == kind
 
 
 def test_one_foot_that_reaches_around_does_not_walk():
