@@ -20,10 +20,12 @@ where they stand and how they push off, which errs alike for a whole double supp
     (c² − 1) κ [D, −D; −D, D] is added,  D = covariance of half the difference of both wrenches in P
 
 Where no plate reads at all, a quick change is known only after a while, causally, and with its corners cut, smoothed:
-l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag. Last, e eᵀ is added for every
-wrench e that may be there or not: a small vertical force at the middle of the sole of a foot without a plate that
-carries hardly anything; what a plate reads below its threshold under a foot that counts as in the air; and a share of
-the change since the frame before on a plate, whose reading is a mean over the frame, beyond what its noise changes.
+l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag, and, smoothed, b bᵀ, b = their second
+derivatives times the square of a time: where an estimate bends, a corner was cut or soft tissue rings. Last, e eᵀ is
+added for every wrench e that may be there or not: a small vertical force at the middle of the sole of a foot without a
+plate that carries hardly anything; what a plate reads below its threshold under a foot that counts as in the air; and a
+share of the change since the frame before on a plate, whose reading is a mean over the frame, beyond what its noise
+changes.
 """
 
 from __future__ import annotations
@@ -51,6 +53,7 @@ class ErrorSettings:
         skin_rate_rad_s: How fast skin moves, ω.
         sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
         lag_s, smoothed_lag_s: Time by which reactions without plates lag behind, causally and smoothed.
+        corner_s: Time over which smoothed reactions without plates may bend more or less than true ones.
         edge_share: Spread e of the vertical force on a foot without a plate that carries next to nothing, as a share
             of body weight.
         push_share: Spread of the force by which two feet without a plate push apart, side by side and a step apart, as
@@ -67,6 +70,7 @@ class ErrorSettings:
     sharing_scale: float = 1.3
     lag_s: float = 0.033
     smoothed_lag_s: float = 0.008
+    corner_s: float = 0.012
     edge_share: float = 0.08
     push_share: tuple[float, float] = (0.2, 0.3)
     frame_share: tuple[float, float] = (0.005, 0.15)
@@ -87,7 +91,7 @@ class ErrorCovariance:
         rate_rad_s: ω.
         free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
         sharing: Factor c where both do.
-        lag: (nv + 12 or more,) l of accelerations and wrenches; None for none.
+        late: (k, nv + 12 or more) l and b of accelerations and wrenches; None for none.
         edges: (n, 12) every e, on both feet's wrenches about the world's origin, N, N m.
         plates: (2, 6) noise of the feet's wrenches by plates over what the filter takes for it; or one number.
         supports: Slice of the wrench on other parts that bear, which Newton's law alone tells, too; None where none do.
@@ -102,7 +106,7 @@ class ErrorCovariance:
     rate_rad_s: float
     free: tuple[int, ...] = ()
     sharing: float = 1.0
-    lag: Array | None = None
+    late: Array | None = None
     edges: Array = field(default_factory=lambda: np.zeros((0, FEET)))
     supports: slice | None = None
     new_rates: tuple[float, float] | None = None
@@ -126,17 +130,17 @@ class ErrorCovariance:
     def added(self) -> Array:
         """(k, N) roots of what is added for lags and for wrenches that may be there or not."""
         edges = len(self.edges)
-        added = np.zeros((edges + (self.lag is not None), self.layout.size))
+        added = np.zeros((edges + (0 if self.late is None else len(self.late)), self.layout.size))
         added[:edges, self.layout.wrench] = self.edges
-        if self.lag is not None:
-            added[-1, self._late] = self.lag
+        if self.late is not None:
+            added[edges:, self._late] = self.late
         return added
 
     @property
     def _late(self) -> slice:
         """Components that lag: accelerations, wrenches of the feet, and on other parts where they are stated."""
         first = self.layout.a.start
-        return slice(first, first if self.lag is None else first + len(self.lag))
+        return slice(first, first if self.late is None else first + self.late.shape[1])
 
     @cached_property
     def difference(self) -> Array | None:
@@ -213,9 +217,9 @@ class ErrorCovariance:
             right, left = layout.feet
             apart = T[:, right] - T[:, left]
             variance += np.einsum("ij,ij->i", apart @ self.difference, apart)
-        if self.lag is not None:
-            late = T[:, self._late]
-            variance += (late @ self.lag[: late.shape[1]]) ** 2
+        if self.late is not None:
+            mine = T[:, self._late]
+            variance += np.square(mine @ self.late[:, : mine.shape[1]].T).sum(axis=1)
         return variance + np.square(T[:, layout.wrench] @ self.edges.T).sum(axis=1)
 
     @property
@@ -226,7 +230,9 @@ class ErrorCovariance:
         if self.difference is not None:
             found += np.tile(np.diagonal(self.difference), 2)
         found += np.square(self.edges).sum(axis=0)
-        return found if self.lag is None else found + self.lag[mine.start - first : mine.stop - first] ** 2
+        if self.late is None:
+            return found
+        return found + np.square(self.late[:, mine.start - first : mine.stop - first]).sum(axis=0)
 
     def covariance(self) -> Array:
         """(N, N) Σ."""
@@ -241,7 +247,7 @@ class ErrorCovariance:
         feet, late = layout.wrench, self._late
         if self.difference is not None:
             whole[feet, feet] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self.difference)
-        if self.lag is not None:
-            whole[late, late] += np.outer(self.lag, self.lag)
+        if self.late is not None:
+            whole[late, late] += self.late.T @ self.late
         whole[feet, feet] += self.edges.T @ self.edges
         return whole

@@ -39,7 +39,7 @@ def test_parts_are_those_of_the_whole(seed, new, rate):
         errors,
         free=free,
         sharing=2.0,
-        lag=rng.normal(size=NV + 12),
+        late=rng.normal(size=(2, NV + 12)),
         edges=rng.normal(size=(3, 12)),
         new_rates=(0.3 * new, 2.0 * new),
         plates=rng.uniform(0.1, 1.0, (2, 6)),
@@ -118,7 +118,10 @@ def test_what_lags_errs_along_its_change():
     rng, P, information = made(6)
     lag = rng.normal(size=NV + 12)
     usual = ErrorCovariance(LAYOUT, P, information, EVERYBODY, 0.2, 0.04, 4.0, (0,))
-    late = replace(usual, lag=lag)
+    late = replace(usual, late=lag[None])
+    np.testing.assert_allclose(
+        replace(usual, late=np.array([0.6 * lag, 0.8 * lag])).covariance(), late.covariance()
+    )
     T = np.concatenate([np.zeros(2 * NV), lag])[None]
     across = rng.normal(size=NV + 12)
     U = np.concatenate([np.zeros(2 * NV), across - (across @ lag) / (lag @ lag) * lag])[None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -40,15 +41,15 @@ class Changes(NamedTuple):
     """Further record of a frame, for standard deviations.
 
     Attributes:
-        lag: (nv + 12 or more,) lag of accelerations, the feet's wrenches and those on other parts behind a change;
-            None where that is not stated.
+        late: (k, nv + 12 or more) lag of accelerations, the feet's wrenches and those on other parts behind a change,
+            and what they may bend too much or too little; None where that is not stated.
         wrench: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
             at once; None where they are not.
         plate_noise: Noise of the plates; None at a start.
         smoothed: Later frames have corrected the estimate and its covariance.
     """
 
-    lag: Array | None
+    late: Array | None
     wrench: Array | None
     plate_noise: PlateNoise | None
     smoothed: bool = False
@@ -93,7 +94,7 @@ class DynamicReport(StateReport[DynamicState]):
             np.subtract(wrench[0], last.wrench[0], out=wrench[1])
         noise = (last.plate_noise or self._plate_noise).after(frame.plates)
         steps = self.kalman.settings.errors.lag_s / self.kalman.plant.dt_s
-        return self._estimate(step, Changes(self._lag(was, state, steps), wrench, noise))
+        return self._estimate(step, Changes(steps * self._change(was, state)[None], wrench, noise))
 
     def _estimate(self, step: DynamicStep, changes: Changes) -> Posterior:
         state, contact = step.state, step.decisions.notes.contact
@@ -111,10 +112,10 @@ class DynamicReport(StateReport[DynamicState]):
             lost=step.lost,
         )
 
-    def _lag(self, before: DynamicState, state: DynamicState, steps: float) -> Array:
-        """(nv + 12 or more,) change of accelerations and wrenches in so many time steps."""
-        change = (state.a - before.a, state.w - before.w, self.loads.change(before, state))
-        return steps * np.concatenate(change)
+    def _change(self, before: DynamicState, state: DynamicState) -> Array:
+        """(nv + 12 or more,) change of accelerations and wrenches from one state to another."""
+        whole = self.loads.whole(state) - self.loads.whole(before)
+        return np.concatenate([state.a - before.a, state.w - before.w, whole])
 
     def moved(
         self,
@@ -122,6 +123,7 @@ class DynamicReport(StateReport[DynamicState]):
         state: DynamicState,
         before: DynamicState | None,
         ahead_s: float = np.inf,
+        bend: Array | None = None,
     ) -> Posterior:
         """An estimate whose state later frames have corrected.
 
@@ -130,15 +132,19 @@ class DynamicReport(StateReport[DynamicState]):
             state: The corrected state.
             before: That of the frame before; None at a start.
             ahead_s: Time over which later frames are known; at the end of a trial there are none.
+            bend: (nv + 12 or more,) second difference of accelerations and wrenches there; None where not known.
         """
         own: DynamicState = estimate.record.state
         if state is own:
             return estimate
         s, notes = self.kalman.settings.errors, _step(estimate).decisions.notes
         unknown = float(np.exp(-ahead_s / LATER_FADES_S))
-        steps = (s.smoothed_lag_s + unknown * (s.lag_s - s.smoothed_lag_s)) / self.kalman.plant.dt_s
-        lag = self._lag(state if before is None else before, state, steps)
-        changes = _changes(estimate)._replace(lag=lag, smoothed=state.P is not own.P)
+        dt_s = self.kalman.plant.dt_s
+        lag_s = s.smoothed_lag_s + unknown * (s.lag_s - s.smoothed_lag_s)
+        late = [lag_s / dt_s * self._change(state if before is None else before, state)]
+        if bend is not None:
+            late.append((s.corner_s / dt_s) ** 2 * bend)
+        changes = _changes(estimate)._replace(late=np.array(late), smoothed=state.P is not own.P)
         return estimate._replace(
             q=state.q,
             v=state.v,
@@ -158,7 +164,16 @@ class DynamicReport(StateReport[DynamicState]):
         steps = [_step(estimate) for estimate in run]
         states = list(smooth(self.kalman, steps, ROUNDS, wanted, self._smoothing))
         ahead_s = self.kalman.plant.dt_s * np.arange(len(run) - 1, -1, -1)
-        return [self.moved(*one) for one in zip(run, states, [None, *states], ahead_s, strict=False)]
+        late = zip(run, states, [None, *states], ahead_s, self._bends(states), strict=False)
+        return [self.moved(*one) for one in late]
+
+    def _bends(self, states: Sequence[DynamicState]) -> Sequence[Array | None]:
+        """Second differences of accelerations and wrenches at states; first and last have those of their neighbours."""
+        if len(states) < 3:  # a second difference takes three
+            return [None] * len(states)
+        steps = [self._change(*pair) for pair in pairwise(states)]
+        inner = [after - before for before, after in pairwise(steps)]
+        return [inner[0], *inner, inner[-1]]
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that no marker moves with may be anywhere a posture is."""
@@ -274,7 +289,7 @@ class DynamicReport(StateReport[DynamicState]):
             s.errors.skin_rate_rad_s,
             free,
             s.errors.sharing_scale,
-            changes.lag if unread(contacts) or notes.supports else None,
+            changes.late if unread(contacts) or notes.supports else None,
             self._edges(estimate, free, noise),
             self.loads.slice if notes.supports and all_seen else None,
             s.errors.smoothed_new_rates if changes.smoothed else s.errors.new_rates,

@@ -55,9 +55,9 @@ class SupportLoads:
             found[list(loads.parts)] = loads.shares.wrench
         return found
 
-    def change(self, before: DynamicState, state: DynamicState) -> Array:
-        """(6,) change of the wrench on all parts from one state to another; (0,) where the state has no such part."""
-        return (state.extra - before.extra)[self._extra]
+    def whole(self, state: DynamicState) -> Array:
+        """(6,) wrench on all parts together; (0,) where the state has no such part."""
+        return state.extra[self._extra]
 
     def sd(self, loads: Loads | None, errors: ErrorCovariance | None) -> Array:
         """(B, 6) standard deviations of :meth:`wrench`, for the errors of the state; 0 on parts that bear nothing."""

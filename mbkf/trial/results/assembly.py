@@ -69,7 +69,8 @@ def assemble(
     located = result.tracked & _located(result)
     bears = bearing(ground.supports.support_wrench)
     source = ground.loads.foot_source
-    known = torques_known(model, motion.coordinate_names, moments.moments_sd, source, bears)
+    force_n = ground.loads.foot_wrench[:, :, 2]
+    known = torques_known(model, motion.coordinate_names, moments.moments_sd, source, force_n, bears)
     known &= torques_possible(torques.tau, ROOT_DOFS, model.mass_kg)
     balance = balance_of(model, result, measured.rate_hz, ground)
     judged = unexplained_loads(balance, times_s, inputs.contradictions, causal=not result.smoothed)

@@ -35,8 +35,8 @@ class GroundReactions:
         supports: On other parts.
         torques: With all these loads; NaN where neither plates nor the filter know the loads.
         measured: (T,) every loaded foot on a measured plate, of its own or shared, and no other part bears.
-        accounted: (T,) measured, or a load that no plate reads is estimated: a foot beside plates or another part; no
-            plate is loaded by something other than a foot.
+        accounted: (T,) measured, or a load that no plate reads is estimated: a foot beside plates or another part, or
+            nothing bears and the body falls; no plate is loaded by something other than a foot.
         judged: (T,) every loaded foot is read by a plate, so that motion and loads can contradict each other; loads
             that are estimated follow the motion.
         warnings: Remarks for the reader.
@@ -82,8 +82,9 @@ def ground_reactions(
         estimated = (loads.foot_source == Source.ESTIMATED).any(axis=1) | bears
         measured = read.valid & ~estimated
         judged = read.recorded & (loads.foot_source != Source.ESTIMATED).all(axis=1)
-        accounted = measured | (estimated & ~_stray(read, plates))
         held = ~falling(track.q[:, 2], rate_hz) & ~bears
+        flies = (track.foot_contact == Contact.AIR).all(axis=1) & ~held & ~bears
+        accounted = measured | ((estimated | flies) & ~_stray(read, plates))
         contact = _contact_warnings(track.foot_contact, plates)
         floating = _floating_warning(track.foot_contact, held & track.tracked)
         warnings = (*read.warnings, *contact, *floating)

@@ -184,6 +184,19 @@ def test_white_noise_of_a_plate_is_not_counted_again_as_a_change_within_the_fram
     assert force_sd(25.0) ** 2 - still**2 == pytest.approx(share**2 * (25.0**2 - 6.0))
 
 
+def test_a_smoothed_estimate_may_bend_wrongly_where_it_bends():
+    """The second differences of accelerations and wrenches, of the neighbours at both ends."""
+    tracking, found = estimates("dynamic")
+    smoothed = tracking.smooth(found[:8], 8)
+    stated = np.array([np.concatenate([one.record.state.a, one.record.state.w]) for one in smoothed])
+    bend = np.diff(stated, n=2, axis=0)[[0, *range(6), 5]]
+    share = (DynamicSettings().errors.corner_s / tracking.kalman.plant.dt_s) ** 2
+    late = np.array([one.record.detail.late for one in smoothed])
+    np.testing.assert_allclose(late[:, 1, : bend.shape[1]], share * bend)
+    (alone,) = tracking.smooth(found[:8], 1)
+    assert len(alone.record.detail.late) == 1, "one state has no second difference"
+
+
 def on_free_floor(estimate, ahead_m):
     """The estimate with both feet on unread floor, the right one ahead; and the push of forces to the pelvis."""
     record = estimate.record

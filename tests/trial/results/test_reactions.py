@@ -251,6 +251,19 @@ def test_a_foot_that_nothing_reads_is_accounted_for_where_the_filter_estimates_i
     assert not none.accounted.any(), "plates that are not there explain nothing"
 
 
+def test_where_nothing_bears_and_the_body_falls_no_plate_is_needed():
+    contact = np.full((FRAMES, 2), Contact.AIR)
+    contact[:10] = Contact.UNMEASURED
+    track = followed(truly(), contact)
+    falling = track.q.copy()
+    falling[:, 2] -= 0.5 * GRAVITY_M_S2 * np.maximum(np.arange(FRAMES) - 10, 0) ** 2 / RATE_HZ**2
+    assert not found_with(track).accounted[10:].any(), "the body does not fall"
+    assert found_with(replace(track, q=falling)).accounted.all()
+    seat = with_load("pelvis", [0.0, 0.0, 100.0], slice(20, 40))
+    lying = found_with(replace(followed(truly(), contact, **seat), q=falling), plates())
+    assert not lying.measured[20:40].any()
+
+
 def test_what_is_no_foot_on_a_plate_is_not_accounted_for():
     """A third plate, out of reach of the feet, carries something."""
     stray = replace(plates()[RIGHT], origin_m=np.array([5.0, 5.0, 0.0]), corners_m=None)

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.contacts import Source
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.trial.results.validity import (
     MOST_NM_PER_KG,
     TORQUE_SD_NM_PER_KG,
+    WALKING_SHARE,
     joints_to_root,
     torques_known,
     torques_possible,
@@ -25,7 +27,7 @@ def known(uncertain, feet=(Source.MEASURED, Source.MEASURED), bears=(), sd_nm=1.
     if uncertain:
         sd[0, NAMES.index(uncertain)] = sd_nm
     loaded = np.array([[part in bears for part in PARTS]])
-    return bool(torques_known(reference_model(), NAMES, sd, np.array([feet]), loaded)[0])
+    return bool(torques_known(reference_model(), NAMES, sd, np.array([feet]), np.zeros((1, 2)), loaded)[0])
 
 
 @pytest.mark.parametrize(
@@ -76,11 +78,28 @@ def test_other_parts_have_to_leave_the_joints_up_to_the_pelvis_known():
 def test_a_filter_that_asks_for_no_other_parts():
     sd = np.full((3, len(NAMES)), np.nan)
     source = np.array([[1, 1], [3, 0], [0, 2]])
-    assert torques_known(reference_model(), NAMES, sd, source, np.zeros((3, 0), bool)).tolist() == [
+    force_n, bears = np.full((3, 2), np.nan), np.zeros((3, 0), bool)
+    assert torques_known(reference_model(), NAMES, sd, source, force_n, bears).tolist() == [
         True,
         False,
         False,
     ]
+
+
+def test_the_bound_grows_with_the_largest_force_of_a_contact():
+    """Two contacts of one foot: one as hard as running, one as light as walking; the other foot's is no matter."""
+    sd = np.zeros((7, len(NAMES)))
+    sd[:, NAMES.index("knee_angle_l")] = 1.9 * MOST_NM
+    force = np.array([[0.0, 0.1], [0.0, 2.0], [0.0, 0.1], [3.0, 0.0], [0.0, 0.4], [0.0, 1.0], [0.0, 0.4]])
+    source = np.where(force > 0.0, Source.ESTIMATED, Source.NONE)
+    force_n = WALKING_SHARE * GRAVITY_M_S2 * reference_model().mass_kg * force
+    bears = np.zeros((7, 0), bool)
+
+    def counts(force_n):
+        return torques_known(reference_model(), NAMES, sd, source, force_n, bears).tolist()
+
+    assert counts(force_n) == [True, True, True, True, False, False, False]
+    assert counts(0.94 * force_n) == [False, False, False, True, False, False, False]
 
 
 def test_a_torque_that_no_joint_bears_is_not_possible():
