@@ -17,6 +17,9 @@ from mbkf.trial.scale import scale
 SCALINGS: dict[str, tuple[str, ...]] = {"static": (), "walk": ("walk",), "session": ("walk", "squat")}
 """Motions from which a person is scaled beside standing, by the scaling's name."""
 
+WITHOUT_PLATES = ("jump",)
+"""Motions that are only asked for by name: rows of all motions, and the baseline of their medians, are older."""
+
 SMOOTHED, CAUSAL = "smoothed", "causal"
 FILTERS = (SMOOTHED, CAUSAL)
 
@@ -27,7 +30,7 @@ class Job:
 
     Attributes:
         person: The person.
-        motions: Motions to follow; empty for all.
+        motions: Motions to follow; empty for all but :data:`WITHOUT_PLATES`.
         scaling: Key of :data:`SCALINGS`.
         filter: "smoothed" or "causal".
     """
@@ -49,6 +52,7 @@ def followed(job: Job) -> list[Judged]:
         held = [person.trial(name) for name in SCALINGS[job.scaling] if name in person.motions]
         subject = scale(person.static(), held, mass_kg=person.mass_kg)
         truths = {name: person.truth(name) for name in person.motions}
+        wanted = job.motions or [name for name in person.motions if name not in WITHOUT_PLATES]
         hips = {side: hip_in_pelvis(list(truths.values()), side) for side in SIDES}
         settings = ReconstructSettings(smooth=job.filter == SMOOTHED, checks=False)
         return [
@@ -59,7 +63,7 @@ def followed(job: Job) -> list[Judged]:
                 truths[name],
                 hips,
             )
-            for name in job.motions or person.motions
+            for name in wanted
             if name in person.motions
         ]
 

@@ -27,7 +27,7 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
-MOTIONS = ("walk", "squat", "run")
+MOTIONS = ("walk", "squat", "run", "jump")
 COVER = (0.88, 0.97)
 BEARS_N = 20.0
 """Vertical force, stated or true, from which a foot's force counts."""

@@ -23,7 +23,7 @@ from benchmarks.foreign.making.capture import (
     write_plates,
     write_truth,
 )
-from benchmarks.foreign.making.movements import MADE, MEASURED, Measured, made, standing, transferred
+from benchmarks.foreign.making.movements import ADDED, MADE, MEASURED, Measured, made, standing, transferred
 from benchmarks.foreign.making.osim_body import OsimBody
 from benchmarks.foreign.making.persons import MODEL, PERSONS, Person, person_named
 from benchmarks.foreign.making.record import Recorded, in_free_flight, recorded
@@ -31,7 +31,7 @@ from benchmarks.foreign.making.skin import MODELS
 from benchmarks.foreign.truth import FOLDER, Foreigner
 from benchmarks.peers.required import opensim
 
-MOVEMENTS = (*MEASURED, *MADE)
+MOVEMENTS = (*MEASURED, *MADE, *ADDED)
 
 
 @dataclass(frozen=True)
@@ -93,16 +93,19 @@ def make_person(order: Order) -> None:
         misplaced = exact + shifted(body, names, still, away)
         write_markers(folder / "static.trc", names, misplaced + NOISE_M * rng.normal(size=exact.shape))
         movements = {name: (one.motion.q, places[name]) for name, one in motions.items()}
-        skins = on_skin(person, body, model, stand, movements, seed=1000 * order.seed + 10 * number + k)
+        seed, sizing = 1000 * order.seed + 10 * number + k, len(MOVEMENTS) - len(ADDED)
+        skins = on_skin(person, body, model, stand, movements, seed, sizing)
         shown = seen(person, names)
         kept = tuple(names[k] for k in shown)
+        added = np.random.default_rng([order.seed, number, k])
         for name, one in motions.items():
+            draw = added if name in ADDED else rng
             (folder / name).mkdir(exist_ok=True)
             base = places[name].exact_m + shifted(body, names, places[name], away)
-            base = base + NOISE_M * rng.normal(size=base.shape)
+            base = base + NOISE_M * draw.normal(size=base.shape)
             write_markers(folder / name / "exact.trc", names, places[name].exact_m)
             write_markers(folder / name / "noskin.trc", kept, base[:, shown])
-            write_markers(folder / name / "trial.trc", kept, with_gaps((base + skins[name])[:, shown], rng))
+            write_markers(folder / name / "trial.trc", kept, with_gaps((base + skins[name])[:, shown], draw))
             write_plates(folder / name / "grf.mot", body, one)
             write_truth(folder / name / "truth.npz", body, one)
 
@@ -117,7 +120,9 @@ def movement(name: str, person: Person, body: OsimBody, data: Path) -> Recorded:
         data: Folder of the reference captures.
     """
     motion = (
-        made(name, person, body) if name in MADE else transferred(person, body, _measured(name, person, data))
+        made(name, person, body)
+        if name in (*MADE, *ADDED)
+        else transferred(person, body, _measured(name, person, data))
     )
     return recorded(body, in_free_flight(body, motion))
 

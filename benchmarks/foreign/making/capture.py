@@ -76,6 +76,7 @@ def on_skin(
     stand: Array,
     movements: Mapping[str, tuple[Array, Placed]],
     seed: int,
+    sizing: int | None = None,
 ) -> dict[str, Array]:
     """(T, M, 3) displacements of the markers by movement, in OpenSim's axes of the ground.
 
@@ -86,6 +87,7 @@ def on_skin(
         stand: (C,) the standing posture.
         movements: Coordinates and places by movement.
         seed: Chooses the skin.
+        sizing: The size of the skin's displacements is that in the first so many movements; None for all.
     """
     names = person.markers(body)
     on = np.array([body.marker_body(name) for name in names])
@@ -100,7 +102,7 @@ def on_skin(
             skin(driven(body, part, q, stand, where.frames[part]), 1.0 / RATE_HZ)
             for q, where in movements.values()
         ]
-        sized = of_size(moved, person.skin * amplitude_m(part))
+        sized = of_size(moved, person.skin * amplitude_m(part), sizing)
         for (name, (_, where)), one in zip(movements.items(), sized, strict=True):
             found[name][:, mine] = np.einsum("tij,tmj->tmi", where.frames[part][0], one)
     return found

@@ -32,6 +32,7 @@ class Stance:
         contacts: (T, 2) feet on the ground.
         heights_m: (T, 2) height of the ground below each foot.
         right: (T,) share of the load on the right foot, where the centre of mass is to be.
+        heels_m: (T,) how high heels are above toes, beyond standing; None for level feet.
     """
 
     height_m: Array
@@ -39,6 +40,7 @@ class Stance:
     contacts: BoolArray
     heights_m: Array
     right: Array
+    heels_m: Array | None = None
 
 
 def legs_into(body: OsimBody, q: Array, stance: Stance, stand: Array) -> Array:
@@ -60,6 +62,7 @@ def legs_into(body: OsimBody, q: Array, stance: Stance, stand: Array) -> Array:
     aim = (share * stance.paths_m).sum(axis=1)
     low_pass = butter(2, CUT_OFF_HZ, fs=RATE_HZ, output="sos")
     levels = [_foot(body, stand, name)[3] for name in SIDES]
+    heels = np.zeros(len(q)) if stance.heels_m is None else stance.heels_m
     for _ in range(ROUNDS):
         away = np.zeros((len(q), 2))
         for t in range(len(q)):
@@ -67,7 +70,7 @@ def legs_into(body: OsimBody, q: Array, stance: Stance, stand: Array) -> Array:
             away[t] = (aim[t] - body.centre_of_mass())[[0, 2]]
         q[:, [forward, side]] += sosfiltfilt(low_pass, away, axis=0)
         for leg, name in enumerate(SIDES):
-            aimed = np.column_stack([stance.paths_m[:, leg], np.full(len(q), levels[leg])])
+            aimed = np.column_stack([stance.paths_m[:, leg], levels[leg] - heels])
             start = _approached(body, stand, q[0], name, aimed[0])
             for t in range(len(q)):
                 q[t] = start = _leg(body, q[t], start, name, aimed[t])

@@ -59,7 +59,8 @@ def projected_shares(total: Array, points: Array) -> Array:
     x, z = pressure(total, middle[:, 1])
     line = points[:, 0] - points[:, 1]
     away = (x - points[:, 1, 0]) * line[:, 0] + (z - points[:, 1, 2]) * line[:, 2]
-    right = np.clip(away / (line[:, 0] ** 2 + line[:, 2] ** 2), 0.02, 0.98)
+    share = np.nan_to_num(away / (line[:, 0] ** 2 + line[:, 2] ** 2), nan=0.5)  # hardly loaded
+    right = np.clip(share, 0.02, 0.98)
     return np.column_stack([right, 1.0 - right])
 
 

@@ -1,17 +1,18 @@
-"""Movements of made persons: measured ones put on another body, and sitting up, a stair and reaching made by hand."""
+"""Movements of made persons: measured ones put on another body, and others made by hand, such as a jump."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
+from benchmarks.foreign.making.jump import jump
 from benchmarks.foreign.making.legs import Stance, legs_into
 from benchmarks.foreign.making.loads import pressure, shares
 from benchmarks.foreign.making.osim_body import OsimBody
+from benchmarks.foreign.making.paths import minimum_jerk
 from benchmarks.foreign.making.persons import STANDING_DEG, Person, tilted
 from benchmarks.foreign.making.record import RATE_HZ, Motion, needed, standing_points
 from benchmarks.foreign.truth import Truth
@@ -19,6 +20,8 @@ from mbkf.conventions import SIDES, Array, BoolArray
 
 MEASURED = ("walk", "squat", "run")
 MADE = ("sit_to_stand", "stairs", "reach")
+ADDED = ("jump",)
+"""Made by hand, too, with draws of their own, so that the others stay as they were."""
 
 CUT_OFF_HZ = 6.0
 """Of the correction of the pelvis's path that keeps feet where they stand."""
@@ -160,25 +163,11 @@ def _standing_of(body: OsimBody) -> Array:
     return q
 
 
-def minimum_jerk(times_s: Array, knots: Sequence[tuple[float, float]]) -> Array:
-    """(T,) a value that rests at each knot and moves between them with the least jerk.
-
-    Args:
-        times_s: (T,) times.
-        knots: Times and values, in order.
-    """
-    found = np.full(len(times_s), knots[0][1])
-    for (start, before), (stop, after) in pairwise(knots):
-        x = np.clip((times_s - start) / (stop - start), 0.0, 1.0)
-        found += (after - before) * x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
-    return found
-
-
 def made(name: str, person: Person, body: OsimBody) -> Motion:
     """A movement made by hand, of feet that stand where they are put and a body in balance above them.
 
     Args:
-        name: One of :data:`MADE`.
+        name: One of :data:`MADE` or :data:`ADDED`.
         person: The person.
         body: The person's body.
     """
@@ -186,6 +175,7 @@ def made(name: str, person: Person, body: OsimBody) -> Motion:
         "sit_to_stand": _sit_to_stand,
         "stairs": _stairs,
         "reach": _reach,
+        "jump": _jump,
     }
     stand = standing(person, body)
     stance, moved = makers[name](body, stand)
@@ -193,6 +183,11 @@ def made(name: str, person: Person, body: OsimBody) -> Motion:
     for coordinate, degrees in moved.items():
         q[:, body.column(coordinate)] += np.deg2rad(degrees)
     return Motion(legs_into(body, q, stance, stand), stance.contacts, stance.heights_m, balanced=True)
+
+
+def _jump(body: OsimBody, stand: Array) -> tuple[Stance, dict[str, Array]]:
+    """A jump on the spot."""
+    return jump(leg_length(body, stand), float(stand[body.column("pelvis_ty")]), feet(body, stand))
 
 
 def _times(duration_s: float) -> Array:

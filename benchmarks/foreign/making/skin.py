@@ -230,14 +230,15 @@ def bent_back(displacements_m: Array) -> Array:
     return np.asarray(displacements_m * most * np.tanh(size / most) / np.maximum(size, 1e-12))
 
 
-def of_size(movements: Sequence[Array], size_m: float) -> list[Array]:
+def of_size(movements: Sequence[Array], size_m: float, sizing: int | None = None) -> list[Array]:
     """Displacements of several movements with this root mean square over all of them.
 
     Args:
         movements: (T, M, 3) displacements of each.
         size_m: Wanted root mean square of their norms.
+        sizing: The root mean square is that of the first so many; None for all.
     """
-    squares = np.concatenate([(one**2).sum(axis=2).ravel() for one in movements])
+    squares = np.concatenate([(one**2).sum(axis=2).ravel() for one in movements[:sizing]])
     now = float(np.sqrt(squares.mean()))
     factor = size_m / now if now > 0.0 else 0.0
     return [bent_back(factor * one) for one in movements]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.foreign.making.drivers import OF_BODY
-from benchmarks.foreign.making.movements import minimum_jerk
+from benchmarks.foreign.making.paths import minimum_jerk
 from benchmarks.foreign.making.persons import (
     CHOSEN_ON,
     OPENCAP,
