@@ -154,6 +154,7 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         factors=factors,
         factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
         offsets_m=np.zeros((len(markers), 3)),
+        slides_m=np.zeros((0, len(markers), 3)),
         offset_precision=_offset_precision(markers, subject, body, np.ones(len(markers), dtype=bool)),
     )
     keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)

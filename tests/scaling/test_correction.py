@@ -109,6 +109,13 @@ def test_known_displacements_by_flexion_are_not_taken_for_shifts(model, subject)
     assert max(away["known"]) < 0.003 < max(away["unknown"])
 
 
+def test_keypoints_whose_skin_is_not_modelled_are_corrected(model, subject):
+    keypoints = tuple(replace(m, correlated_m=0.5 * m.noise_m, correlation_s=0.5) for m in subject.markers)
+    after = correct_markers(replace(subject, markers=keypoints), trial(model, subject, SHIFT_M))
+    assert min(moved_mm(subject, after)[name] for name in SHIFTED) > 15.0
+    assert all(m.slides_m.shape == (0, 3) for m in after.markers)
+
+
 def test_markers_not_in_the_trial_keep_their_place(model, subject):
     after = correct_markers(subject, trial(model, subject, SHIFT_M, lost=("RTHI", "C7")))
     moved = moved_mm(subject, after)
