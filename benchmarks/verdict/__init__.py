@@ -9,6 +9,7 @@ from __future__ import annotations
 from benchmarks.checks import Check, Context
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.loads.trials import clean_trials, violators
+from benchmarks.verdict.persons import accused, pairs, person_rows
 from benchmarks.verdict.rows import faulty_rows, right_rows
 from benchmarks.verdict.trials import judged, shown_faulty, shown_right
 
@@ -21,9 +22,11 @@ def run(context: Context) -> list[Check]:
         faulty = mapper(judged, violators(data, context.quick))
         others = mapper(judged, shown_right(data, context.quick))
         wrong = mapper(judged, shown_faulty(data, context.quick))
+        persons = mapper(accused, pairs(data, context.quick))
     return [
         *right_rows("chosen on", right),
         *faulty_rows("chosen on", faulty),
         *right_rows("shown on", others),
         *faulty_rows("shown on", wrong),
+        *person_rows(persons),
     ]

@@ -33,11 +33,12 @@ def sessions(workspace: Workspace, runs: Runs) -> Plain:
 
 
 def _in_short(workspace: Workspace, state: RunState | None, name: str) -> Plain:
-    """A session with its run and the gravest word on its trials."""
+    """A session with its run and the gravest word on its trials: "look" at least where one of them failed."""
     place = workspace.place(name)
     trials = {} if state is None else state.trials
     done = [place / trial for trial, (status, _) in trials.items() if status in HAS_RESULT]
-    return {"id": name, "run": run_state(state), "verdict": gravest_on(done)}
+    failed = any(status == "failed" for status, _ in trials.values())
+    return {"id": name, "run": run_state(state), "verdict": gravest_on(done, failed)}
 
 
 def session(workspace: Workspace, runs: Runs, name: str) -> Plain:

@@ -46,6 +46,11 @@ class ArrowEquations:
         """(s, s) information of the shared unknowns once the frames are eliminated."""
         return self.corner - eliminate(self.frames, self.border, self.frame_gradient, self._blocks).complement
 
+    def reduced(self) -> tuple[Array, Array]:
+        """(s, s) information of the shared unknowns once the frames are eliminated, and their (s,) gradient."""
+        eliminated = eliminate(self.frames, self.border, self.frame_gradient, self._blocks)
+        return self.corner - eliminated.complement, self.corner_gradient - eliminated.pull
+
     @cached_property
     def _blocks(self) -> list[RowBlock]:
         return row_blocks(self.frames, self.border)

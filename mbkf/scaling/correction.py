@@ -13,6 +13,7 @@ between plates and pelvis it therefore has a prior near the static trial, where 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,11 +33,14 @@ from mbkf.scaling.evidence import learnt_prior
 from mbkf.scaling.frames import choose_frames
 from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, ScalingProblem
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingState
+from mbkf.scaling.trial_lengths import LengthEvidence, length_evidence
 from mbkf.sensors.flexed_skin import flexions_of, slide_covariance
 from mbkf.sensors.pose_fit import segment_by_segment
 from mbkf.sensors.shoulder_girdle import OWN_M, around_shoulders, shoulder_names
 
-FRAMES = 40
+FRAMES, FEW_FRAMES = 40, 12
+"""Frames of a trial that markers are corrected on, and that show its lengths where they are not."""
+
 OBSERVATIONS = 10.0
 """Effective number of independent readings of a marker in the frames of one trial (skin moves slowly)."""
 
@@ -59,7 +63,34 @@ KNOWN_SKIN = 0.01
 trial does not separate them from its poses, and a person's skin moves alike in all trials."""
 
 
+class Correction(NamedTuple):
+    """A correction: the subject with the marker positions of the trial, and the trial's segment lengths."""
+
+    subject: Subject
+    lengths: LengthEvidence
+
+
 def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
+    """The subject with the marker positions of this trial: :func:`correction` without the lengths."""
+    return correction(subject, trial).subject
+
+
+def trial_lengths(subject: Subject, trial: MarkerTrajectories, frames: int = FEW_FRAMES) -> LengthEvidence:
+    """Segment lengths of a trial, or of a part of it, against those of a subject whose markers are not corrected.
+
+    Args:
+        subject: A scaled subject.
+        trial: Markers under the subject's own names.
+        frames: Number of frames that are looked at.
+
+    Raises:
+        NotObservable: Too few of the subject's markers are in the trial.
+        NotConverged: Most of them do not fit the body.
+    """
+    return length_evidence(subject, *_fitted(subject, trial, frames))
+
+
+def correction(subject: Subject, trial: MarkerTrajectories) -> Correction:
     """The subject with the marker positions of this trial; markers not in the trial keep theirs.
 
     Args:
@@ -70,7 +101,27 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         NotObservable: Too few of the subject's markers are in the trial.
         NotConverged: Most of them do not fit the body.
     """
-    problem = _problem(subject, trial)
+    problem, state = _fitted(subject, trial, FRAMES)
+    local = problem.local_m(state.factors, state.offsets_m)
+    if state.girdle_m.size:
+        local += problem.shoulders.girdle.on_trunk @ state.girdle_m.reshape(-1, 3)
+    shares = problem.usual_shares(state.poses)
+    before = covariance_of(subject, problem.body)
+    if before is not None:
+        before = _corrected(before, problem, state)
+    found = {
+        marker.name: (position, problem.prior.slides_m[:, m], shares[:, m])
+        for m, (marker, position) in enumerate(zip(problem.markers, local, strict=True))
+    }
+    centres = _centres(subject, problem.body, state)
+    markers = tuple(_moved(m, found) for m in subject.markers)
+    corrected = replace(subject, markers=markers, covariance=before, joint_centres_m=centres)
+    return Correction(corrected, length_evidence(subject, problem, state))
+
+
+def _fitted(subject: Subject, trial: MarkerTrajectories, frames: int) -> tuple[ScalingProblem, ScalingState]:
+    """The problem with spreads learnt from the trial, without outliers, and its solution."""
+    problem = _problem(subject, trial, frames)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     poses = segment_by_segment(sensor, problem.measured_m)
     problem = problem.with_shoulders(poses, subject.standing_q)
@@ -92,21 +143,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     learnt = learnt_prior(problem, state, solution.equations.schur_complement())
     problem = _with_precision(problem, learnt.offset_precision)
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
-    state = solution.state
-    local = problem.local_m(state.factors, state.offsets_m)
-    if state.girdle_m.size:
-        local += problem.shoulders.girdle.on_trunk @ state.girdle_m.reshape(-1, 3)
-    shares = problem.usual_shares(state.poses)
-    before = covariance_of(subject, problem.body)
-    if before is not None:
-        before = _corrected(before, problem, state)
-    found = {
-        marker.name: (position, problem.prior.slides_m[:, m], shares[:, m])
-        for m, (marker, position) in enumerate(zip(problem.markers, local, strict=True))
-    }
-    centres = _centres(subject, problem.body, state)
-    markers = tuple(_moved(m, found) for m in subject.markers)
-    return replace(subject, markers=markers, covariance=before, joint_centres_m=centres)
+    return problem, solution.state
 
 
 def _centres(subject: Subject, body: BodyDescription, state: ScalingState) -> dict[str, float]:
@@ -139,12 +176,12 @@ def _with_precision(problem: ScalingProblem, offset_precision: Array) -> Scaling
     return problem.with_prior(replace(problem.prior, offset_precision=offset_precision))
 
 
-def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
+def _problem(subject: Subject, trial: MarkerTrajectories, most_frames: int) -> ScalingProblem:
     """Scaling with fixed factors: poses and offsets only, each marker near its place in the subject file."""
     body = reference_body(subject)
     factors = scale_of(subject, body)
     own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
-    frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body, own), FRAMES)
+    frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body, own), most_frames)
     count = len(frames.measured_m)
     markers = tuple(
         replace(m, position_m=m.position_m / (body.segment(m.segment).scale_matrix @ factors))

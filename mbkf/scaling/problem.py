@@ -257,6 +257,10 @@ class ScalingProblem:
         _, data = self._by_data(state)
         return self._with_prior(data, self._precision, self.prior.away(state))
 
+    def reduced_data(self, state: ScalingState) -> tuple[Array, Array]:
+        """Information of the data on what frames share, without a prior, and its gradient, frames eliminated."""
+        return self._by_data(state)[1].reduced()
+
     def information(self, state: ScalingState) -> Array:
         """(K + E + 3 M (1 + D), …) information on factors, joint centres, offsets and displacements by flexion.
 

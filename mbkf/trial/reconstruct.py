@@ -13,11 +13,12 @@ from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.estimate import Recording
 from mbkf.filters.plant import PlantMaker
 from mbkf.filters.tracking import track
-from mbkf.io.records import Capture
+from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
-from mbkf.scaling.correction import correct_markers
+from mbkf.scaling.correction import correction
+from mbkf.scaling.trial_lengths import LengthEvidence
 from mbkf.sensors.block import AnyBlock
 from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks.trial import trial_checks
@@ -84,8 +85,7 @@ def reconstruct(
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = plates_without(capture, settings.without_plates)
-        before = subject if settings.correct_markers else None
-        subject = subject.in_neutral_posture() if before is None else correct_markers(before, shown)
+        subject, before, lengths = _for_trial(subject, shown, settings)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
@@ -106,7 +106,8 @@ def reconstruct(
         )
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-        checks = trial_checks(shown, subject, inputs, recording, alone, before) if settings.checks else ()
+        seen = (shown, subject, inputs, recording, alone, before, lengths)
+        checks = trial_checks(*seen) if settings.checks else ()
         return judged_result(
             replace(
                 found,
@@ -127,6 +128,16 @@ def _check_names(settings: ReconstructSettings) -> None:
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     if settings.angles not in ANGLES:
         raise UnknownName("reading of angles", settings.angles, ANGLES)
+
+
+def _for_trial(
+    subject: Subject, shown: MarkerTrajectories, settings: ReconstructSettings
+) -> tuple[Subject, Subject | None, LengthEvidence | None]:
+    """The subject as it is tracked, the one before and the trial's lengths, both None without a correction."""
+    if not settings.correct_markers:
+        return subject.in_neutral_posture(), None, None
+    found = correction(subject, shown)
+    return found.subject, subject, found.lengths
 
 
 def _markers_alone(

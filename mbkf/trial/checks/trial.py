@@ -8,8 +8,10 @@ from mbkf.filters.estimate import Recording
 from mbkf.io.findings import Finding
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
+from mbkf.scaling.trial_lengths import LengthEvidence
 from mbkf.sensors.supports.block import BEARING
 from mbkf.trial.checks.judge import marker_checks, plate_checks
+from mbkf.trial.checks.persons import finding_of_markers, person_finding
 from mbkf.trial.checks.places import place_of_markers_finding
 from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.markers_alone import Motion
@@ -22,6 +24,7 @@ def trial_checks(
     recording: Recording,
     alone: Motion | None,
     before: Subject | None = None,
+    lengths: LengthEvidence | None = None,
 ) -> tuple[Finding, ...]:
     """All checks of the trial, those of the plates first.
 
@@ -32,8 +35,10 @@ def trial_checks(
         recording: What the instruments read, with what bears besides the feet.
         alone: The motion of markers alone; None without plates.
         before: The person before markers were corrected on the trial; None where they were not.
+        lengths: Segment lengths by that correction; None where a few frames are to show them.
     """
-    found = marker_checks(shown, subject)
+    person = finding_of_markers(subject, shown) if lengths is None else person_finding(lengths)
+    found = (*marker_checks(shown, subject), person)
     if before is not None:
         found = (*found, place_of_markers_finding(before, subject, shown.names))
     if alone is None or not inputs.plates:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from mbkf.io.findings import Finding
 from mbkf.io.unexplained import UnexplainedLoad
-from mbkf.io.verdict import LOAD_PARTS, TITLES, Reason, Word, gravest
-from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, places, rigidity
+from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, TITLES, Reason, Word, gravest
+from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, persons, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.motion_reasons import Bounds
 from mbkf.trial.verdict.parts import LEGS, PELVIS, TRUNK
@@ -74,6 +74,9 @@ LAW = Bounds(3.0, 4.0)
 PLACES_LEAVE = 2.5
 """Displacement of a leg's markers over their usual spread from which its motion is not to be used."""
 
+OTHER_PERSON = Bounds(persons.LOOK, persons.LEAVE)
+"""Powers of ten for segment lengths of another person."""
+
 SPOILT = Bounds(0.0, 0.1)
 """Share of the frames that an unexplained force spoils."""
 
@@ -104,6 +107,7 @@ def check_reasons(evidence: Evidence) -> Iterator[Reason]:
     Args:
         evidence: The evidence.
     """
+    yield from _another_person(evidence)
     outside = {one.name: one for one in evidence.checks if one.verdict == "outside"}
     loose = outside.get(rigidity.NAME)
     if loose is not None:
@@ -129,6 +133,25 @@ def check_reasons(evidence: Evidence) -> Iterator[Reason]:
         for leg in LEGS:
             yield Reason(
                 leg, "look", found, "one leg may be scaled from exchanged markers", todo, _times(uneven)
+            )
+
+
+def _another_person(evidence: Evidence) -> Iterator[Reason]:
+    """Segment lengths of another person concern all that the trial shows."""
+    found = next((one for one in evidence.checks if one.name == persons.NAME), None)
+    off = None if found is None else OTHER_PERSON.reached(_size(found))
+    if found is None or off is None:
+        return
+    for part in MOTION_PARTS:
+        if part not in evidence.unshown:
+            yield Reason(
+                part,
+                off[0],
+                f"segment lengths differ from the subject file's: {_stated(found, '')[0].partition(', ')[2]} "
+                f"(10^{_size(found):.0f} to 1)",
+                "it is probably the file of another person, or its static trial had exchanged names",
+                "take the subject file of this person, or scale from a static trial",
+                off[1],
             )
 
 

@@ -235,8 +235,8 @@ def _whole(evidence: Evidence) -> Iterator[Reason]:
             (
                 unknown,
                 f"the protocol knows {100.0 * evidence.explained:.0f} % of the capture's markers",
-                "it may be another marker set",
-                "name the protocol with --protocol, or let it be inferred",
+                "the subject file belongs to another marker set, and perhaps to another person",
+                "take the subject file of this person, or scale again with the right --protocol",
             )
         )
     for doubt in evidence.doubts:

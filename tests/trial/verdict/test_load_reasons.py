@@ -7,8 +7,9 @@ import pytest
 from mbkf.io.contacts import ContactInterval
 from mbkf.io.findings import Finding, judged
 from mbkf.io.unexplained import UnexplainedLoad
-from mbkf.io.verdict import LOAD_PARTS, Reason, gravest
-from mbkf.trial.checks import clocks, floor, lengths, mass, newton, places, rigidity
+from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, Reason, gravest
+from mbkf.scaling.trial_lengths import LengthChange, LengthEvidence
+from mbkf.trial.checks import clocks, floor, lengths, mass, newton, persons, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.load_reasons import check_reasons, load_reasons
 
@@ -133,3 +134,12 @@ def test_checks_without_plates_concern_motions():
         ("left_leg", "look"),
     ]
     assert list(check_reasons(Evidence(checks=(outside(lengths.NAME, 0.1),)))) == []
+
+
+@pytest.mark.parametrize(("powers", "word"), [(2.4, "use"), (2.6, "look"), (14.0, "do not use")])
+def test_lengths_of_another_person_concern_all_that_is_shown(powers, word):
+    lengths_of = persons.person_finding(LengthEvidence(powers, (LengthChange("thigh", 38.4, 9.0),)))
+    found = list(check_reasons(Evidence(checks=(lengths_of,), unshown=("left_arm",))))
+    assert {one.part for one in found} == (set() if word == "use" else set(MOTION_PARTS) - {"left_arm"})
+    assert gravest(one.word for one in found) == word
+    assert all("thigh 38 ± 9 mm longer" in one.found for one in found)
