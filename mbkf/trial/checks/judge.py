@@ -10,7 +10,7 @@ from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.body import Body
 from mbkf.numerics.windows import dilated
-from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, orientation, rigidity
+from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, order, orientation, rigidity
 from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.preparation.markers_alone import Motion
 
@@ -38,8 +38,8 @@ def plate_checks(
 ) -> tuple[Finding, ...]:
     """Checks of the plates against the motion of markers alone.
 
-    Wrong axes of a plate and a late clock are corrected for the checks that follow, so that each finds one fault;
-    Newton's law is judged for the capture as it is.
+    Wrong axes of a plate, exchanged plates and a late clock are corrected for the checks that follow, so that each
+    finds one fault; Newton's law is judged for the capture as it is.
 
     Args:
         model: The body.
@@ -62,6 +62,10 @@ def plate_checks(
     axes, laid = orientation.axes_findings(as_read.without(near))
     turned = any(one.verdict == "outside" for one in axes)
     evidence = evidence_of(laid) if turned else as_read
+    exchanged = None
+    if not turned:
+        exchanged, laid = order.order_finding(as_read.without(near))
+        evidence = as_read if exchanged is None else evidence_of(laid)
     clock = clocks.clock_finding(evidence.without(near))
     if clock.verdict == "outside" and clock.value is not None:
         evidence = evidence_of(clocks.delayed(laid, -1e-3 * clock.value))
@@ -70,7 +74,8 @@ def plate_checks(
     before = newton.newton_findings(as_read.restricted(evidence.accounted & ~near))
     places = orientation.place_findings(evidence.without(near))
     height = floor.floor_finding(evidence, model, motion)
-    return (weight, *before, gain, clock, *axes, *places, height)
+    found = () if exchanged is None else (exchanged,)
+    return (weight, *before, gain, clock, *axes, *found, *places, height)
 
 
 def messages(checks: tuple[Finding, ...]) -> tuple[str, ...]:

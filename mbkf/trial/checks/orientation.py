@@ -7,7 +7,7 @@ mirrored; a plate that lies beside its place by d lacks the moment d × f.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -69,7 +69,10 @@ def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateR
 
 
 def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
-    """Distance d of each plate from its place, from the missing moment d × f."""
+    """Distance d of each plate from its place, from the missing moment d × f; of all together, where that is too far.
+
+    Where two feet share the load all along, as in a squat, no plate is judged alone.
+    """
     findings = []
     gain = _gain(evidence)
     for p, plate in enumerate(evidence.plates):
@@ -79,7 +82,19 @@ def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
             continue
         missing = (gain * evidence.asked - evidence.total)[frames]
         findings.append(_place(name, evidence.given[frames, p], missing, evidence.rate_hz))
-    return tuple(findings)
+    together = None if any(one.verdict == "outside" for one in findings) else _place_of_all(evidence)
+    return tuple(findings) if together is None else (*findings, together)
+
+
+def _place_of_all(evidence: Evidence) -> Finding | None:
+    """A finding on the place of all plates, if it is too far off."""
+    frames = carried(evidence)
+    if len(evidence.plates) < 2 or frames.sum() < LEAST_S * evidence.rate_hz:
+        return None
+    total = evidence.total[frames]
+    missing = _gain(evidence) * evidence.asked[frames] - total
+    found = _place("place of all plates", total, missing, evidence.rate_hz)
+    return found if found.verdict == "outside" else None
 
 
 def laid(plate: PlateReadings, quarters: int, mirrored: bool) -> PlateReadings:
@@ -99,6 +114,25 @@ def laid(plate: PlateReadings, quarters: int, mirrored: bool) -> PlateReadings:
         force_n=plate.force_n @ turn.T,
         moment_nm=plate.moment_nm @ axial.T,
         centre_of_pressure_m=pressed,
+    )
+
+
+def turned_with_room(plate: PlateReadings, quarters: int) -> PlateReadings:
+    """A plate's readings and place as if the laboratory were turned about the vertical through its origin.
+
+    Args:
+        plate: The plate.
+        quarters: Number of quarter turns.
+    """
+    cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]).T
+    return replace(
+        plate,
+        origin_m=plate.origin_m @ turn,
+        force_n=plate.force_n @ turn,
+        moment_nm=plate.moment_nm @ turn,
+        centre_of_pressure_m=plate.centre_of_pressure_m @ turn,
+        corners_m=None if plate.corners_m is None else plate.corners_m @ turn,
     )
 
 
@@ -183,24 +217,51 @@ def _axes(evidence: Evidence, p: int) -> tuple[Finding, PlateReadings]:
 def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, ...]]:
     """A finding on all plates laid down alike, as one wrong convention does, and the plates as they fit; None if right.
 
-    Where two feet share the load all along, as in a squat, one plate corrected beside a wrong one fits no better.
+    Where two feet share the load all along, as in a squat, one plate corrected beside a wrong one fits no better. Axes
+    of the markers' file that are turned against those of the plates turn the places of the plates as well.
+    """
+    if len(evidence.plates) < 2:
+        return None, evidence.plates
+    tried: list[tuple[str, tuple[PlateReadings, ...]]] = [
+        (
+            f"all plates {words} fit {{times:.1f}} times as well: check corners and axes",
+            tuple(laid(plate, quarters, mirrored) for plate in evidence.plates),
+        )
+        for quarters, mirrored, words in _ways()
+    ]
+    tried += [
+        (
+            f"with all plates and their places turned by {90 * quarters}° about the laboratory's origin they fit "
+            "{times:.1f} times as well: check the axes of markers and plates",
+            tuple(turned_with_room(plate, quarters) for plate in evidence.plates),
+        )
+        for quarters in (1, 2, 3)
+    ]
+    times, best = better_fit(evidence, [plates for _, plates in tried])
+    if best is None or not times > BOUND_ALL:
+        return None, evidence.plates
+    hint, plates = tried[best]
+    words = hint.format(times=times)
+    return Finding("axes of all plates", times, TIMES_SD, "times", BOUND_ALL, "outside", words), plates
+
+
+def better_fit(evidence: Evidence, tried: Sequence[tuple[PlateReadings, ...]]) -> tuple[float, int | None]:
+    """Misfit of the plates over the least one of other readings of all of them, and which; None: not to be judged.
+
+    Args:
+        evidence: Motion and plates.
+        tried: Other readings of all plates.
     """
     frames, gain = carried(evidence), _gain(evidence)
-    if len(evidence.plates) < 2 or frames.sum() < LEAST_S * evidence.rate_hz:
-        return None, evidence.plates
-    ways = tuple(_ways())
-    tried = [
-        tuple(laid(plate, quarters, mirrored) for plate in evidence.plates) for quarters, mirrored, _ in ways
-    ]
+    if frames.sum() < LEAST_S * evidence.rate_hz:
+        return 0.0, None
     asked, weight_n = gain * evidence.asked[frames], gain * evidence.weight_n
     misfit = _misfit(asked - evidence.total[frames], weight_n)
     fits = [_misfit(asked - evidence.gives(one).sum(axis=1)[frames], weight_n) for one in tried]
-    best = int(np.nanargmin(fits)) if np.isfinite(fits).any() else 0
-    times = misfit / max(fits[best], 1e-9)
-    if not times > BOUND_ALL:
-        return None, evidence.plates
-    hint = f"all plates {ways[best][2]} fit {times:.1f} times as well: check corners and axes"
-    return Finding("axes of all plates", times, TIMES_SD, "times", BOUND_ALL, "outside", hint), tried[best]
+    if not np.isfinite(fits).any():
+        return 0.0, None
+    best = int(np.nanargmin(fits))
+    return misfit / max(fits[best], 1e-9), best
 
 
 def _place(name: str, given: Array, missing: Array, rate_hz: float) -> Finding:

@@ -45,7 +45,13 @@ RULES = (
         "correct the plate's corners and axes",
     ),
     Rule(
-        "place of plate",
+        "order of plates",
+        Bounds(2.0, 3.0),
+        "each foot has the load of the other",
+        "exchange the plates' channels, or their corners",
+    ),
+    Rule(
+        "place of ",
         Bounds(75.0, 150.0),
         "torques are wrong by the force times this distance",
         "correct the plate's corners",

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.trial.checks.orientation import axes_findings, carried, laid, place_findings
+from mbkf.trial.checks.orientation import axes_findings, carried, laid, place_findings, turned_with_room
 from tests.checked import evidence, plates
 
 
@@ -96,3 +96,33 @@ def test_right_plates_under_a_squat_are_left_alone():
     found, same = axes_findings(evidence("squat"))
     assert "outside" not in {one.verdict for one in found}
     assert all(one is other for one, other in zip(same, plates("squat"), strict=True))
+
+
+@pytest.mark.parametrize("quarters", [1, 2, 3])
+def test_markers_turned_against_the_plates_are_found_in_a_squat(quarters):
+    """The plates lie and push as in another room, which is turned about the vertical through its origin."""
+    by = np.array([0.3, 0.2, 0.0])
+    away = tuple(
+        replace(one, origin_m=one.origin_m + by, centre_of_pressure_m=one.centre_of_pressure_m + by)
+        for one in plates("squat")
+    )
+    given = evidence("squat")
+    motion = replace(given, asked=given.gives(away).sum(axis=1))
+    read = tuple(turned_with_room(one, quarters) for one in away)
+    found, back = axes_findings(replace(motion, plates=read, given=motion.gives(read)))
+    (outside,) = [one for one in found if one.verdict == "outside"]
+    assert outside.name == "axes of all plates" and "laboratory's origin" in outside.hint
+    for one, again in zip(away, back, strict=True):
+        np.testing.assert_allclose(again.origin_m, one.origin_m, atol=1e-9)
+        np.testing.assert_allclose(again.moment_nm, one.moment_nm, atol=1e-9)
+        np.testing.assert_allclose(again.force_n, one.force_n, atol=1e-9)
+
+
+def test_plates_that_share_the_load_are_found_where_all_lie_elsewhere():
+    by = np.array([0.08, -0.06, 0.0])
+    read = tuple(replace(one, origin_m=one.origin_m + by) for one in plates("squat"))
+    *single, together = place_findings(evidence("squat", read=read))
+    assert {one.verdict for one in single} == {"not judged"}
+    assert together.name == "place of all plates" and together.verdict == "outside"
+    assert together.value == pytest.approx(100.0, abs=15.0)
+    assert len(place_findings(evidence("squat"))) == len(single)

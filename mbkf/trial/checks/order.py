@@ -1,0 +1,68 @@
+"""Order of the plates: two that are taken for each other.
+
+Where feet stand on one plate after the other, exchanged plates leave no frame in which the load is known. In a squat
+they carry what the motion requires, but at each other's place: what they read is tried at the other's place for every
+pair of plates that bear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+from mbkf.io.findings import Finding
+from mbkf.io.records import PlateReadings
+from mbkf.trial.checks.evidence import Evidence
+from mbkf.trial.checks.orientation import TIMES_SD, better_fit, carried
+
+BOUND = 2.0
+"""Misfit over that of exchanged plates from which these are right."""
+
+BEARS, MOST_PLATES = 0.1, 4
+"""A plate counts that bears this share of the weight in the mean of the frames in which plates carry the load; of more
+plates than these, the most loaded count."""
+
+
+def order_finding(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, ...]]:
+    """A finding on the pair of plates that fit better in each other's place, and the plates as they fit; None if right.
+
+    Args:
+        evidence: Motion and plates.
+    """
+    frames = carried(evidence)
+    if not frames.any():
+        return None, evidence.plates
+    bears = evidence.given[frames, :, 2].mean(axis=0) / evidence.weight_n
+    loaded = sorted((p for p in range(len(bears)) if bears[p] > BEARS), key=lambda p: -bears[p])
+    pairs = list(combinations(sorted(loaded[:MOST_PLATES]), 2))
+    tried = [_exchanged(evidence.plates, a, b) for a, b in pairs]
+    times, best = better_fit(evidence, tried) if pairs else (0.0, None)
+    if best is None or not times > BOUND:
+        return None, evidence.plates
+    one, other = (evidence.plates[p].name for p in pairs[best])
+    hint = f"in each other's place they fit {times:.1f} times as well: check the order of their channels and corners"
+    name = f"order of plates '{one}' and '{other}'"
+    return Finding(name, times, TIMES_SD, "times", BOUND, "outside", hint), tried[best]
+
+
+def _exchanged(plates: tuple[PlateReadings, ...], a: int, b: int) -> tuple[PlateReadings, ...]:
+    found = list(plates)
+    found[a], found[b] = in_place_of(plates[a], plates[b]), in_place_of(plates[b], plates[a])
+    return tuple(found)
+
+
+def in_place_of(place: PlateReadings, other: PlateReadings) -> PlateReadings:
+    """Readings of another plate at a plate's place.
+
+    Args:
+        place: The plate whose place, corners and name they get.
+        other: The plate that reads.
+    """
+    by = place.origin_m - other.origin_m
+    return replace(
+        other,
+        name=place.name,
+        origin_m=place.origin_m,
+        centre_of_pressure_m=other.centre_of_pressure_m + by,
+        corners_m=place.corners_m,
+    )
