@@ -46,8 +46,9 @@ class ErrorSettings:
     """Repetition of errors. Set on synthetic walks, squats and jumps of two persons with 0 to 5 mm of skin.
 
     Attributes:
-        new_share: Share κ of the marker noise that is new in every frame, for positions and wrenches without plates.
-        new_rates, smoothed_new_rates: The same for velocities and accelerations, causally and smoothed.
+        new_share: Share κ of the marker noise that is new in every frame, for positions and loads on other parts.
+        new_rates, smoothed_new_rates: The same for velocities and accelerations, causally and smoothed; feet without
+            a plate err as accelerations do.
         skin_share: Share of what innovations show that is skin; the rest are misplaced markers, which the offset by
             the body has (:mod:`mbkf.filters.body_errors`).
         skin_rate_rad_s: How fast skin moves, ω.
@@ -67,8 +68,8 @@ class ErrorSettings:
     smoothed_new_rates: tuple[float, float] = (0.08, 0.014)
     skin_share: float = 0.65
     skin_rate_rad_s: float = 2.8
-    sharing_scale: float = 1.3
-    lag_s: float = 0.033
+    sharing_scale: float = 1.5
+    lag_s: float = 0.038
     smoothed_lag_s: float = 0.008
     corner_s: float = 0.012
     edge_share: float = 0.08
@@ -86,8 +87,9 @@ class ErrorCovariance:
         information: (nv, nv) of one frame on the configuration, as the filter weighs it.
         seen: (n,) dofs that markers observe.
         skin: Variance of the markers over what the filter takes for it.
-        new: Share κ of what the filter takes for it that is new in every frame, for positions and unread wrenches.
-        new_rates: The same for velocities and accelerations.
+        new: Share κ of what the filter takes for it that is new in every frame, for positions and loads on other parts.
+        new_rates: The same for velocities and accelerations; feet without a plate err as accelerations do.
+            None if ``new`` holds for all.
         rate_rad_s: ω.
         free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
         sharing: Factor c where both do.
@@ -121,7 +123,7 @@ class ErrorCovariance:
             size[part if everything else part.start + self.seen] = new**0.5
         size[layout.wrench] = np.reshape(self.plates, -1)
         for foot in self.free:
-            size[layout.feet[foot]] = self.new**0.5
+            size[layout.feet[foot]] = rates[1] ** 0.5
         if self.supports is not None:
             size[self.supports] = self.new**0.5
         return size

@@ -99,6 +99,11 @@ def test_reactions_without_a_plate_err_as_accelerations_do():
     stated = ErrorCovariance(LAYOUT, P, information, EVERYBODY, 0.0, 0.04, 4.0, free=(1,)).covariance()
     np.testing.assert_allclose(stated[3 * NV + 6 :, 3 * NV + 6 :], 0.04 * P[3 * NV + 6 :, 3 * NV + 6 :])
     np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :][:6, :6], P[3 * NV :, 3 * NV :][:6, :6])
+    other = ErrorCovariance(
+        LAYOUT, P, information, EVERYBODY, 0.0, 0.04, 4.0, free=(1,), new_rates=(0.09, 0.02)
+    ).covariance()
+    np.testing.assert_allclose(other[2 * NV : 3 * NV, 3 * NV + 6 :], 0.02 * P[2 * NV : 3 * NV, 3 * NV + 6 :])
+    np.testing.assert_allclose(other[3 * NV + 6 :, 3 * NV + 6 :], 0.02 * P[3 * NV + 6 :, 3 * NV + 6 :])
 
 
 def test_how_two_feet_share_is_known_less_well_than_their_sum():

@@ -107,6 +107,8 @@ def test_size_is_over_all_movements() -> None:
     squares = np.concatenate([(one**2).sum(axis=2).ravel() for one in found])
     assert np.sqrt(squares.mean()) == pytest.approx(0.010, rel=0.05)
     assert found[1].std() > 2.5 * found[0].std()
+    first = of_size([movements[0]], 0.010)[0]
+    np.testing.assert_allclose(of_size(movements, 0.010, sizing=1)[0], first)
 
 
 def test_large_displacements_are_bent_back() -> None:
