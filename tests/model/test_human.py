@@ -125,6 +125,8 @@ def test_every_number_names_its_source():
         assert entry["inertia_source"].strip(), entry["name"]
     for entry in table["landmark"]:
         assert entry["source"].strip(), entry["name"]
+    for entry in table["skin"]:
+        assert entry["spread_source"].strip(), entry["segment"]
 
 
 @given(FACTORS)

@@ -10,8 +10,7 @@ are root mean squares over a person's movements, of the size that skin studies r
 - pelvis 6 mm, hip rotation missed by up to 22°: dual fluoroscopy (N. M. Fiorentino et al., Gait Posture 55 (2017)
   184-190: ranges from 3 to 54 mm over markers and activities);
 - trunk 7 mm: upright MRI (R. Zemp et al., PLoS ONE 9 (2014) e95426: 9 to 11 mm from extended to flexed);
-- upper arm 8 mm, its turn missed by up to 30°: bone pins (J. L. Hamming et al., J. Electromyogr. Kinesiol. 22 (2012)
-  1039-1046).
+- upper arm 8 mm, its turn missed by up to 30°: bone pins (D. Hamming et al., J. Biomech. 45 (2012) 1161-1168).
 
 Translation and rotation of whole clusters carry most of it, driven by the neighbouring joints (V. Camomilla et al.,
 J. Biomech. 62 (2017) 5-13; A. Barré et al., J. Biomech. 62 (2017) 21-26); so it is here.
