@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mbkf.conventions import BoolArray
 from mbkf.io.contacts import FEET, ContactInterval
 from mbkf.io.findings import Finding
 from mbkf.io.limb_doubts import LimbDoubt
@@ -16,12 +15,12 @@ from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS
 from mbkf.model.description import BodyDescription
-from mbkf.model.human import HumanModel
 from mbkf.scaling.verdict import DOUBTS_KEY
-from mbkf.trial.verdict.fit import PartFit, part_fits
+from mbkf.trial.verdict.fit import PartFit
 from mbkf.trial.verdict.parts import PELVIS, TRUNK, main_segments, part_of_segment
-from mbkf.trial.verdict.ranges import Beyond, joints_beyond
+from mbkf.trial.verdict.ranges import Beyond
 from mbkf.trial.verdict.standing import Stood, stood_bent
+from mbkf.trial.verdict.sums import TrialSums
 
 
 @dataclass(frozen=True)
@@ -71,42 +70,73 @@ class Evidence:
         return modelled and TRUNK not in self.unshown
 
 
+@dataclass(frozen=True)
+class Found:
+    """Evidence beside the sums over frames, as far as it is known.
+
+    Attributes:
+        limb_doubts: Limbs that were in doubt.
+        unexplained: Forces that no contact explains.
+        contacts: Stretches in which parts bear load, the feet's included.
+        checks: Checks of the capture.
+        explained: Share of the capture's markers that the protocol knows.
+        smoothed: Later frames corrected earlier ones.
+    """
+
+    limb_doubts: tuple[LimbDoubt, ...] = ()
+    unexplained: tuple[UnexplainedLoad, ...] = ()
+    contacts: tuple[ContactInterval, ...] = ()
+    checks: tuple[Finding, ...] = ()
+    explained: float = 1.0
+    smoothed: bool = False
+
+
 def evidence_of(r: Reconstruction) -> Evidence:
     """The evidence that a result holds.
 
     Args:
         r: The result, with its checks.
     """
-    model = HumanModel.of(r.subject)
-    body = model.description
-    lacking = _lacking(r, body)
+    found = Found(r.limb_doubts, r.unexplained, r.contacts, r.checks, r.markers_explained, r.smoothed)
+    return evidence_from(TrialSums.of(r), found)
+
+
+def evidence_from(sums: TrialSums, found: Found) -> Evidence:
+    """The evidence of a trial, or of a live run so far.
+
+    Args:
+        sums: Sums over its frames.
+        found: The other evidence.
+    """
+    followed = sums.followed
+    model, body = followed.model, followed.model.description
+    lacking = _lacking(sums, body)
     main = main_segments(body)
     unshown = tuple(part for part in MOTION_PARTS if main[part] and all(one in lacking for one in main[part]))
-    acts = _acting(r)
-    known = r.valid | acts
-    loads: tuple[str, ...] = () if known.any() else LOAD_PARTS
+    loads: tuple[str, ...] = () if sums.known else LOAD_PARTS
     if TRUNK in unshown and not loads:
         loads = ("trunk_loads",)
+    frames = max(sums.frames, 1)
     return Evidence(
-        tracked=float(r.tracked.mean()) if r.frames else 0.0,
+        tracked=sums.tracked / frames,
         unshown=(*unshown, *loads),
         unshown_segments={
             part: tuple(one for one in main[part] if one in lacking)
             for part in MOTION_PARTS
             if part not in unshown and any(one in lacking for one in main[part])
         },
-        fits=part_fits(r),
-        beyond=joints_beyond(model, r.q, r.tracked, r.rate_hz),
-        doubtful_limbs=_doubtful_limbs(r),
-        spread_deg=_spreads(r, body, lacking),
-        loads_known=float(known.mean()) if r.frames else 0.0,
-        unexplained=r.unexplained,
-        unexplained_share=float((known & acts).sum() / max(known.sum(), 1)),
-        contacts=tuple(one for one in r.contacts if one.part not in FEET),
-        checks=r.checks,
-        doubts=doubts_of(r.subject),
-        stood=stood_bent(model, r.subject),
-        explained=r.markers_explained,
+        fits=sums.fits(),
+        beyond=sums.beyond(),
+        doubtful_limbs=_doubtful_limbs(found, sums.frames, followed.rate_hz),
+        spread_deg=_spreads(sums, body, lacking),
+        loads_known=sums.known / frames,
+        unexplained=found.unexplained,
+        unexplained_share=sums.spoilt / max(sums.known, 1),
+        contacts=tuple(one for one in found.contacts if one.part not in FEET),
+        checks=found.checks,
+        doubts=doubts_of(followed.subject),
+        stood=stood_bent(model, followed.subject),
+        explained=found.explained,
         part_of=part_of_segment(body),
     )
 
@@ -117,49 +147,36 @@ def doubts_of(subject: Subject) -> tuple[str, ...]:
     return tuple(str(one) for one in doubts) if isinstance(doubts, list) else ()
 
 
-def _lacking(r: Reconstruction, body: BodyDescription) -> frozenset[str]:
+def _lacking(sums: TrialSums, body: BodyDescription) -> frozenset[str]:
     """Segments that no instrument shows: all of their dofs are held, or the root without a marker of its own."""
-    held = set(r.unobserved_dofs)
+    followed = sums.followed
+    held = set(followed.unobserved_dofs)
     of_segment: dict[str, list[str]] = {}
-    for name in r.dof_names:
+    for name in followed.dof_names:
         of_segment.setdefault(name.rsplit("_", 1)[0], []).append(name)
     found = {segment for segment, names in of_segment.items() if all(name in held for name in names)}
-    own = {marker.name: marker.segment for marker in r.subject.markers}
-    shown = {
-        own[name]
-        for name, seen in zip(r.marker_names, np.asarray(r.present.any(axis=0)), strict=True)
-        if seen
-    }
-    if r.marker_names and body.roles.root not in shown:
+    own = {marker.name: marker.segment for marker in followed.subject.markers}
+    shown = {own[name] for name in sums.seen}
+    if followed.marker_names and body.roles.root not in shown:
         found.add(body.roles.root)
     return frozenset(found)
 
 
-def _acting(r: Reconstruction) -> BoolArray:
-    """(T,) frames in which an unexplained force acts."""
-    acts = np.zeros(r.frames, dtype=bool)
-    for one in r.unexplained:
-        acts |= (r.times_s >= one.from_s - 1e-9) & (r.times_s <= one.to_s + 1e-9)
-    return acts
-
-
-def _doubtful_limbs(r: Reconstruction) -> tuple[tuple[LimbDoubt, float], ...]:
+def _doubtful_limbs(found: Found, frames: int, rate_hz: float) -> tuple[tuple[LimbDoubt, float], ...]:
     """Limbs in doubt with the share of the trial; mended ones of a smoothed result have their better pose all along."""
-    lasts_s = max(r.frames / r.rate_hz, 1e-9)
-    kept = [one for one in r.limb_doubts if not (one.mended and r.smoothed)]
-    return tuple((one, min((one.to_s - one.from_s + 1.0 / r.rate_hz) / lasts_s, 1.0)) for one in kept)
+    lasts_s = max(frames / rate_hz, 1e-9)
+    kept = [one for one in found.limb_doubts if not (one.mended and found.smoothed)]
+    return tuple((one, min((one.to_s - one.from_s + 1.0 / rate_hz) / lasts_s, 1.0)) for one in kept)
 
 
-def _spreads(r: Reconstruction, body: BodyDescription, lacking: frozenset[str]) -> dict[str, float]:
+def _spreads(sums: TrialSums, body: BodyDescription, lacking: frozenset[str]) -> dict[str, float]:
     """Largest mean standard deviation by part among the flexions of its main joints that are shown."""
-    part, main = part_of_segment(body), main_segments(body)
+    part, main, mean_sd = part_of_segment(body), main_segments(body), sums.mean_sd()
     found: dict[str, float] = {}
     for joint in body.clinical_joints:
         each = part[joint.distal]
-        if joint.distal in lacking or joint.distal not in main[each] or joint.main not in r.coordinate_names:
+        if joint.distal in lacking or joint.distal not in main[each] or joint.main not in mean_sd:
             continue
-        sd = r.angle_sd(joint.main)[r.tracked]
-        sd = sd[np.isfinite(sd)]
-        if len(sd) and each != PELVIS:
-            found[each] = max(found.get(each, 0.0), float(np.rad2deg(sd.mean())))
+        if each != PELVIS:
+            found[each] = max(found.get(each, 0.0), float(np.rad2deg(mean_sd[joint.main])))
     return found

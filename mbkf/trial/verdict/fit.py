@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from mbkf.io.results import Reconstruction
-from mbkf.model.human import reference_body
-from mbkf.trial.results.innovations import settled
+from mbkf.conventions import Array, BoolArray
+from mbkf.io.subject import SubjectMarker
+from mbkf.model.description import BodyDescription
 from mbkf.trial.verdict.parts import markers_of_part
 
 LEAST_SAMPLES = 20
@@ -39,37 +41,81 @@ class PartFit:
     worst: str
 
 
-def part_fits(r: Reconstruction) -> tuple[PartFit, ...]:
-    """The fit of each part that shows markers.
+class MarkerFrames(NamedTuple):
+    """Markers in a block of frames.
 
-    Args:
-        r: The result.
+    Attributes:
+        present: (n, M) samples that are seen.
+        squared_m2: (n, M) squared distances from the body; what is not seen does not count.
+        tracked: (n,) frames in which the body is followed.
+        refused: (n, M) samples that the innovation gate refused.
+        nis: (n, M) normalised innovation squared of each marker, NaN where not known; None without any.
+        settled: (n,) frames in which innovations count.
     """
-    own = {marker.name: marker for marker in r.subject.markers}
-    names = r.marker_names
-    columns = markers_of_part(reference_body(r.subject), [own[name].segment for name in names])
-    noise_m = np.array([own[name].noise_m for name in names])
-    counted = r.present & r.tracked[:, None]
-    squared = np.where(counted, ((r.measured_m - r.predicted_m) ** 2).sum(axis=2), np.nan)
-    late = settled(r)
-    found = []
-    for part, all_of_it in columns.items():
-        here = [m for m in all_of_it if counted[:, m].any()]
-        if not here or counted[:, here].sum() < LEAST_SAMPLES:
-            continue
-        mean = np.array([np.nanmean(squared[:, m]) for m in here])
-        per_noise = mean / (3.0 * noise_m[here] ** 2)
-        nis = None if r.marker_nis is None else r.marker_nis[late][:, here]
-        known = None if nis is None else nis[np.isfinite(nis)]
-        found.append(
-            PartFit(
-                part,
-                len(here),
-                1e3 * float(np.sqrt(mean.mean())),
-                float(np.sqrt(per_noise.mean())),
-                float(known.mean()) if known is not None and len(known) >= LEAST_SAMPLES else None,
-                float(r.rejected[:, here].sum() / max(r.present[:, here].sum(), 1)),
-                names[here[int(np.argmax(per_noise))]],
+
+    present: BoolArray
+    squared_m2: Array
+    tracked: BoolArray
+    refused: BoolArray
+    nis: Array | None
+    settled: BoolArray
+
+
+class FitSums:
+    """Sums over frames from which the fit of each part follows; frames come in blocks, in order."""
+
+    def __init__(self, body: BodyDescription, names: Sequence[str], markers: Sequence[SubjectMarker]) -> None:
+        """Sums without a frame.
+
+        Args:
+            body: The body.
+            names: (M,) the markers that are followed.
+            markers: The subject's markers.
+        """
+        own = {marker.name: marker for marker in markers}
+        self._names = tuple(names)
+        self._columns = markers_of_part(body, [own[name].segment for name in names])
+        self._noise_m = np.array([own[name].noise_m for name in names])
+        count = len(names)
+        self._squared, self._nis = np.zeros(count), np.zeros(count)
+        self._counted, self._judged, self._present, self._refused = np.zeros((4, count), dtype=np.int64)
+
+    def add(self, frames: MarkerFrames) -> None:
+        """Adds a block of frames."""
+        counted = frames.present & frames.tracked[:, None] & np.isfinite(frames.squared_m2)
+        self._squared += np.where(counted, frames.squared_m2, 0.0).sum(axis=0)
+        self._counted += counted.sum(axis=0)
+        self._present += frames.present.sum(axis=0)
+        self._refused += frames.refused.sum(axis=0)
+        if frames.nis is not None:
+            judged = np.isfinite(frames.nis) & frames.settled[:, None]
+            self._nis += np.where(judged, frames.nis, 0.0).sum(axis=0)
+            self._judged += judged.sum(axis=0)
+
+    @property
+    def seen(self) -> BoolArray:
+        """(M,) markers that were seen in any frame."""
+        return np.asarray(self._present > 0)
+
+    def fits(self) -> tuple[PartFit, ...]:
+        """The fit of each part that shows markers."""
+        found = []
+        for part, all_of_it in self._columns.items():
+            here = [m for m in all_of_it if self._counted[m]]
+            if not here or self._counted[here].sum() < LEAST_SAMPLES:
+                continue
+            mean = self._squared[here] / self._counted[here]
+            per_noise = mean / (3.0 * self._noise_m[here] ** 2)
+            judged = int(self._judged[here].sum())
+            found.append(
+                PartFit(
+                    part,
+                    len(here),
+                    1e3 * float(np.sqrt(mean.mean())),
+                    float(np.sqrt(per_noise.mean())),
+                    float(self._nis[here].sum() / judged) if judged >= LEAST_SAMPLES else None,
+                    float(self._refused[here].sum() / max(self._present[here].sum(), 1)),
+                    self._names[here[int(np.argmax(per_noise))]],
+                )
             )
-        )
-    return tuple(found)
+        return tuple(found)

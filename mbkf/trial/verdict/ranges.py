@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.conventions import Array
+from mbkf.model.body import Body
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.trial.verdict.parts import part_of_segment
 
@@ -17,8 +17,8 @@ LASTING_S = 0.1
 LEAST_DEG = 1.0
 """Smaller excesses are not listed."""
 
-MOST_FRAMES = 400
-"""Frames that are looked at, evenly spaced where there are more."""
+SAMPLED_HZ = 100.0
+"""About so many frames in a second are looked at."""
 
 
 @dataclass(frozen=True)
@@ -38,33 +38,57 @@ class Beyond:
     seconds: float
 
 
-def joints_beyond(model: HumanModel, q: Array, tracked: BoolArray, rate_hz: float) -> tuple[Beyond, ...]:
-    """The joints that leave their ranges, the farthest first; each by its worst axis.
+class RangeSums:
+    """The largest excesses of each joint over frames that come in blocks, in order."""
 
-    Args:
-        model: The body.
-        q: (T, nq) configurations.
-        tracked: (T,) frames in which the body was followed.
-        rate_hz: Frame rate.
-    """
-    frames = np.flatnonzero(tracked & np.isfinite(q).all(axis=1))
-    if not len(frames):
-        return ()
-    step = int(np.ceil(len(frames) / MOST_FRAMES))
-    shown_s, frames = len(frames) / rate_hz, frames[::step]
-    sensor = PostureSensor(model)
-    turned = np.array([sensor.deviation(one)[0] for one in q[frames]])
-    beyond = np.maximum(turned - model.limits[:, 1], model.limits[:, 0] - turned)
-    beyond = np.rad2deg(np.where(np.isfinite(beyond), np.maximum(beyond, 0.0), 0.0))
-    lasting = max(1, round(min(LASTING_S, 0.1 * shown_s) * rate_hz / step))
-    # The excess that is passed for as long, whenever: the n-th largest.
-    sizes = np.sort(beyond, axis=0)[-lasting]
-    part = part_of_segment(model.description)
-    found = []
-    for name, joint in model.joints.items():
-        if joint.kind == "free" or not (sizes[joint.v] > LEAST_DEG).any():
-            continue
-        axis = joint.v.start + int(np.argmax(sizes[joint.v]))
-        seconds = float((beyond[:, axis] > LEAST_DEG).sum()) * step / rate_hz
-        found.append(Beyond(part[name], name, float(sizes[axis]), seconds))
-    return tuple(sorted(found, key=lambda one: -one.excess_deg))
+    def __init__(self, model: Body, rate_hz: float) -> None:
+        """Sums without a frame.
+
+        Args:
+            model: The body.
+            rate_hz: Frame rate.
+        """
+        self._model, self._sensor = model, PostureSensor(model)
+        self._every = max(1, round(rate_hz / SAMPLED_HZ))
+        self._sampled_hz = rate_hz / self._every
+        most = max(1, round(LASTING_S * self._sampled_hz))
+        self._largest = np.zeros((most, model.nv))
+        self._beyond = np.zeros(model.nv, dtype=np.int64)
+        self._frames = self._samples = 0
+
+    def add(self, q: Array) -> None:
+        """Adds the next frames in which the body is followed.
+
+        Args:
+            q: (n, nq) configurations.
+        """
+        q = q[np.isfinite(q).all(axis=1)]
+        chosen = q[-self._frames % self._every :: self._every]
+        self._frames += len(q)
+        if not len(chosen):
+            return
+        self._samples += len(chosen)
+        turned = np.array([self._sensor.deviation(one)[0] for one in chosen])
+        limits = self._model.limits
+        beyond = np.maximum(turned - limits[:, 1], limits[:, 0] - turned)
+        beyond = np.rad2deg(np.where(np.isfinite(beyond), np.maximum(beyond, 0.0), 0.0))
+        self._beyond += (beyond > LEAST_DEG).sum(axis=0)
+        if (beyond > self._largest[0]).any():
+            self._largest = np.sort(np.vstack([self._largest, beyond]), axis=0)[-len(self._largest) :]
+
+    def joints(self) -> tuple[Beyond, ...]:
+        """The joints that leave their ranges, the farthest first; each by its worst axis."""
+        shown_s = self._samples / self._sampled_hz
+        lasting = max(1, round(min(LASTING_S, 0.1 * shown_s) * self._sampled_hz))
+        # The excess that is passed for as long, whenever: the n-th largest.
+        sizes = self._largest[-lasting]
+        part = part_of_segment(self._model.description)
+        found = []
+        for name, joint in self._model.joints.items():
+            if joint.kind == "free" or not (sizes[joint.v] > LEAST_DEG).any():
+                continue
+            axis = joint.v.start + int(np.argmax(sizes[joint.v]))
+            found.append(
+                Beyond(part[name], name, float(sizes[axis]), float(self._beyond[axis]) / self._sampled_hz)
+            )
+        return tuple(sorted(found, key=lambda one: -one.excess_deg))

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.trial.verdict.fit import part_fits
+from mbkf.model.human import reference_body
+from mbkf.trial.results.innovations import settled
+from mbkf.trial.verdict.fit import FitSums, MarkerFrames
 from tests.recordings import walk
 
 
@@ -14,6 +16,17 @@ def moved(r, segment, by_m):
     own = {marker.name: marker.segment for marker in r.subject.markers}
     there = np.array([own[name] == segment for name in r.marker_names])
     return replace(r, measured_m=r.predicted_m + np.where(there[:, None], [by_m, 0.0, 0.0], 0.0)), there
+
+
+def part_fits(r, block=None):
+    """The fits of a result whose frames come in blocks."""
+    squared = ((r.measured_m - r.predicted_m) ** 2).sum(axis=2)
+    whole = (r.present, squared, r.tracked, r.rejected, r.marker_nis, settled(r))
+    sums = FitSums(reference_body(r.subject), r.marker_names, r.subject.markers)
+    for first in range(0, r.frames, block or r.frames):
+        part = slice(first, first + (block or r.frames))
+        sums.add(MarkerFrames(*(None if one is None else one[part] for one in whole)))
+    return sums.fits()
 
 
 def test_each_part_has_the_fit_of_its_own_markers():
@@ -50,3 +63,12 @@ def test_refused_samples_are_a_share_of_the_part_s():
     refused = np.zeros(r.present.shape, bool)
     refused[: r.frames // 2] = True
     assert part_fits(replace(r, rejected=refused))[0].refused == pytest.approx(0.5, abs=0.01)
+
+
+def test_blocks_of_frames_give_what_the_whole_trial_gives():
+    r, _ = moved(walk(), "left_shank", 0.03)
+    r = replace(r, marker_nis=np.random.default_rng(0).uniform(0.0, 4.0, r.present.shape))
+    for one, other in zip(part_fits(r, block=7), part_fits(r), strict=True):
+        assert (one.part, one.markers, one.worst) == (other.part, other.markers, other.worst)
+        numbers = [(a.rms_mm, a.per_noise, a.nis, a.refused) for a in (one, other)]
+        assert numbers[0] == pytest.approx(numbers[1])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.model.human import HumanModel
-from mbkf.trial.verdict.ranges import MOST_FRAMES, joints_beyond
+from mbkf.trial.verdict.ranges import SAMPLED_HZ, RangeSums
 
 RATE_HZ = 100.0
 MODEL = HumanModel.scaled()
@@ -20,9 +20,11 @@ def bent(degrees, frames=slice(None), count=100, dof="left_shank_y"):
     return q
 
 
-def found_in(q, tracked=None):
-    known = np.ones(len(q), bool) if tracked is None else tracked
-    return joints_beyond(MODEL, q, known, RATE_HZ)
+def found_in(q, rate_hz=RATE_HZ, block=None):
+    sums = RangeSums(MODEL, rate_hz)
+    for first in range(0, len(q), block or max(len(q), 1)):
+        sums.add(q[first : first + (block or len(q))])
+    return sums.joints()
 
 
 def test_joints_within_their_ranges_are_not_listed():
@@ -42,12 +44,22 @@ def test_an_instant_does_not_count(frames, listed):
     assert bool(found_in(bent(-67.0, slice(40, 40 + frames)))) is listed
 
 
-def test_frames_in_which_the_body_is_not_followed_do_not_count():
-    tracked = np.ones(100, bool)
-    tracked[40:60] = False
-    assert found_in(bent(-67.0, slice(40, 60)), tracked) == ()
+def test_frames_without_a_posture_do_not_count():
+    q = bent(-67.0, slice(40, 60))
+    q[40:60] = np.nan
+    assert found_in(q) == ()
 
 
-def test_long_trials_are_sampled():
-    (knee,) = found_in(bent(-30.0, slice(0, 200), 3 * MOST_FRAMES))
-    assert knee.seconds == pytest.approx(2.0, abs=0.05)
+def test_trials_of_a_high_rate_are_sampled():
+    q, rate_hz = bent(-30.0, slice(0, 200), 1200), 4.0 * SAMPLED_HZ
+    (knee,) = found_in(q, rate_hz)
+    assert knee.seconds == pytest.approx(0.5)
+    assert found_in(bent(-30.0, slice(0, 36), 1200), rate_hz) == ()
+
+
+@pytest.mark.parametrize("rate_hz", [RATE_HZ, 3.0 * RATE_HZ])
+def test_blocks_of_frames_give_what_the_whole_trial_gives(rate_hz):
+    q = np.array([bent(-10.0 - 0.3 * k, count=1)[0] for k in range(97)])
+    q[50] = np.nan
+    whole = found_in(q, rate_hz)
+    assert found_in(q, rate_hz, block=7) == whole and whole[0].joint == "left_shank"
