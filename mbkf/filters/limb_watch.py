@@ -106,6 +106,11 @@ class LimbWatch:
         self._looks.append(self._last)
         return self._lasting(number, estimate)
 
+    def so_far(self, number: int) -> tuple[LimbDoubt, ...]:
+        """Doubts that have ended, and those that last long enough to be stated before a frame."""
+        lasting = (one for one in self._open.values() if self._long(one, number))
+        return (*self.doubts, *(self._timed(one, number) for one in lasting))
+
     def finish(self, number: int) -> None:
         """Ends the doubts that are open after the last frame."""
         for k in list(self._open):
@@ -205,8 +210,11 @@ class LimbWatch:
     def _close(self, k: int, number: int) -> None:
         """Ends a doubt; a short one is forgotten."""
         doubt = self._open.pop(k)
-        if (number - doubt.since) * self._dt_s > STATED_S:
+        if self._long(doubt, number):
             self.doubts.append(self._timed(doubt, number))
+
+    def _long(self, doubt: _Doubt, number: int) -> bool:
+        return (number - doubt.since) * self._dt_s > STATED_S
 
     def _timed(self, doubt: _Doubt, number: int) -> LimbDoubt:
         last = max(number - 1, doubt.since)

@@ -55,6 +55,11 @@ class TrackingLoop:
         self._renamed: tuple[Recording, Order, Recording] | None = None
 
     @property
+    def frames(self) -> int:
+        """Number of frames that have been answered, with an estimate or without."""
+        return self._number
+
+    @property
     def must_start(self) -> bool:
         """True where the next frame tries a start, which needs the frames after it, too."""
         lost = self._lost_for * self.filter.dt_s > self.filter.restart_after_s

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from dataclasses import asdict, dataclass
 from typing import Literal, get_args
 
 import numpy as np
@@ -51,6 +52,23 @@ class LimbDoubt:
         """
         if self.kind not in get_args(DoubtKind):
             raise InvalidInput(f"limb in doubt: unknown kind '{self.kind}'")
+
+    def as_text(self) -> str:
+        """As JSON."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def of_text(cls, text: str) -> LimbDoubt:
+        """The doubt of JSON.
+
+        Raises:
+            InvalidInput: The text is no doubt about a limb.
+        """
+        try:
+            plain = json.loads(text)
+            return cls(**{**plain, "exchanged": tuple((str(a), str(b)) for a, b in plain["exchanged"])})
+        except (ValueError, KeyError, TypeError) as error:
+            raise InvalidInput(f"doubt about a limb: cannot be read ({error})") from error
 
     @property
     def sentence(self) -> str:

@@ -1,6 +1,10 @@
 """How a live run went, in the terminal and by its exit code."""
 
-from mbkf.cli.following import report_outcome
+from types import SimpleNamespace
+
+from mbkf.cli.following import SaidVerdict, report_outcome
+from mbkf.io.verdict import Reason, Verdict
+from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.run.session import LiveOutcome
 
 
@@ -25,3 +29,22 @@ def test_a_failed_run_exits_with_1_and_says_why(tmp_path, capsys):
         == 1
     )
     assert "writing the report failed: full" in capsys.readouterr().err
+
+
+def test_the_running_verdict_is_said_when_the_word_on_a_part_changes():
+    said = []
+    sink = SaidVerdict(said.append)
+
+    def frame(judgement):
+        return SimpleNamespace(judgement=judgement)
+
+    def look(millimetres):
+        return Verdict.of([Reason("trunk", "look", f"{millimetres} mm off", "it may be loose", "look at it")])
+
+    sink.take(frame(None))
+    for judgement in (Judgement(Verdict(), 1.0), Judgement(look(9), 1.5), Judgement(look(10), 2.0)):
+        sink.take(frame(judgement))
+        sink.take(frame(judgement))
+    sink.take(frame(Judgement(Verdict(), 2.5)))
+    sink.close()
+    assert said == ["1.0 s: use", "1.5 s: look: trunk; 9 mm off: it may be loose; look at it", "2.5 s: use"]

@@ -1,6 +1,7 @@
 """A track whose limb is thrown into a wrong pose, or whose names are exchanged: set right soon, and stated."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.warm_start import WarmStart
-from mbkf.filters.limb_watch import in_doubt
+from mbkf.filters.limb_watch import LimbWatch, in_doubt
 from mbkf.filters.tracking import track
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.sensors.limb_fit import LimbEvidence, LimbFits
@@ -109,3 +110,18 @@ def test_doubt_is_by_markers_or_by_ranges_where_markers_are_seen():
     assert not in_doubt(evidence(segment_m=[0.04], others_m=[0.03]))[0]
     assert in_doubt(evidence(beyond_rad=[0.3]))[0]
     assert not in_doubt(evidence(beyond_rad=[0.3], seen=[2]))[0]
+
+
+def test_a_doubt_that_goes_on_is_stated_before_it_ends(course):
+    positions = marker_positions(SENSOR, course)
+    foot = np.flatnonzero(np.array(SENSOR.segments) == "left_shank")
+    positions[:, foot] += np.random.default_rng(2).normal(size=(len(foot), 3)) * 0.15
+    watch, estimate = LimbWatch(FITS, DT), SimpleNamespace(started=False, record=SimpleNamespace(step=None))
+    stated = []
+    for t in range(FRAMES):
+        watch.look(t, SimpleNamespace(q=course[t], **vars(estimate)), positions[t])
+        stated.append(len(watch.so_far(t)))
+    assert watch.doubts == [] and stated[0] == 0 and stated[-1] == 1
+    doubt = watch.so_far(FRAMES)
+    watch.finish(FRAMES)
+    assert tuple(watch.doubts) == doubt == watch.so_far(FRAMES)

@@ -32,3 +32,15 @@ def test_names_put_right_are_listed():
 def test_an_unknown_kind_is_refused():
     with pytest.raises(InvalidInput, match="unknown kind 'ghost'"):
         LimbDoubt("left_thigh", "ghost", 0.0, 0.1)
+
+
+def test_a_doubt_comes_back_from_its_text():
+    mended = LimbDoubt("left_thigh", "names exchanged", 0.0, 0.1, mended=True, exchanged=(("A", "C"),))
+    for one in (BAD, mended):
+        assert LimbDoubt.of_text(one.as_text()) == one
+
+
+@pytest.mark.parametrize("text", ["", "[1]", "{}", '{"limb": "x", "exchanged": []}', '{"exchanged": [3]}'])
+def test_a_damaged_text_is_refused(text):
+    with pytest.raises(InvalidInput, match="doubt about a limb"):
+        LimbDoubt.of_text(text)

@@ -46,7 +46,14 @@ def open_log(
     if place.exists():
         earlier = (folder / f"{LOG_FOLDER}-{k}" for k in range(1, 1_000_000))
         place.rename(next(path for path in earlier if not path.exists()))
-    kept = LiveStream(stream.trial, stream.rate_hz, stream.start_time_s, stream.plates, stream.sensors)
+    kept = LiveStream(
+        stream.trial,
+        stream.rate_hz,
+        stream.start_time_s,
+        stream.plates,
+        stream.sensors,
+        stream.marker_names,
+    )
     try:
         write_subject(subject, place / SUBJECT_FILE)
         return LiveLog(place, kept, rows, dict(settings), list(names))

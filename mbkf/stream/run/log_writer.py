@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.io.frame_log import FrameLogWriter
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.stream.source import PlateSamples
-from mbkf.trial.live.log import LiveLog
+from mbkf.trial.live.log import LIMBS_DTYPE, LiveLog
 
 EVERY_S = 0.2
 """Interval at which new rows are written."""
@@ -74,7 +75,7 @@ class LogWriter:
             died: Called with any other error, which ends the thread.
         """
         self._log, self._failed, self._report, self._died = log, failed, report, died
-        self._logs = (_Log(log.frames), _Log(log.plates))
+        self._logs = (_Log(log.frames), _Log(log.plates), _Log(log.limbs))
         self._changed = threading.Condition()
         self._closing = False
         self._thread = threading.Thread(target=self._run, name="mbkf-log", daemon=True)
@@ -93,6 +94,12 @@ class LogWriter:
         rows["index"], rows["wrench"] = samples.index, samples.wrench
         with self._changed:
             self._logs[1].put(rows)
+
+    def put_doubt(self, doubt: LimbDoubt) -> None:
+        """A limb in doubt."""
+        row = np.array([(doubt.as_text().encode(),)], dtype=LIMBS_DTYPE)
+        with self._changed:
+            self._logs[2].put(row)
 
     def close(self) -> tuple[int, int]:
         """Writes the remaining rows; returns the numbers of frames that arrived and are, or are not, in the log."""

@@ -22,6 +22,7 @@ from mbkf.filters.kinematic.warm_start import warm_up_frames
 from mbkf.filters.lag import FixedLag
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import TrackingLoop
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
 from mbkf.sensors.block import Frame
@@ -85,6 +86,30 @@ class LiveFilter:
         self._ahead = warm_up_frames(filter.dt_s)
         self._waiting: deque[tuple[int, Frame]] = deque()
         self._predicting_s = 0.0
+        self._pushed: int | None = None
+        self._skipped = 0  # frames of the stream that the loop was never given
+        self._ended: list[LimbDoubt] = []
+
+    def limb_doubts(self) -> tuple[LimbDoubt, ...]:
+        """Limbs that were in doubt, and those that have been for long; times in s since the first frame pushed."""
+        watch = self.loop.watch
+        if watch is None:
+            return ()
+        found = watch.so_far(self.loop.frames)
+        ended = len(watch.doubts)
+        self._ended += [self._in_stream(one) for one in found[len(self._ended) : ended]]
+        return (*self._ended, *(self._in_stream(one) for one in found[ended:]))
+
+    @property
+    def limb_doubts_ended(self) -> int:
+        """Number of the first doubts that will not change any more."""
+        return 0 if self.loop.watch is None else len(self.loop.watch.doubts)
+
+    def _in_stream(self, one: LimbDoubt) -> LimbDoubt:
+        """A doubt by the time of the stream, which has gaps that the loop did not see."""
+        gap_s = self._skipped * self._filter.dt_s
+        right = None if one.right_from_s is None else one.right_from_s + gap_s
+        return replace(one, from_s=one.from_s + gap_s, to_s=one.to_s + gap_s, right_from_s=right)
 
     @property
     def lag_frames(self) -> int:
@@ -124,12 +149,19 @@ class LiveFilter:
         Returns:
             Answers to this frame and to those that waited for it.
         """
+        if self._pushed is not None:
+            self._skipped += max(number - self._pushed - 1, 0)
+        self._pushed = number
         self._waiting.append((number, frame))
         return self._lagged(self._due(self._ahead))
 
     def finish(self) -> list[LiveStep]:
         """Answers to the frames that still wait, when no more follow."""
-        return self._lagged(self._due(0)) + self._corrected(None)
+        steps = self._lagged(self._due(0)) + self._corrected(None)
+        if self.loop.watch is not None:
+            self.loop.watch.finish(self.loop.frames)
+            self.limb_doubts()  # by the gaps before them
+        return steps
 
     def cut(self) -> list[LiveStep]:
         """The same, before a gap that cannot be bridged: what follows starts anew."""

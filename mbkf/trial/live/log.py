@@ -1,10 +1,11 @@
-"""The log of a live run: a row per answered frame, the plates' samples, and the description of both.
+"""The log of a live run: a row per answered frame, the plates' samples, limbs in doubt, and a description.
 
-The results are made from these three files alone, so nothing that was written is lost when a run breaks off.
+The results are made from these files alone, so nothing that was written is lost when a run breaks off.
 """
 
 from __future__ import annotations
 
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,12 +15,13 @@ from numpy.lib.recfunctions import rename_fields
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.filters.record import blank
 from mbkf.io.frame_log import FrameLogWriter, read_frame_log
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.records import PlateReadings
 
-FRAMES_FILE, PLATES_FILE, SUBJECT_FILE = "frames.log", "plates.log", "subject.toml"
+FRAMES_FILE, PLATES_FILE, LIMBS_FILE, SUBJECT_FILE = "frames.log", "plates.log", "limbs.log", "subject.toml"
 """Files of the log's folder."""
 
 MOST_MISSING, MISSING_PER_ROW = 60_000, 4
@@ -45,6 +47,7 @@ class LiveStream:
         start_time_s: Time of frame 0.
         plates: Its plates, without readings; sample 0 at their ``start_time_s``.
         sensors: (S,) inertial sensors that alone show the person; none where markers do.
+        marker_names: Markers of the stream, followed or not; none where its points have no names.
     """
 
     trial: str
@@ -52,6 +55,11 @@ class LiveStream:
     start_time_s: float
     plates: tuple[PlateReadings, ...]
     sensors: tuple[str, ...] = ()
+    marker_names: tuple[str, ...] = ()
+
+
+LIMBS_DTYPE = np.dtype([("doubt", "S4096")])
+"""Type of a limb in doubt: JSON of a :class:`mbkf.io.limb_doubts.LimbDoubt`."""
 
 
 def plates_dtype(plates: int) -> np.dtype:
@@ -92,18 +100,23 @@ class LiveLog:
             "settings": settings,
             "markers": names,
             "sensors": list(stream.sensors),
+            "stream_markers": list(stream.marker_names),
         }
-        self.frames = FrameLogWriter(folder / FRAMES_FILE, frames, header)
-        try:
-            self.plates = FrameLogWriter(folder / PLATES_FILE, plates_dtype(len(stream.plates)), {})
-        except BaseException:
-            self.frames.close()
-            raise
+        with ExitStack() as opened:
+
+            def opens(name: str, dtype: np.dtype, described: dict[str, object]) -> FrameLogWriter:
+                return opened.enter_context(FrameLogWriter(folder / name, dtype, described))
+
+            self.frames = opens(FRAMES_FILE, frames, header)
+            self.plates = opens(PLATES_FILE, plates_dtype(len(stream.plates)), {})
+            self.limbs = opens(LIMBS_FILE, LIMBS_DTYPE, {})
+            opened.pop_all()
 
     def close(self) -> None:
         """No more rows."""
         self.frames.close()
         self.plates.close()
+        self.limbs.close()
 
 
 @dataclass(frozen=True)
@@ -117,6 +130,7 @@ class Logged:
         first: Number of its first frame.
         rows: (T,) one row per frame from there on; those of lost frames are blank.
         left_out: A sentence for each file of which rows are left out, since they or those before are damaged.
+        limb_doubts: Limbs that were in doubt; times in s since the first frame.
     """
 
     stream: LiveStream
@@ -125,6 +139,7 @@ class Logged:
     first: int
     rows: NDArray
     left_out: tuple[str, ...] = ()
+    limb_doubts: tuple[LimbDoubt, ...] = ()
 
 
 def read_live_log(folder: Path) -> Logged:
@@ -139,7 +154,7 @@ def read_live_log(folder: Path) -> Logged:
     if not len(rows):
         raise FileFormatError(folder / FRAMES_FILE, "no frame was written")
     first = int(rows["number"][0])
-    whole = blank(rows.dtype, int(rows["number"][-1]) - first + 1)
+    whole = blank(_aligned(rows.dtype), int(rows["number"][-1]) - first + 1)
     whole["number"] = first + np.arange(len(whole))
     whole[rows["number"] - first] = rows
     samples, samples_lost = _samples(folder / PLATES_FILE, len(header["plates"]))
@@ -147,11 +162,24 @@ def read_live_log(folder: Path) -> Logged:
         _with_readings(plate, samples["index"], samples["wrench"][:, k])
         for k, plate in enumerate(header["plates"])
     )
-    sensors = tuple(header.get("sensors", ()))
-    stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates, sensors)
+    stream = LiveStream(
+        header["trial"],
+        header["rate_hz"],
+        header["start_time_s"],
+        plates,
+        tuple(header.get("sensors", ())),
+        tuple(header.get("stream_markers", ())),
+    )
     frames_lost = _loss(len(log.rows) - len(rows) + log.left_out, "frames", FRAMES_FILE)
     losses = tuple(sentence for sentence in (frames_lost, samples_lost) if sentence)
-    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, losses)
+    doubts = _limb_doubts(folder / LIMBS_FILE)
+    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, losses, doubts)
+
+
+def _aligned(dtype: np.dtype) -> np.dtype:
+    """The type of a row, padded so that the numbers of every row are aligned, as compiled functions read them."""
+    fields = dtype.fields or {}
+    return np.dtype([(name, fields[name][0]) for name in dtype.names or ()], align=True)
 
 
 def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
@@ -162,6 +190,17 @@ def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
         return np.zeros(0, dtype=plates_dtype(plates)), f"the plates' samples are left out: {error}"
     rows = log.rows[: _believable(log.rows["index"])]
     return rows, _loss(len(log.rows) - len(rows) + log.left_out, "samples of the plates", PLATES_FILE)
+
+
+def _limb_doubts(path: Path) -> tuple[LimbDoubt, ...]:
+    """Limbs in doubt as far as they can be read; older logs have none."""
+    if not path.is_file():
+        return ()
+    found = []
+    with suppress(FileFormatError, InvalidInput, UnicodeDecodeError):
+        for row in read_frame_log(path).rows:
+            found.append(LimbDoubt.of_text(row["doubt"].decode()))
+    return tuple(found)
 
 
 def _loss(count: int, what: str, file: str) -> str:

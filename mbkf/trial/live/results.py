@@ -19,16 +19,17 @@ from mbkf.io.subject import Subject, read_subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.trial.checks.judge import messages
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.motion_result import Timeline, motion_result
 from mbkf.trial.live.filter import NUMERICAL, live_inputs
 from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
+from mbkf.trial.preparation.coverage import use_of_names
+from mbkf.trial.preparation.exchanged import renamed_by_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
-from mbkf.trial.results.warnings import unexplained_remarks
+from mbkf.trial.results.warnings import all_warnings
 from mbkf.trial.verdict.judge import judged_result
 
 CHECKED_S = 60.0
@@ -63,7 +64,7 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
     notes = (*notes, *(f"live: {sentence}" for sentence in logged.left_out))
     chosen = str(logged.settings["filter"])
     settings = ReconstructSettings(filter=chosen, smooth=False, correct_markers=False)
-    result = track_of(logged.rows)
+    result = replace(track_of(logged.rows), limb_doubts=logged.limb_doubts)
     if logged.stream.sensors:
         return _by_sensors(logged, subject, notes, result)
     if not result.starts:
@@ -71,7 +72,7 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
             "in no frame of the stream did the markers fit the scaled body; is this the subject's protocol, "
             "and is the vertical axis right (--up)?"
         )
-    measured = _measured(logged)
+    measured = measured_of(logged)
     # A stream may have held nonsense, which ends as NaN.
     with single_threaded(), np.errstate(invalid="ignore", divide="ignore"):
         inputs = live_inputs(logged.names, measured.rate_hz, logged.stream.plates, subject, settings).inputs
@@ -81,18 +82,32 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
             changes = OffsetChanges(inputs.body, ClinicalAngles(inputs.sensor.model), inputs.dt_s)
             changes.follow_all(logged.rows)
             result = changes.added_to(result, logged.rows)
-        found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-        checks = _checks(logged, measured, subject, settings)
-    warnings = (*messages(checks), *unexplained_remarks(found.unexplained), *found.warnings)
-    return judged_result(replace(found, settings=logged.settings, warnings=warnings, checks=checks))
+        renamed, taken_up = renamed_by_filter(measured, result.limb_doubts)
+        found = assemble(capture, subject, settings, renamed, hidden, inputs, result)
+        checks = checks_of(logged, subject, settings)
+    use = use_of_names(logged.stream.marker_names, subject)
+    return judged_result(
+        replace(
+            found,
+            settings=logged.settings,
+            checks=checks,
+            markers_ignored=dict(use.ignored),
+            markers_explained=use.share,
+            warnings=all_warnings(checks, subject, found),
+            names_exchanged=taken_up,
+        )
+    )
 
 
-def _checks(
-    logged: Logged, measured: MarkerTrajectories, subject: Subject, settings: ReconstructSettings
-) -> tuple[Finding, ...]:
-    """The checks of ``reconstruct`` on the frames of a run; of a long run on its first :data:`CHECKED_S`."""
-    frames = min(measured.frames, round(CHECKED_S * measured.rate_hz))
-    shown = replace(measured, positions_m=measured.positions_m[:frames])
+def checks_of(logged: Logged, subject: Subject, settings: ReconstructSettings) -> tuple[Finding, ...]:
+    """The checks of ``reconstruct`` on the frames of a run, or so far; of a long run on its first :data:`CHECKED_S`.
+
+    Args:
+        logged: Contents of the log.
+        subject: The person.
+        settings: Settings of the filters.
+    """
+    shown = measured_of(logged, CHECKED_S)
     try:
         inputs, recording = trial_inputs(shown, logged.stream.plates, subject.in_neutral_posture(), settings)
         alone = markers_alone(inputs, recording) if inputs.plates else None
@@ -131,6 +146,13 @@ def _start_s(logged: Logged) -> float:
     return logged.stream.start_time_s + logged.first / logged.stream.rate_hz
 
 
-def _measured(logged: Logged) -> MarkerTrajectories:
-    start = _start_s(logged)
-    return MarkerTrajectories(logged.names, logged.rows["measured_m"], logged.stream.rate_hz, start)
+def measured_of(logged: Logged, seconds: float = np.inf) -> MarkerTrajectories:
+    """The markers of a run as its stream named them, of its first seconds where it is longer.
+
+    Args:
+        logged: Contents of the log.
+        seconds: Most of it, s.
+    """
+    frames = int(min(len(logged.rows), np.ceil(seconds * logged.stream.rate_hz)))
+    measured = logged.rows["measured_m"][:frames]
+    return MarkerTrajectories(logged.names, measured, logged.stream.rate_hz, _start_s(logged))

@@ -135,8 +135,28 @@ def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
         markers: The trial's.
         subject: The person.
     """
-    match = match_names(markers.names, subject.markers)
-    names = _seen(markers)
+    return _use(_seen(markers), match_names(markers.names, subject.markers), subject)
+
+
+def use_of_names(names: tuple[str, ...], subject: Subject) -> MarkerUse:
+    """Use of a scaled person's markers in a stream, in which any of its markers may appear at any time.
+
+    Args:
+        names: The stream's markers.
+        subject: The person.
+    """
+    own = tuple(name for name in names if name[:1] != "*")
+    return _use(own, match_names(names, subject.markers), subject)
+
+
+def _use(names: Sequence[str], match: Collection[str], subject: Subject) -> MarkerUse:
+    """Use of markers that have a name of their own.
+
+    Args:
+        names: Their names.
+        match: Names that stand for one of the person's markers.
+        subject: The person.
+    """
     used = tuple(name for name in names if name in match)
     reasons = _ignored(names, used, subject.markers, subject.protocol)
     reasons.update({name: COMPUTED for name in reasons if name in _computed(subject)})

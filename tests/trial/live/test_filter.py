@@ -12,6 +12,7 @@ from mbkf.filters.record import FrameRecorder, blank
 from mbkf.filters.tracking import track, track_of
 from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.io.frame_log import FrameLogWriter, read_frame_log
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.subject import write_subject
 from mbkf.trial.live.filter import LiveFilter, live_inputs
 from mbkf.trial.live.log import (
@@ -267,3 +268,22 @@ def test_a_log_without_frames_or_without_a_body_gives_no_results(log):
     FrameLogWriter(log / FRAMES_FILE, nobody.dtype, header).close()
     with pytest.raises(FileFormatError, match="no frame was written"):
         live_results(log)
+
+
+def test_doubts_about_limbs_have_the_time_of_the_stream():
+    """Frames that a gap keeps from the filter count."""
+    inputs, recording = recorded()
+    live = LiveFilter(tracking_filter("kinematic", inputs))
+    doubt = LimbDoubt("left_thigh", "turned over", 0.2, 0.25, mended=True, right_from_s=0.26)
+    for t in range(30):
+        live.push(t, recording.frame(t))
+    live.loop.watch.doubts.append(doubt)
+    assert live.limb_doubts() == (doubt,) and live.limb_doubts_ended == 1
+    live.cut()
+    for t in range(40, 70):
+        live.push(50 + t, recording.frame(t))
+    live.loop.watch.doubts.append(doubt)
+    first, second = live.limb_doubts()
+    assert (
+        first == doubt and second.from_s == pytest.approx(0.8) and second.right_from_s == pytest.approx(0.86)
+    )

@@ -4,8 +4,18 @@ import numpy as np
 import pytest
 
 from mbkf.filters.record import FIELDS, blank
+from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.stream.source import empty_plate
-from mbkf.trial.live.log import MISSING_PER_ROW, MOST_MISSING, RENAMED, LiveLog, LiveStream, read_live_log
+from mbkf.trial.live.log import (
+    LIMBS_DTYPE,
+    LIMBS_FILE,
+    MISSING_PER_ROW,
+    MOST_MISSING,
+    RENAMED,
+    LiveLog,
+    LiveStream,
+    read_live_log,
+)
 
 DTYPE = np.dtype([("number", "<i8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,))])
 
@@ -54,3 +64,28 @@ def test_fields_of_older_logs_have_their_new_names(tmp_path):
     rows = logged(tmp_path / "log", [0, 1], dtype=np.dtype([*DTYPE.descr, *older])).rows
     assert rows.dtype.names == (*DTYPE.names, *RENAMED.values())
     assert set(RENAMED.values()) <= {field.name for field in FIELDS}
+
+
+def test_limbs_in_doubt_come_back_up_to_a_damaged_one(tmp_path):
+    doubts = [LimbDoubt("left_thigh", "turned over", t, t + 0.1, mended=True) for t in (0.5, 2.5)]
+    log = LiveLog(tmp_path / "log", LiveStream("x", 100.0, 0.0, ()), DTYPE, {"filter": "dynamic"}, ["LASI"])
+    log.frames.append(blank(DTYPE, 1))
+    for text in (doubts[0].as_text(), doubts[1].as_text(), "{", doubts[0].as_text()):
+        log.limbs.append(np.array([(text.encode(),)], dtype=LIMBS_DTYPE))
+    log.close()
+    assert read_live_log(tmp_path / "log").limb_doubts == tuple(doubts)
+
+
+def test_older_logs_have_no_limbs_in_doubt(tmp_path):
+    logged(tmp_path / "log", [0, 1])
+    (tmp_path / "log" / LIMBS_FILE).unlink()
+    assert read_live_log(tmp_path / "log").limb_doubts == ()
+
+
+@pytest.mark.parametrize("markers", [1, 3, 8])
+def test_numbers_of_every_row_are_aligned(tmp_path, markers):
+    """Whatever number of markers, each with a flag, a row has."""
+    dtype = np.dtype([*DTYPE.descr, ("rejected", "?", (markers,))])
+    found = logged(tmp_path / "log", [0, 1, 2], dtype=dtype).rows
+    assert all(row[name].flags.aligned for row in found for name in ("q", "footing"))
+    np.testing.assert_array_equal(found["q"][:, 0], [0, 1, 2])
