@@ -18,6 +18,7 @@ import numpy as np
 from benchmarks.checks import Check, Context, number
 from benchmarks.dynamic.captures import SOURCES
 from benchmarks.live.runs import Run, Trial, difference, play
+from benchmarks.live.verdicts import verdict_rows
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import write_subject
 from mbkf.trial.scale import scale
@@ -52,6 +53,7 @@ def run(context: Context) -> list[Check]:
         walk, name=f"{walk.name}, unlabelled", path=walk.path.with_name("raw.c3d"), unlabelled=True
     )
     checks += rows(unlabelled, "lsl", context.out, False)
+    checks += verdict_rows(context)
     fast = synthetic(context.out, QUICK_SECONDS if context.quick else FAST_SECONDS, FAST_HZ)
     found = play(fast, "lsl", context.out / "fast")
     checks += [lost(fast.name, found), *latency(fast.name, found, math.inf)]

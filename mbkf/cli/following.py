@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from mbkf.cli.options import add_lag_option, add_spreads_option, not_negative, p
 from mbkf.cli.terminal import console
 
 if TYPE_CHECKING:
-    from mbkf.stream.results.frame import FrameSink
+    from mbkf.stream.results.frame import FrameSink, LiveFrame
     from mbkf.stream.run.session import LiveOutcome, LiveSession
     from mbkf.stream.source import FrameSource
     from mbkf.viz.live.standing_page import StandingPage
@@ -130,7 +130,7 @@ def sinks(
     Raises:
         MbkfError: An address cannot be served, or a library is missing.
     """
-    found: list[FrameSink] = []
+    found: list[FrameSink] = [SaidVerdict(say)]
     setup = session.setup
     if args.publish is not None:
         from mbkf.stream.lsl.results import LslResults
@@ -159,6 +159,32 @@ def sinks(
             say(f"page: {page.url}")
         found.append(page)
     return found
+
+
+class SaidVerdict:
+    """A receiver of results that says the running verdict in the terminal, and again whenever a part's word changes.
+
+    Args:
+        say: Takes a sentence.
+    """
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
+        self._said: Mapping[str, str] | None = None
+        self._judgement: object = None
+
+    def take(self, frame: LiveFrame) -> None:
+        """Says the verdict of the frame if it is a new one."""
+        judgement = frame.judgement
+        if judgement is None or judgement is self._judgement:
+            return
+        self._judgement, parts = judgement, judgement.verdict.parts
+        if parts != self._said:
+            self._said = parts
+            self._say(f"{judgement.time_s:.1f} s: {judgement.verdict.line}")
+
+    def close(self) -> None:
+        """The run's own outcome follows."""
 
 
 def report_outcome(outcome: LiveOutcome, folder: Path) -> int:

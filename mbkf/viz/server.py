@@ -44,6 +44,9 @@ STOP_S = 3.0
 Newest = Callable[[], tuple[int, bytes] | None]
 """Returns the newest row and its number, or None without rows; called at most 30 times a second per open page."""
 
+News = Callable[[], tuple[int, str] | None]
+"""Returns the newest text for open pages and its number, or None without one; asked as often as rows are."""
+
 Hear = Callable[[str], str]
 """Takes a request of a page and returns the reply; called in a thread, one request after another per open page."""
 
@@ -55,6 +58,7 @@ class PageServer:
         text: The page.
         greeting: First message of the WebSocket.
         newest: Source of rows; None for a page without a stream.
+        news: Source of text that goes with the rows; None for a page without such.
         hear: Replies to requests over the WebSocket; None for a page without requests.
         address: Address to listen at.
         port: 0 for any free one.
@@ -75,13 +79,14 @@ class PageServer:
         *,
         greeting: str = "",
         newest: Newest | None = None,
+        news: News | None = None,
         hear: Hear | None = None,
         address: str = LOOPBACK,
         port: int = 0,
         token: str | None = None,
     ) -> None:
         self._text, self._greeting, self._newest = encoded(text), greeting, newest
-        self._hear = hear
+        self._news, self._hear = news, hear
         self._local = is_loopback(address)
         self.token = token or ("" if self._local else secrets.token_urlsafe(16))
         self._admission: Admission | None = None
@@ -194,10 +199,14 @@ class PageServer:
             await self._converse(connection)
             return
         closed = asyncio.ensure_future(connection.wait_closed())
-        sent = -1
+        sent = told = -1
         try:
             await connection.send(self._greeting)
             while not closed.done():
+                text = None if self._news is None else self._news()
+                if text is not None and text[0] != told:
+                    told = text[0]
+                    await connection.send(text[1])
                 found = self._newest()
                 if found is not None and found[0] != sent:
                     sent = found[0]

@@ -1,6 +1,7 @@
 """The pages in a real browser: something is drawn, it moves, it stops, strangers stay outside, nothing is fetched."""
 
 import io
+import json
 import time
 from dataclasses import replace
 
@@ -9,6 +10,9 @@ import pytest
 from matplotlib.image import imread
 
 from mbkf.io.atomic import write_text
+from mbkf.io.limb_doubts import LimbDoubt
+from mbkf.io.verdict import Reason, Verdict
+from mbkf.stream.results.judgement import Judgement
 from mbkf.trial.results.summary import summarise
 from mbkf.viz.live.page import LivePage
 from mbkf.viz.report.document import report_page
@@ -191,3 +195,21 @@ def test_the_report_opens_from_a_file_without_any_request(opened, tmp_path):
         page.click("summary >> nth=0")
         assert page.locator("details >> nth=0").locator("svg.chart").first.bounding_box()["height"] > 50
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_the_live_page_shows_the_running_verdict_and_limbs_set_right(opened, live):
+    reason = Reason("left_leg_loads", "do not use", "<b>29</b> times", "plates are turned", "correct them")
+    doubt = LimbDoubt("left_thigh", "turned over", 0.4, 0.5, mended=True, right_from_s=0.5)
+    bad = Judgement(Verdict.of([reason]), 1.5, (doubt,), ("two persons are in view",))
+    with opened(live.url) as page:
+        until(page, "Boolean(window.mbkf && mbkf.view)")
+        assert page.locator("#judgement").count() == 0
+        for found in (bad, Judgement(Verdict(), 2.5)):
+            page.evaluate(f"mbkf.read({json.dumps({'judgement': found.plain()})})")
+            shown = page.locator("#judgement")
+            assert shown.get_attribute("data-word") == found.verdict.overall
+            assert shown.locator("summary").inner_text() == found.verdict.line
+            assert shown.locator("li").count() == (3 if found is bad else 0)
+            if found is bad:
+                shown.locator("summary").click()
+                assert shown.locator("li.limb").inner_text() == doubt.sentence

@@ -1,4 +1,7 @@
-"""Results as a Lab Streaming Layer stream: one channel per angle, moment, reaction and standard deviation."""
+"""Results as a Lab Streaming Layer stream: one channel per angle, moment, reaction and standard deviation.
+
+Beside it a stream of markers tells the running verdict: a line of text whenever the judgement changes.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,14 @@ import numpy as np
 from mbkf.model.body import Body
 from mbkf.stream.libraries import lsl
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.results.sending import SendingThread
 from mbkf.stream.results.values import ResultValues
 
 RESULTS_TYPE = "Biomechanics"
+
+VERDICT_SUFFIX, VERDICT_TYPE = "-verdict", "Markers"
+"""Name of the stream of verdicts, after that of the results, and its type."""
 
 
 class LslResults:
@@ -38,6 +45,12 @@ class LslResults:
             entry.append_child_value("label", label)
             entry.append_child_value("unit", unit)
         self._outlet = self._lsl.StreamOutlet(info)
+        told, irregular = name + VERDICT_SUFFIX, 0.0
+        markers = self._lsl.StreamInfo(
+            told, VERDICT_TYPE, 1, irregular, self._lsl.cf_string, f"mbkf-results-{told}"
+        )
+        self._verdicts = self._lsl.StreamOutlet(markers)
+        self._judgement: Judgement | None = None
         self._thread = SendingThread(self._send, "mbkf-lsl-results")
 
     def take(self, frame: LiveFrame) -> None:
@@ -47,8 +60,12 @@ class LslResults:
     def close(self) -> None:
         """Ends the stream."""
         self._thread.close()
-        self._outlet = None
+        self._outlet = self._verdicts = None
 
     def _send(self, frame: LiveFrame) -> None:
         row = np.append(self._values.row(frame), [frame.number, frame.tracked, frame.latency_s])
-        self._outlet.push_sample(row, self._lsl.local_clock() - frame.latency_s)
+        stamp = self._lsl.local_clock() - frame.latency_s
+        self._outlet.push_sample(row, stamp)
+        if frame.judgement is not None and frame.judgement is not self._judgement:
+            self._judgement = frame.judgement
+            self._verdicts.push_sample([frame.judgement.verdict.line], stamp)

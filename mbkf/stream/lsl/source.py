@@ -132,8 +132,15 @@ class LslSource:
     def _resolve(self, name: str | None, types: tuple[str, ...], timeout_s: float) -> StreamInfo | None:
         if name is not None:
             found = self._lsl.resolve_byprop("name", name, 1, timeout_s)
-            return found[0] if found else None
-        found = streams_of(self._lsl, types, timeout_s)
+        else:
+            found = streams_of(self._lsl, types, timeout_s)
+        if types and len(found) > 1:
+            others = ", ".join(f"'{one.name()}' from {one.hostname()}" for one in found[1:])
+            first = f"'{found[0].name()}' from {found[0].hostname()}"
+            self._tell(
+                "chosen",
+                f"{len(found)} marker streams were found: {first} is followed, not {others}; see --stream",
+            )
         return found[0] if found else None
 
     def _find_plates(self) -> FoundPlates | None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.contacts import Source
+from mbkf.stream.results.judgement import Judgement
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,10 @@ class LiveFrame:
         support: (B, 6) estimated wrench on each other part that may bear load (``description.bearings``), NaN or no
             rows where the filter does not ask.
         support_sd: (B, 6) their standard deviations.
+        valid: True where torques and reactions may be used as far as is known by now: every load is read or estimated
+            well, no unexplained force acts, and the verdict is not against loads.
+        judgement: The verdict on the run so far, and limbs in doubt; None in its first second. The record stays the
+            same until it changes.
         unexplained: True while an unexplained force is stated: torques and reactions are not to be used.
         plotted: Estimates of the filter and the force that no contact explains, with a curve of their own in viewers
             (:data:`mbkf.io.results.PLOTTED`), by name.
@@ -71,6 +76,8 @@ class LiveFrame:
     support: Array = field(default_factory=lambda: np.zeros((0, 6)))
     support_sd: Array = field(default_factory=lambda: np.zeros((0, 6)))
     unexplained: bool = False
+    valid: bool = False
+    judgement: Judgement | None = None
     plotted: Mapping[str, Array] = field(default_factory=dict)
 
 

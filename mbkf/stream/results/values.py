@@ -7,6 +7,7 @@ import numpy as np
 from mbkf.conventions import SIDES, Array
 from mbkf.io.dimensions import labels_of
 from mbkf.io.results import PLOTTED
+from mbkf.io.verdict import PARTS
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.stream.results.frame import LiveFrame
@@ -19,8 +20,10 @@ class ResultValues:
 
     Angles in rad (the pelvis's translations in m), moments in N m (N), reactions in N and N m about the world's origin,
     z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same. Then stand
-    declared estimates (:data:`mbkf.io.results.PLOTTED`) in their own units, and last ``unexplained``: 1 while an
-    unexplained force is stated, so that moments and reactions are not to be used.
+    declared estimates (:data:`mbkf.io.results.PLOTTED`) in their own units, and ``unexplained``: 1 while an unexplained
+    force is stated, so that moments and reactions are not to be used. Last stand ``valid``, 1 in frames whose moments
+    and reactions may be used, and the running verdict: ``verdict`` and ``verdict_`` with each part, 0 for "use", 1 for
+    "look", 2 for "do not use", NaN before it is known.
 
     Attributes:
         names: Of the numbers.
@@ -53,7 +56,8 @@ class ResultValues:
             ]
             groups.append((columns, [one.unit.text] * len(columns)))
             self._widths[name] = len(columns)
-        groups.append((["unexplained"], ["1"]))
+        judged = ["unexplained", "valid", "verdict", *(f"verdict_{part}" for part in PARTS)]
+        groups.append((judged, ["1"] * len(judged)))
         self.names: tuple[str, ...] = tuple(name for names, _ in groups for name in names)
         self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
 
@@ -74,7 +78,8 @@ class ResultValues:
         loads = frame.wrench.ravel(), frame.wrench_sd.ravel()
         unknown = {name: np.full(width, np.nan) for name, width in self._widths.items()}
         plotted = [np.ravel(values) for values in (unknown | dict(frame.plotted)).values()]
-        stated = np.array([float(frame.unexplained)])
+        words = (np.nan,) * (1 + len(PARTS)) if frame.judgement is None else frame.judgement.codes
+        stated = np.array([frame.unexplained, frame.valid, *words], dtype=float)
         return np.concatenate(
             [numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel(), *plotted, stated]
         )

@@ -1,4 +1,7 @@
-"""Results as JSON over WebSocket: a greeting with names and units, then the newest frame again and again."""
+"""Results as JSON over WebSocket: a greeting with names and units, then the newest frame again and again.
+
+A frame holds the running verdict's word; the first one that a client gets after the judgement changed holds all of it.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +22,7 @@ from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
 from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.results.sending import SendingThread
 from mbkf.stream.results.values import ResultValues
 
@@ -64,6 +68,8 @@ class WebSocketResults:
         self._values = ResultValues(model)
         self._changed = threading.Condition()
         self._newest, self._count, self._closed = "", 0, False
+        self._judgement: Judgement | None = None
+        self._judged, self._judged_count = "", 0
         try:
             self._server = serve(
                 self._serve,
@@ -108,7 +114,7 @@ class WebSocketResults:
 
     def _serve(self, connection: ServerConnection) -> None:
         greeting = {"names": self._values.names, "units": self._values.units}
-        sent = 0
+        sent = told = 0
         try:
             connection.send(json.dumps(greeting))
             while True:
@@ -119,6 +125,9 @@ class WebSocketResults:
                         return
                     fresh, text = self._count > sent, self._newest
                     sent = self._count
+                    if fresh and self._judged_count > told:
+                        told = self._judged_count
+                        text = f'{text[:-1]}, "judgement": {self._judged}}}'
                 if fresh:
                     connection.send(text)
         except ConnectionClosed:
@@ -132,10 +141,17 @@ class WebSocketResults:
             "latency_s": frame.latency_s,
             "lost": frame.lost,
             "rate_hz": frame.rate_hz,
+            "valid": frame.valid,
+            "verdict": None if frame.judgement is None else frame.judgement.verdict.overall,
             "values": _numbers(self._values.row(frame)),
         }
         text = json.dumps(message)
+        changed = frame.judgement is not None and frame.judgement is not self._judgement
+        judged = json.dumps(frame.judgement.plain()) if changed and frame.judgement is not None else ""
         with self._changed:
+            if changed:
+                self._judgement, self._judged = frame.judgement, judged
+                self._judged_count += 1
             self._newest, self._count = text, self._count + 1
             self._changed.notify_all()
 

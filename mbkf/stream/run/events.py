@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import asdict, dataclass
 
 MERGED_S = 2.0
 """An event of the same kind within this time prolongs the one before."""
+
+EACH = ("verdict", "limb", "person", "names", "chosen")
+"""Kinds whose sentences differ in more than a number: each sentence is an event of its own."""
 
 MOST = 300
 """Number of events that are listed one by one."""
@@ -62,7 +65,8 @@ class EventLog:
         at_s = self._clock() - self.begin_s
         with self._lock:
             known = self._latest.get(kind)
-            if known is not None and at_s - known.last_s <= MERGED_S:
+            alike = known is not None and (kind not in EACH or known.what == what)
+            if known is not None and alike and at_s - known.last_s <= MERGED_S:
                 known.last_s, known.count = at_s, known.count + count
                 return
             event = RunEvent(kind, what, at_s, at_s, frame, count)
@@ -71,6 +75,15 @@ class EventLog:
                 self._events.append(event)
             else:
                 self._unlisted += 1
+
+    def sentences(self, kinds: Collection[str]) -> tuple[str, ...]:
+        """Sentences of the events of some kinds, in order of time, each once.
+
+        Args:
+            kinds: The kinds.
+        """
+        with self._lock:
+            return tuple(dict.fromkeys(event.what for event in self._events if event.kind in kinds))
 
     def plain(self) -> list[dict[str, object]]:
         """All events as plain data, for JSON."""

@@ -19,6 +19,7 @@ from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import KeptContact
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.judgement import Judgement
 from mbkf.trial.live.filter import LiveInputs
 from mbkf.trial.loads.running import RunningLoad
 
@@ -51,7 +52,14 @@ class FrameMaker:
             self._arrivals.popleft()
 
     def frame(
-        self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int, load: RunningLoad | None = None
+        self,
+        ready: ReadyFrame,
+        row: NDArray,
+        latency_s: float,
+        lost: int,
+        load: RunningLoad | None = None,
+        valid: bool = False,
+        judgement: Judgement | None = None,
     ) -> LiveFrame:
         """A listener's frame.
 
@@ -61,6 +69,8 @@ class FrameMaker:
             latency_s: From arrival to result.
             lost: Frames lost so far.
             load: Judgement of the force that no contact explains; None where there is none.
+            valid: Its loads may be used.
+            judgement: The judgement of the run so far.
         """
         if self._first is None:
             self._first = ready.number
@@ -102,6 +112,8 @@ class FrameMaker:
             support=found["support"],
             support_sd=found["support_sd"],
             unexplained=load is not None and load.acts,
+            valid=valid,
+            judgement=judgement,
             plotted={name: np.asarray(found[key]) for name, key in _PLOTTED.items()}
             | ({} if load is None else {UNEXPLAINED: load.force_n}),
         )

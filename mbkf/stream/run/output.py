@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from mbkf.filters.record import FrameRecorder
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
-from mbkf.stream.results.frame import FrameSink
+from mbkf.stream.results.frame import FrameSink, LiveFrame
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.setup import LiveSetup
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.run.unexplained import LoadWatch
+from mbkf.stream.run.verdict import VerdictWatch
 from mbkf.trial.live.filter import LiveStep
-from mbkf.trial.loads.running import RunningLoad
 
 
 class RunOutput:
@@ -29,6 +29,7 @@ class RunOutput:
         statistics: RunStatistics,
         note: Note,
         loads: LoadWatch,
+        verdict: VerdictWatch,
     ) -> None:
         """Holds the listeners; one that raises an error is dropped.
 
@@ -39,12 +40,13 @@ class RunOutput:
             statistics: Counts latencies and starts.
             note: Called with events.
             loads: Judges the forces that no contact explains.
+            verdict: Judges the run.
         """
         self._rows: FrameRecorder = setup.rows
         self._maker: FrameMaker = setup.maker
         self._sinks, self._opened = list(sinks), tuple(sinks)
         self._put_row, self._statistics, self._note = put_row, statistics, note
-        self._loads = loads
+        self._loads, self._verdict = loads, verdict
 
     def arrived(self, arrival_s: float) -> None:
         """Counts a frame that arrived, for the rate shown."""
@@ -77,8 +79,10 @@ class RunOutput:
         if spread is not None:
             self._rows.spread(row, spread)
         load = self._loads.push(ready, row)
+        valid = self._verdict.push(row, load)
         if self._sinks:
-            self._show(ready, row, load, (latency, lost))
+            judged = load, valid, self._verdict.judgement
+            self._show(self._maker.frame(ready, row, latency, lost, *judged), ready.number)
         if step.estimate is not None:
             self._rows.innovation(row, step.estimate)
         self._put_row(row)
@@ -91,11 +95,10 @@ class RunOutput:
             except Exception as error:  # the results are still to be written
                 self._note("viewer", f"a listener failed at the end ({error})", None, 1)
 
-    def _show(self, ready: ReadyFrame, row: NDArray, load: RunningLoad, counted: tuple[float, int]) -> None:
-        shown = self._maker.frame(ready, row, *counted, load)
+    def _show(self, shown: LiveFrame, number: int) -> None:
         for sink in list(self._sinks):
             try:
                 sink.take(shown)
             except Exception as error:  # a listener's error must not end a recording
                 self._sinks.remove(sink)
-                self._note("viewer", f"a listener failed and was dropped ({error})", ready.number, 1)
+                self._note("viewer", f"a listener failed and was dropped ({error})", number, 1)

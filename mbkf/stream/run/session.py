@@ -14,6 +14,7 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.stream.receiving.receiver import FrameCounts, Receiver
 from mbkf.stream.results.frame import FrameSink
+from mbkf.stream.run.checking import LiveChecks
 from mbkf.stream.run.connecting import wait_for
 from mbkf.stream.run.events import EventLog
 from mbkf.stream.run.failure import Failure
@@ -26,11 +27,15 @@ from mbkf.stream.run.report import LIVE_FILE, ReportFile, frame_report
 from mbkf.stream.run.setup import LiveSetup, prepare, prepare_sensors
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.run.unexplained import LoadWatch
+from mbkf.stream.run.verdict import VerdictWatch
 from mbkf.stream.source import FrameSource
 from mbkf.trial.live.filter import live_settings
 from mbkf.trial.live.log import LiveLog
 from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
+
+NOTICES = ("person", "names", "chosen")
+"""Kinds of events that stand beside the running verdict."""
 
 RUNNING = "running"
 """State of a run in live.json until it has ended."""
@@ -135,12 +140,16 @@ class LiveSession:
         setup, note, statistics = self.setup, self._events.note, RunStatistics()
         failure, loads = Failure(), LoadWatch(setup.live, setup.stream.rate_hz, note)
         log, report = self._begun(setup)
+        checks = LiveChecks(log.folder, setup.stream.rate_hz, note) if setup.sensors is None else None
 
         def report_running() -> None:
+            counts, found = receiver.counts(), {"unexplained": loads.plain(), **verdict.plain()}
             with suppress(OSError):  # the disk is full; the next one may have room
-                report.write(self._report(RUNNING, receiver.counts(), statistics, unexplained=loads.plain()))
+                report.write(self._report(RUNNING, counts, statistics, 0, **found))
 
         writer = LogWriter(log, self._disk_failed, report_running, partial(failure.of, "writing the log"))
+        notices = partial(self._events.sentences, NOTICES)
+        verdict = VerdictWatch(setup, self._subject, loads, note, checks, writer.put_doubt, notices)
         receiver = Receiver(
             self._source,
             setup.stream,
@@ -150,13 +159,16 @@ class LiveSession:
             self._subject.mass_kg,
             partial(failure.of, "reading the stream"),
         )
-        output = RunOutput(setup, sinks, writer.put_row, statistics, note, loads)
+        output = RunOutput(setup, sinks, writer.put_row, statistics, note, loads, verdict)
         loop = FilterLoop(setup, receiver, output, statistics, note, failure)
         with single_threaded(), low_latency():
             receiver.start()
             ended_by = loop.run(stop, seconds)
             receiver.stop()
         self._close_source()
+        if checks is not None:
+            checks.close()
+        verdict.end()
         output.close()
         logged, unlogged = writer.close()
         if failure.cause is not None:
@@ -167,6 +179,7 @@ class LiveSession:
                 f"{unlogged} of {logged + unlogged} answered frames are not in the log, nor in the results",
             )
         written = self._write_results()
+        final = None if written.summary is None else written.summary["verdict"]
         problem, complete = written.problem, not (unlogged or written.left_out)
         if statistics.latest is None or (problem is None and complete and not keep_log):
             drop_log(self._folder)
@@ -177,7 +190,7 @@ class LiveSession:
             statistics,
             unlogged,
             unexplained=loads.plain(),
-            verdict=None if written.summary is None else written.summary["verdict"],
+            **(verdict.plain() | {"verdict": final}),
             ended_by=ended_by,
             frames_written=logged,
             frames_not_written=unlogged,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 
@@ -10,7 +11,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.record import FrameRecorder
 from mbkf.imu.rest_watch import FeetAtRest
-from mbkf.io.subject import Subject
+from mbkf.io.subject import Subject, match_names
 from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.block import Frame
@@ -24,6 +25,9 @@ from mbkf.trial.live.labels import live_body
 from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.settings import ReconstructSettings
+
+MOST_NAMED = 4
+"""Names that a sentence lists at most."""
 
 
 class SensorFrames:
@@ -111,6 +115,7 @@ def prepare(
         NotObservable: Too few of the subject's markers are among the stream's.
     """
     wanted = stream.marker_names or live_body(subject).names
+    _note_named_twice(stream.marker_names, subject, note)
     with single_threaded():
         live = live_inputs(wanted, stream.rate_hz, stream.plates, subject, settings)
         chosen = tracking_filter(settings.filter, live.inputs)
@@ -122,6 +127,21 @@ def prepare(
         FrameRecorder(chosen, len(live.names), live.inputs.body, settings.spreads),
         None if stream.marker_names else PointNames(subject, live.names, 1.0 / stream.rate_hz, patient, note),
     )
+
+
+def _note_named_twice(names: tuple[str, ...], subject: Subject, note: Note) -> None:
+    """Reports markers of the person that the stream names more than once, as it does for a second person."""
+    counts = Counter(names)
+    twice = [name for name in match_names(counts, subject.markers) if counts[name] > 1]
+    if twice:
+        listed = ", ".join(twice[:MOST_NAMED]) + (" …" if len(twice) > MOST_NAMED else "")
+        note(
+            "person",
+            f"the stream names {len(twice)} markers more than once ({listed}): the first of each is followed; "
+            "where two persons are in view, send a stream of one",
+            None,
+            1,
+        )
 
 
 def prepare_sensors(worn: LiveWorn, settings: ReconstructSettings, stream: StreamDescription) -> LiveSetup:

@@ -37,7 +37,11 @@ class _Stated:
 
 
 class LoadWatch:
-    """Judges the frames of a run, one after another."""
+    """Judges the frames of a run, one after another.
+
+    Attributes:
+        read: Plates read every loaded foot in the latest frame.
+    """
 
     def __init__(self, live: LiveInputs, rate_hz: float, note: Note) -> None:
         """Makes it.
@@ -55,7 +59,8 @@ class LoadWatch:
         self._stray, self._most_stray = 0, round(STRAY_S * rate_hz)
         self._first: int | None = None
         self._loads: list[_Stated] = []
-        self._acts, self._unlisted = False, 0
+        self._acts = self._sized = False
+        self.read = False
 
     def push(self, ready: ReadyFrame, row: NDArray) -> RunningLoad:
         """The judgement of an answered frame.
@@ -70,17 +75,21 @@ class LoadWatch:
         if found["started"]:
             self._running.cut()
         contacts_n, judged = self._contacts(ready, row)
+        self.read = judged
         known = np.array([bool(found["known"])])
         centre = centres_of_mass(self._model, found["q"][None], known)[0] if known[0] else np.full(3, np.nan)
         load = self._running.push(centre, contacts_n, judged)
         self._listed(load, (ready.number - self._first) / self._rate_hz, ready.number)
         return load
 
+    def stated(self) -> tuple[UnexplainedLoad, ...]:
+        """Loads stated so far whose size is known."""
+        return tuple(self._load(one) for one in list(self._loads) if one.vector_n.any())
+
     def plain(self) -> list[dict[str, object]]:
         """Loads stated so far, for live.json."""
         found: list[dict[str, object]] = []
-        for one in list(self._loads):
-            load = self._load(one)
+        for load in self.stated():
             found.append(
                 {
                     "from_s": load.from_s,
@@ -117,16 +126,17 @@ class LoadWatch:
 
     def _listed(self, load: RunningLoad, time_s: float, number: int) -> None:
         """Lists a load, and notes where it begins."""
-        if load.acts and not self._acts:
-            one = _Stated(time_s, time_s, load.force_n)
-            self._note("unexplained", self._load(one).sentence_now, number, 1)
-            if len(self._loads) < MOST:
-                self._loads.append(one)
-        elif load.acts and self._loads:
-            latest = self._loads[-1]
+        if load.acts and not self._acts and len(self._loads) < MOST:
+            self._loads.append(_Stated(time_s, time_s, np.zeros(3)))
+            self._sized = False
+        if load.acts and self._loads:
+            latest, force_n = self._loads[-1], np.nan_to_num(load.force_n)
             latest.to_s = time_s
-            if np.linalg.norm(np.nan_to_num(load.force_n)) > np.linalg.norm(latest.vector_n):
-                latest.vector_n = load.force_n
+            if np.linalg.norm(force_n) > np.linalg.norm(latest.vector_n):
+                latest.vector_n = force_n
+            if not self._sized and latest.vector_n.any():  # its size is the mean of half a second
+                self._sized = True
+                self._note("unexplained", self._load(latest).sentence_now, number, 1)
         self._acts = load.acts
 
     def _load(self, one: _Stated) -> UnexplainedLoad:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.io.subject import STANDING_KEY, Subject
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.trial.verdict.parts import LEGS, part_of_segment
 
@@ -29,7 +29,7 @@ class Stood(NamedTuple):
     degrees: float
 
 
-def stood_bent(model: HumanModel, subject: Subject) -> tuple[Stood, ...]:
+def stood_bent(model: Body, subject: Subject) -> tuple[Stood, ...]:
     """Joints of the legs that were turned by more than :data:`LEAST_DEG`, without toes; the most turned first.
 
     Args:

@@ -68,13 +68,31 @@ class Live {
   connect() {
     const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/frames${location.search}`);
     socket.binaryType = "arraybuffer";
-    socket.onmessage = ({ data }) => (typeof data === "string" ? this.begin(JSON.parse(data)) : this.take(new Float32Array(data)));
+    socket.onmessage = ({ data }) => (typeof data === "string" ? this.read(JSON.parse(data)) : this.take(new Float32Array(data)));
     socket.onopen = () => { this.connected = true; };
     socket.onclose = () => {
       this.connected = false;
       this.tell("not connected; trying again", "bad");
       setTimeout(() => this.connect(), 1000);
     };
+  }
+
+  read(message) {
+    if (message.judgement) this.judge(message.judgement);
+    else this.begin(message);
+  }
+
+  // The running verdict: its line below the header, its reasons and limbs in doubt on a click.
+  judge({ overall, line, sentences, notices, limb_doubts, time_s }) {
+    if (!this.judged) {
+      this.judged = element("details", { id: "judgement" });
+      document.querySelector("header").after(this.judged);
+    }
+    const limbs = limb_doubts.map((one) => element("li", { className: "limb" }, one.sentence));
+    this.judged.dataset.word = overall;
+    this.judged.replaceChildren(element("summary", { title: `judged after ${time_s.toFixed(1)} s` }, line),
+      element("ul", {}, ...[...sentences, ...notices].map((text) => element("li", {}, text)), ...limbs));
+    this.judged.classList.toggle("bare", !this.judged.querySelector("li"));
   }
 
   begin(scene) {

@@ -10,6 +10,7 @@ from mbkf.conventions import Array
 from mbkf.model.body import Body
 from mbkf.stream.loopback import LOOPBACK
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.judgement import Judgement
 from mbkf.viz.live.rows import DisplayRows
 from mbkf.viz.page import page
 from mbkf.viz.scene.description import scene_description
@@ -55,6 +56,7 @@ class LivePage:
         self._rows = DisplayRows(model, len(marker_names), float(heights.mean()) if heights.size else 0.0)
         self._newest: LiveFrame | None = None
         self._sent: tuple[LiveFrame, int, bytes] | None = None
+        self._judged: tuple[Judgement, int, str] | None = None
         greeting = scene_description(
             title, model, marker_names, self._rows.clinical.names, corners, self._rows.layout, streamed=True
         )
@@ -62,6 +64,7 @@ class LivePage:
             page(),
             greeting=json.dumps(greeting),
             newest=self._packed,
+            news=self._judgement,
             address=address,
             port=port,
             token=token,
@@ -76,6 +79,17 @@ class LivePage:
     def close(self) -> None:
         """Ends the server; open pages show that they are not connected."""
         self._server.close()
+
+    def _judgement(self) -> tuple[int, str] | None:
+        """The newest judgement of the run as JSON, for all open pages; None before there is one."""
+        frame = self._newest
+        if frame is None or frame.judgement is None:
+            return None
+        if self._judged is None or self._judged[0] is not frame.judgement:
+            count = 0 if self._judged is None else self._judged[1] + 1
+            text = json.dumps({"judgement": frame.judgement.plain()}, ensure_ascii=False)
+            self._judged = (frame.judgement, count, text)
+        return self._judged[1:]
 
     def _packed(self) -> tuple[int, bytes] | None:
         """The newest frame's row as 32-bit numbers; made once for all open pages."""

@@ -11,14 +11,16 @@ import pytest
 
 from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.model.human import HumanModel
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl.format import plates_info, plates_name, read_marker_info, read_plates_info
 from mbkf.stream.lsl.player import LslPlayer
-from mbkf.stream.lsl.results import LslResults
+from mbkf.stream.lsl.results import VERDICT_SUFFIX, LslResults
 from mbkf.stream.lsl.source import Arrived, LslSource
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
+from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.results.values import ResultValues
 from mbkf.stream.source import UNCOUNTED, StreamDescription
 from tests.captures import made_capture
@@ -333,12 +335,31 @@ def test_results_are_published_with_names_and_units(name):
     inlet.open_stream(5.0)
     entry = inlet.info(5.0).desc().child("channels").child("channel")
     assert (entry.child_value("label"), entry.child_value("unit")) == ("pelvis_tilt", "rad")
-    frame = shown_frame(model)
+    verdict = Verdict.of([Reason("pelvis", "look", "9 mm off", "it may be loose", "look at it")])
+    frame = replace(shown_frame(model), judgement=Judgement(verdict, 1.5))
+    (told,) = PYLSL.resolve_byprop("name", name + VERDICT_SUFFIX, 1, 5.0)
+    words = PYLSL.StreamInlet(told)
+    words.open_stream(5.0)
     until = time.monotonic() + 5.0
     sample = None
     while sample is None and time.monotonic() < until:
         results.take(frame)
         sample, _ = inlet.pull_sample(0.1)
+    assert words.pull_sample(5.0)[0] == [verdict.line]
     results.close()
     np.testing.assert_array_equal(sample[:-3], ResultValues(model).row(frame))
     np.testing.assert_array_equal(sample[-3:], [frame.number, 1.0, frame.latency_s])
+
+
+def test_a_stream_chosen_among_several_is_reported(monkeypatch):
+    def found(*names):
+        infos = [SimpleNamespace(name=lambda n=n: n, hostname=lambda n=n: f"pc-{n}") for n in names]
+        monkeypatch.setattr("mbkf.stream.lsl.source.streams_of", lambda *_: infos)
+        monkeypatch.setattr(LslSource, "_connected", lambda self, info: info.name())
+        source = LslSource(None, None)
+        return source.connect(0.1), source.news()
+
+    assert found("a") == ("a", [])
+    chosen, ((kind, sentence),) = found("a", "b")
+    assert (chosen, kind) == ("a", "chosen")
+    assert sentence.startswith("2 marker streams were found: 'a' from pc-a is followed, not 'b' from pc-b")

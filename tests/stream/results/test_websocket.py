@@ -11,9 +11,11 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from mbkf.errors import InvalidInput
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.results.values import ResultValues
 from mbkf.stream.results.websocket import WebSocketResults, parse_address
 from tests.waiting import PATIENCE_S
@@ -184,3 +186,37 @@ def test_addresses_are_read():
     for bad in ("", "x", "1:2:x", "99999"):
         with pytest.raises(InvalidInput, match="--websocket"):
             parse_address(bad)
+
+
+def judged(word, number=0):
+    reason = Reason("pelvis", word, "9 mm off", "it may be loose", "look at it")
+    return replace(
+        shown_frame(MODEL, number), valid=word == "use", judgement=Judgement(Verdict.of([reason]), 1.5)
+    )
+
+
+def test_the_running_verdict_stands_beside_the_values_as_numbers():
+    values = ResultValues(MODEL)
+    before, after = (
+        dict(zip(values.names, values.row(one), strict=True)) for one in (shown_frame(MODEL), judged("look"))
+    )
+    assert np.isnan([before["verdict"], before["verdict_pelvis"]]).all() and before["valid"] == 0.0
+    assert (after["verdict"], after["verdict_pelvis"], after["verdict_left_leg_loads"]) == (1.0, 1.0, 0.0)
+
+
+def test_each_client_gets_a_judgement_once_and_its_word_with_every_frame(served):
+    found = judged("look")
+    for _ in range(2):
+        with connect(served.url) as client:
+            client.recv(timeout=PATIENCE_S)
+            first = next_frame(client, served, found)
+            assert (first["verdict"], first["valid"]) == ("look", False)
+            assert (
+                first["judgement"]["line"].startswith("look: pelvis") and first["judgement"]["time_s"] == 1.5
+            )
+            assert "judgement" not in next_frame(client, served, found)
+            changed = next_frame(client, served, judged("do not use"))
+            while changed["verdict"] == "look":  # frames given again
+                changed = json.loads(client.recv(timeout=PATIENCE_S))
+            assert changed["judgement"]["parts"]["pelvis"] == "do not use"
+            assert next_frame(client, served, found)["frame"] == 0

@@ -13,6 +13,7 @@ from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.setup import prepare
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.run.unexplained import LoadWatch
+from mbkf.stream.run.verdict import VerdictWatch
 from tests.captures import made_capture
 from tests.stream.scripted import SETTINGS, Collected, ScriptedSource, frames_of
 
@@ -34,7 +35,15 @@ def test_every_frame_is_answered_once(subject):
     receiver = Receiver(source, stream, setup.columns, lambda _: None, events.note)
     kept, failing = Collected([]), Failing([])
     loads = LoadWatch(setup.live, stream.rate_hz, events.note)
-    output = RunOutput(setup, [kept, failing], rows.append, statistics, events.note, loads)
+    output = RunOutput(
+        setup,
+        [kept, failing],
+        rows.append,
+        statistics,
+        events.note,
+        loads,
+        VerdictWatch(setup, subject, loads, events.note),
+    )
     loop = FilterLoop(setup, receiver, output, statistics, events.note, Failure())
     receiver.start()
     assert loop.run(threading.Event(), None) == "the source ended"
@@ -57,7 +66,15 @@ def test_latency_counts_from_the_arrival_of_the_last_frame_that_an_answer_knows(
     receiver = Receiver(ScriptedSource(stream, frames), stream, setup.columns, lambda _: None, events.note)
     kept = Collected([])
     loads = LoadWatch(setup.live, stream.rate_hz, events.note)
-    output = RunOutput(setup, [kept], rows.append, statistics, events.note, loads)
+    output = RunOutput(
+        setup,
+        [kept],
+        rows.append,
+        statistics,
+        events.note,
+        loads,
+        VerdictWatch(setup, subject, loads, events.note),
+    )
     receiver.start()
     assert FilterLoop(setup, receiver, output, statistics, events.note, Failure()).run(
         threading.Event(), None

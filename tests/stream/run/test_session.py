@@ -2,6 +2,7 @@
 
 import json
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -293,3 +294,31 @@ def test_the_same_thing_again_is_one_event():
     for k in range(MOST):
         events.note(f"kind {k}", "x")
     assert events.plain()[-1]["kind"] == "unlisted"
+
+
+def test_a_limb_whose_names_are_exchanged_is_reported_as_offline(tmp_path, capture, subject):
+    """With its time, the names and the same verdict, also of the log alone."""
+    positions, names = np.array(capture.markers.positions_m), capture.markers.names
+    for part in ("KNE", "ANK", "TIB", "TUB", "HEE", "TOE"):
+        pair = [names.index(side + part) for side in "LR" if side + part in names]
+        if len(pair) == 2:
+            positions[40:, pair] = positions[40:, pair[::-1]]
+    faulty = replace(capture, markers=replace(capture.markers, positions_m=positions))
+    outcome = follow(tmp_path, *frames_of(faulty), subject, keep_log=True)
+    expected = offline_as_live(faulty, subject)
+    found = read_reconstruction(tmp_path)
+    assert expected.limb_doubts and found.limb_doubts == expected.limb_doubts
+    assert found.names_exchanged == expected.names_exchanged
+    assert found.verdict.parts == expected.verdict.parts
+    assert live_results(tmp_path / LOG_FOLDER).limb_doubts == expected.limb_doubts
+    (first, *_) = outcome.report["limb_doubts"]
+    assert first["from_s"] == pytest.approx(expected.limb_doubts[0].from_s)
+    assert first["sentence"] == expected.limb_doubts[0].sentence
+    assert "limb" in kinds(outcome)
+
+
+def offline_as_live(capture, subject):
+    """The causal result without names that the whole trial's geometry puts right."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("mbkf.trial.reconstruct.names_put_right", lambda markers, _: (markers, ()))
+        return offline(capture, subject)

@@ -8,6 +8,7 @@ from mbkf.filters.record import UNASKED, FrameRecorder
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.run.unexplained import LoadWatch
 from mbkf.trial.live.filter import live_inputs
+from mbkf.trial.loads.running import RunningLoad
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.captures import made_capture
@@ -90,3 +91,20 @@ def test_a_filter_that_estimates_no_wrench_is_judged_by_the_plates(stream, subje
     found = standing.frames(100, 1.0, footing=(UNASKED, UNASKED))
     assert found[-1].acts
     assert found[-1].force_n == pytest.approx([0.0, 0.0, standing.weight_n], abs=1.0)
+
+
+def test_a_load_is_noted_once_its_size_is_known(stream, subject):
+    """A large one is stated in a quarter of a second; its size is the mean of half a second."""
+    standing = Standing(stream, subject)
+    for time_s, force in (
+        (0.3, np.full(3, np.nan)),
+        (0.5, np.array([0.0, 0.0, 150.0])),
+        (0.6, np.full(3, 90.0)),
+    ):
+        standing.watch._listed(RunningLoad(force, True), time_s, round(100 * time_s))
+        if np.isnan(force).any():
+            assert standing.notes == [] and standing.watch.plain() == [] and standing.watch.stated() == ()
+    ((kind, sentence, frame, _),) = standing.notes
+    assert (kind, frame) == ("unexplained", 50) and "150 N upward" in sentence
+    (load,) = standing.watch.stated()
+    assert (load.from_s, load.to_s) == (0.3, 0.6) and load.force_n == pytest.approx(90.0 * np.sqrt(3.0))

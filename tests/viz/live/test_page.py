@@ -1,12 +1,16 @@
 """The live page as a sink: takes frames without waiting, tells the page what it needs, draws the newest."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from websockets.sync.client import connect
 
 from mbkf.errors import InvalidInput
+from mbkf.io.limb_doubts import LimbDoubt
+from mbkf.io.verdict import Reason, Verdict
+from mbkf.stream.results.judgement import Judgement
 from mbkf.viz.live.page import LivePage
 from tests.motions import assert_near
 from tests.recordings import PLATE, walk, walker
@@ -75,3 +79,19 @@ def test_pages_share_one_row(live):
 def test_an_address_that_is_not_ours_is_refused():
     with pytest.raises(InvalidInput, match=r"192\.0\.2\.1"):
         LivePage(walker()[1], walk().marker_names, address="192.0.2.1")
+
+
+def test_the_judgement_of_the_run_is_sent_when_it_changes(live):
+    verdict = Verdict.of([Reason("left_leg", "look", "9 mm off", "it may be loose", "look at it")])
+    doubt = LimbDoubt("left_thigh", "turned over", 0.4, 0.5, mended=True, right_from_s=0.5)
+    judgement = Judgement(verdict, 1.5, (doubt,))
+    live.take(replace(frame(3), judgement=judgement))
+    with socket_of(live) as socket:
+        socket.recv(5)
+        told = json.loads(socket.recv(5))["judgement"]
+        assert told["line"] == verdict.line and told["limb_doubts"][0]["sentence"] == doubt.sentence
+        assert isinstance(socket.recv(5), bytes)
+        live.take(replace(frame(4), judgement=judgement))
+        assert isinstance(socket.recv(5), bytes)
+        live.take(replace(frame(5), judgement=Judgement(Verdict(), 2.5)))
+        assert json.loads(socket.recv(5))["judgement"]["overall"] == "use"
