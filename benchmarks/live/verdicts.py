@@ -157,7 +157,7 @@ def _run(
     log = open_log(folder, source.stream, setup.rows.dtype, kept, setup.names, subject)
     writer = LogWriter(log, _raised)
     loads = LoadWatch(setup.live, source.stream.rate_hz, _unnoted)
-    checks = SimpleNamespace(findings=(), reached=_unasked)
+    checks = SimpleNamespace(findings=(), reached=_unasked, restarted=_unasked)
     watch = VerdictWatch(setup, subject, loads, _unnoted, checks, writer.put_doubt)  # type: ignore[arg-type]
     alignment = FrameAlignment(source.stream, setup.columns, _unnoted, subject.mass_kg)
     waiting: deque[ReadyFrame] = deque()

@@ -1,7 +1,8 @@
 """Checks of a live run while it goes on: plates, clocks, mass, markers and person, in a process of their own.
 
 The first check is asked for after a second and a half of frames, each further one after twice the time of the one
-before, up to the minute that is checked at the end of the run, too.
+before, up to the minute that is checked at the end of the run, too. Where the filter starts anew, the person may have
+changed: the markers from there on are compared with the subject's segment lengths.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ BEGIN_S = 1.0
 FIRST_S, LONGER = 1.5, 2.0
 """Time of frames of the first check, and by what factor that of each further one is longer."""
 
+PERSON_S = 2.0
+"""So long after the filter has started anew, the markers since then are compared with the subject."""
+
 MOSTLY = 0.5
 """Names that are exchanged in more than this share of the frames are reported."""
 
@@ -49,8 +53,9 @@ class LiveChecks:
         """
         self.findings: Sequence[Finding] = ()
         self._folder, self._rate_hz, self._note = folder, rate_hz, note
-        self._asked: SimpleQueue[bool] = SimpleQueue()
+        self._asked: SimpleQueue[str] = SimpleQueue()  # empty at the end
         self._due_s = FIRST_S
+        self._restarted: int | None = None
         self._exchanged: tuple[tuple[str, str], ...] = ()
         self._thread: threading.Thread | None = None
         self._process: subprocess.Popen[str] | None = None
@@ -64,12 +69,19 @@ class LiveChecks:
             self._thread.start()
         while self._due_s <= seconds and self._due_s < LONGER * CHECKED_S:
             self._due_s *= LONGER
-            self._asked.put(True)
+            self._asked.put("check")
+        if self._restarted is not None and frames >= self._restarted + PERSON_S * self._rate_hz:
+            self._asked.put(f"person {self._restarted}")
+            self._restarted = None
+
+    def restarted(self, frame: int) -> None:
+        """The filter started anew in a frame: the markers from there on may be another person's."""
+        self._restarted = frame
 
     def close(self) -> None:
         """Ends the process; what it still works on is dropped."""
         self._closed = True
-        self._asked.put(False)
+        self._asked.put("")
         process = self._process
         if process is not None:
             process.kill()
@@ -99,10 +111,22 @@ class LiveChecks:
     def _answered(self, process: subprocess.Popen[str]) -> None:
         """Passes on what is asked, and takes the answers."""
         assert process.stdin is not None and process.stdout is not None
-        while self._asked.get():
-            process.stdin.write("check\n")
+        while asked := self._asked.get():
+            process.stdin.write(f"{asked}\n")
             process.stdin.flush()
-            self._take(answer_of(process.stdout.readline()))
+            answer = answer_of(process.stdout.readline())
+            if asked == "check":
+                self._take(answer)
+            else:
+                self._take_person(int(asked.split()[1]), answer)
+
+    def _take_person(self, frame: int, answer: Answer) -> None:
+        """Reports another person than the subject since a frame."""
+        for one in answer.findings:
+            if one.verdict == "outside":
+                self._note(
+                    "person", f"from {frame / self._rate_hz:.1f} s on, {one.name}: {one.hint}", frame, 1
+                )
 
     def _take(self, answer: Answer) -> None:
         """Keeps the findings, and reports names that are exchanged most of the time."""

@@ -82,6 +82,8 @@ class VerdictWatch:
             with np.errstate(all="ignore"):  # a stream may hold nonsense
                 if self._due_now:
                     self.judge()
+                if row["started"][0] and self._evidence.frames and self._checks is not None:
+                    self._checks.restarted(self._evidence.frames)
                 known = self._evidence.push(row, self._loads.read, load.acts, order)
         except Exception as error:  # a recording goes on without its verdict
             self._failed(error)

@@ -12,6 +12,7 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,6 +20,7 @@ from mbkf.errors import MbkfError
 from mbkf.io.findings import Finding
 from mbkf.io.subject import read_subject
 from mbkf.numerics.threads import single_threaded
+from mbkf.trial.checks.persons import finding_of_markers
 from mbkf.trial.live.log import SUBJECT_FILE, read_live_log
 from mbkf.trial.live.results import CHECKED_S, checks_of, measured_of
 from mbkf.trial.preparation.exchanged import names_put_right
@@ -41,14 +43,15 @@ class Answer(NamedTuple):
 
 
 def answers(folder: Path, asked: Iterable[str]) -> Iterator[str]:
-    """A line of JSON with the checks of the run so far, for each line that asks.
+    """A line of JSON for each line that asks: "check", or "person" and the frame from which the person is judged.
 
     Args:
         folder: The run's log.
         asked: Lines that ask.
     """
-    for _ in asked:
-        found = checks_so_far(folder)
+    for line in asked:
+        kind, *since = line.split()
+        found = person_since(folder, int(since[0])) if kind == "person" else checks_so_far(folder)
         plain = {"findings": [one.as_table() for one in found.findings], "exchanged": found.exchanged}
         yield json.dumps(plain)
 
@@ -83,6 +86,23 @@ def checks_so_far(folder: Path) -> Answer:
     except MbkfError:  # the log is empty so far, or was removed at the end of the run
         return Answer()
     return Answer(found, tuple((a, b, frames / measured.frames) for a, b, frames in exchanged))
+
+
+def person_since(folder: Path, frame: int) -> Answer:
+    """Segment lengths that the markers show from a frame on, against those of the subject.
+
+    Args:
+        folder: The run's log.
+        frame: The frame, counted from the first one.
+    """
+    try:
+        logged = read_live_log(folder)
+        subject = read_subject(folder / SUBJECT_FILE)
+        since = replace(logged, rows=logged.rows[frame:])
+        with single_threaded():
+            return Answer((finding_of_markers(subject, measured_of(since, CHECKED_S)),))
+    except MbkfError:
+        return Answer()
 
 
 def main() -> None:

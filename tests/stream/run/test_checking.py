@@ -9,7 +9,8 @@ from tests.waiting import until
 ECHO = """
 import json, sys
 for k, line in enumerate(sys.stdin):
-    one = dict(name=f"{sys.argv[1]} {k}", value=1.0, expected_sd=0.5, unit="%", bound=5.0, verdict="inside")
+    judged = dict(verdict="outside", hint=line) if "person" in line else dict(verdict="inside")
+    one = dict(name=f"{sys.argv[1]} {k}", value=1.0, expected_sd=0.5, unit="%", bound=5.0, **judged)
     print(json.dumps({"findings": [one], "exchanged": [["A", "B", 0.9], ["C", "D", 0.1]]}), flush=True)
 """
 
@@ -65,3 +66,16 @@ def test_a_process_that_cannot_start_is_noted(checks, monkeypatch, notes):
     checks.reached(200)
     until(lambda: notes)
     assert "cannot start (no memory)" in notes[0][1]
+
+
+def test_another_person_after_a_restart_is_reported(checks, monkeypatch, notes):
+    monkeypatch.setattr(checking, "PROGRAM", ECHO)
+    checks.reached(100)
+    checks.restarted(120)
+    checks.reached(319)
+    checks.reached(320)
+    until(lambda: len(notes) == 2)
+    ((_, names, *_), (kind, sentence, frame, _)) = notes
+    assert "A and B" in names and (kind, frame) == ("person", 120)
+    assert sentence.startswith("from 1.2 s on, ") and "person 120" in sentence
+    assert "person" not in checks.findings[0].hint, "the checks of the run stay"

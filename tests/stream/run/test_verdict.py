@@ -34,7 +34,7 @@ class Run:
         )
         self.filter = filter
         self.asked, self.notes, self.logged, self.told = [], [], [], []
-        self.checks = SimpleNamespace(findings=(), reached=self.asked.append)
+        self.checks = SimpleNamespace(findings=(), reached=self.asked.append, restarted=self.told.append)
         loads = SimpleNamespace(read=True, stated=tuple)
         setup = SimpleNamespace(filter=filter, stream=stream, live=self.setup.live)
         note = lambda *one: self.notes.append(one)  # noqa: E731
@@ -43,7 +43,7 @@ class Run:
         )
         self.number = 0
 
-    def frames(self, count, load=STILL):
+    def frames(self, count, load=STILL, started=False):
         """Whether the loads of each of the next frames may be used."""
         sensor, found = self.setup.live.inputs.sensor, []
         q = sensor.model.neutral()
@@ -52,7 +52,7 @@ class Run:
             row, _ = self.setup.rows.row(self.number, sensor.positions(q), None, 0.0)
             row["known"] = row["tracked"] = True
             row["q"], row["footing"], row["wrench"], row["angle_sd"] = q, 1, 0.0, 0.01
-            row["foot_height_sd"], row["support"] = 0.001, 0.0
+            row["foot_height_sd"], row["support"], row["started"] = 0.001, 0.0, started
             found.append(self.watch.push(row, load))
             self.number += 1
         return found
@@ -136,3 +136,10 @@ def test_a_verdict_that_fails_is_reported_once_and_the_run_goes_on(run, monkeypa
     run.watch.end()
     ((kind, sentence, *_),) = run.notes
     assert kind == "verdict" and "failed (ValueError: strange)" in sentence
+
+
+def test_a_start_of_the_filter_after_the_first_is_passed_on(run):
+    run.frames(1, started=True)
+    run.frames(40)
+    run.frames(1, started=True)
+    assert run.told == [41]
