@@ -18,9 +18,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from benchmarks.checks import Check, Context, information
-from benchmarks.loads.faults import Clock, Mass
 from benchmarks.loads.trials import Trial
-from benchmarks.verdict.trials import AnotherPerson, Exchanged, Turned
+from benchmarks.verdict.faults import KINDS
+from benchmarks.verdict.recorded import Recorded
 from mbkf.conventions import Array
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
@@ -46,9 +46,19 @@ MOST_SHARE = 3.0
 
 REPEATS = 5
 
-JUDGEMENT = "judgement"
+JUDGEMENT, OWN = "judgement", "synthetic walk"
 REAL = ("rajagopal walk", "gait2354", "opencap", "HC032A static", "exact truth", "rehazenter")
-FAULTS = (None, Mass(1.3), Clock(0.06), Turned(2), AnotherPerson(11), Exchanged(("RANK", "RKNE")))
+FAULTS = (
+    "mass",
+    "clock",
+    "gain",
+    "plates turned",
+    "plates exchanged",
+    "another person",
+    "names within a leg",
+)
+SEED = 6
+"""Of the walk that faults are put into, and of the faults."""
 
 
 @dataclass(frozen=True)
@@ -117,13 +127,19 @@ def _trials(data: Path) -> Iterator[tuple[str, Callable[[], tuple[Capture, Subje
         yield name, partial(_read, folder / f"{name}.c3d", right)
     for name in REAL:
         yield name, partial(_loaded, Trial("real", name, data))
-    for fault in FAULTS:
-        trial = Trial("own", "walk", data, 6, fault)
-        yield trial.label, partial(_loaded, trial)
+    walk = Trial("own", "walk", data, SEED)
+    yield OWN, partial(_loaded, walk)
+    for kind in FAULTS:
+        yield f"{OWN}, {kind}", partial(_faulty, walk, kind)
 
 
 def _read(path: Path, subject: Path) -> tuple[Capture, Subject]:
     return read_capture(path), read_subject(subject)
+
+
+def _faulty(trial: Trial, kind: str) -> tuple[Capture, Subject]:
+    recorded, _ = KINDS[kind](Recorded(None, *_loaded(trial)), np.random.default_rng(SEED))
+    return recorded.capture, recorded.person()
 
 
 def _loaded(trial: Trial) -> tuple[Capture, Subject]:

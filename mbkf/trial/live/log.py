@@ -178,8 +178,7 @@ def read_live_log(folder: Path) -> Logged:
 
 def _aligned(dtype: np.dtype) -> np.dtype:
     """The type of a row, padded so that the numbers of every row are aligned, as compiled functions read them."""
-    fields = dtype.fields or {}
-    return np.dtype([(name, fields[name][0]) for name in dtype.names or ()], align=True)
+    return np.dtype([(name, dtype[name]) for name in dtype.names or ()], align=True)
 
 
 def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
