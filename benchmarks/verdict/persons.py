@@ -162,8 +162,10 @@ def pairs(data: Path, quick: bool = False) -> list[Pair]:
         data: Folder of the reference captures.
         quick: Every tenth of them.
     """
-    names = sorted({*PUBLIC, *(name for files in PUBLIC.values() for name in files)} - {"jam"})
-    found = [Pair(name, name, data) for name in names]
+    names = sorted({*PUBLIC, *(name for files in PUBLIC.values() for name in files)} - {"jam", "landing"})
+    found = [
+        Pair(name, name, data) for name in names
+    ]  # of these two, static and trial have different marker sets
     found += [
         Pair(trial, file, data, plates)
         for plates in (True, False)

@@ -89,6 +89,8 @@ def run(args: argparse.Namespace) -> int:
     print_labels(summary, out)
     for warning in () if found.doubts is None else found.doubts.warnings():
         print(f"warning: {warning}", file=sys.stderr)
+    if found.others_remark:
+        print(f"warning: {found.others_remark}", file=sys.stderr)
     if args.subject is None:
         print(
             f"{out.with_suffix('.toml')}: the scaled person, markers fit to "

@@ -19,6 +19,7 @@ from mbkf.trial.labelling.relabelling import relabel_offline, trajectories
 from mbkf.trial.labelling.result import Labelling
 from mbkf.trial.labelling.scaled_doubts import scaled_doubts
 from mbkf.trial.labelling.starts import Start, find_starts
+from mbkf.trial.preparation.in_view import far_points
 
 
 def label(
@@ -60,8 +61,10 @@ def label(
         )
         found = replace(found, label_of_point=with_claims(found.label_of_point, names))
         present = ~np.isnan(points.positions_m).any(axis=2)
+        markers = trajectories(points, found.label_of_point, body.names)
+        unnamed = np.where((found.label_of_point == HIDDEN)[..., None], points.positions_m, np.nan)
         return Labelling(
-            markers=trajectories(points, found.label_of_point, body.names),
+            markers=markers,
             label_of_point=found.label_of_point,
             ghosts=np.asarray((present & (found.label_of_point == HIDDEN)).sum(axis=1)),
             starts=run.starts,
@@ -69,4 +72,5 @@ def label(
             step_seconds=run.step_seconds,
             relabelled=found.changed,
             doubts=scaled_doubts(body, points, found, names),
+            others=far_points(unnamed, markers.positions_m),
         )

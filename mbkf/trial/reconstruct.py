@@ -21,6 +21,7 @@ from mbkf.scaling.correction import correction
 from mbkf.scaling.trial_lengths import LengthEvidence
 from mbkf.sensors.block import AnyBlock
 from mbkf.trial.axes.captures import checked_for_subject
+from mbkf.trial.checks.in_view import in_view_finding
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.preparation.coverage import use_by_subject
@@ -107,14 +108,14 @@ def reconstruct(
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
         seen = (shown, subject, inputs, recording, alone, before, lengths)
-        checks = trial_checks(*seen) if settings.checks else ()
+        judged = (*trial_checks(*seen), in_view_finding(capture.markers, use.used)) if settings.checks else ()
         return judged_result(
             replace(
                 found,
-                checks=checks,
+                checks=judged,
                 markers_ignored=dict(use.ignored),
                 markers_explained=use.share,
-                warnings=all_warnings(checks, subject, found),
+                warnings=all_warnings(judged, subject, found),
                 names_exchanged=(*exchanged, *taken_up),
             )
         )

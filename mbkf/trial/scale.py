@@ -18,9 +18,12 @@ from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.records import ScalingSettings
+from mbkf.scaling.stature import stature_doubts
+from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
-from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
+from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, MarkerUse, use_by_protocol
 from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right
+from mbkf.trial.preparation.in_view import others_in_view
 from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set, inferred_choice
 
 EXPECTED = 4.0
@@ -161,9 +164,22 @@ def _scaled(
         extra[EXCHANGED_KEY] = [list(one) for one in exchanged]
     if axes:
         extra[REPORT_KEY] = axes
+    doubts = [*_others_in_view(checked, use), *stature_doubts(height_m, subject, protocol.body)]
+    if doubts:
+        before = subject.report.get(DOUBTS_KEY)
+        extra[DOUBTS_KEY] = [*(before if isinstance(before, list) else ()), *doubts]
     if chosen.inferred is not None:
         extra[INFERRED_KEY] = {"told": chosen.inferred.line, "doubtful": chosen.inferred.doubts}
     return replace(subject, report={**subject.report, **extra})
+
+
+def _others_in_view(captures: Sequence[Capture], use: MarkerUse) -> list[str]:
+    """A sentence on a second person in the captures."""
+    found = [others_in_view(one.markers, use.used) for one in captures]
+    worst = max(found, key=lambda one: len(one.names))
+    if not worst.is_person:
+        return []
+    return [f"{worst.sentence}: a second person is in view; scale from a capture of one"]
 
 
 def _rarely_seen(captures: Sequence[Capture], protocol: Protocol, subject: Subject) -> dict[str, str]:

@@ -7,6 +7,7 @@ import pytest
 
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.model.protocol import load_protocol
+from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY
 from mbkf.trial.scale import scale
 from tests.motions import capture_of, marker_positions, moderate_pose, protocol_sensor, random_model
@@ -38,6 +39,17 @@ def test_exact_markers_are_fitted(subject):
     found = np.array(list(subject.scale_factors.values()))
     errors = np.array([one["standard_error"] for one in subject.report["factors"].values()])
     assert (np.abs(found - MODEL.scale) < 1.5 * errors).all()
+
+
+def test_a_second_person_and_a_contradicted_height_are_doubts_of_the_file(subject):
+    assert DOUBTS_KEY not in subject.report
+    one, beside = made(standing=True), np.array([0.0, 1.5, 0.0])
+    names = (*one.markers.names, *(f"B:{name}" for name in one.markers.names))
+    places = np.concatenate([one.markers.positions_m, one.markers.positions_m + beside], axis=1)
+    both = replace(one, markers=replace(one.markers, names=names, positions_m=places))
+    found = scale(both, mass_kg=70.0, height_m=1.3, protocol="reference36")
+    second, height = found.report[DOUBTS_KEY][-2:]
+    assert "a second person is in view" in second and "1.30 m" in height
 
 
 def test_a_protocol_may_be_named_or_given():

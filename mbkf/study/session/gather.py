@@ -19,6 +19,7 @@ from mbkf.io.subject import Subject
 from mbkf.io.verdict import listed
 from mbkf.model.human import HumanModel
 from mbkf.study.batch.inputs import RECORD, read_record
+from mbkf.study.session.agreement import TrialBody, disagreements
 from mbkf.study.session.cycles import SideCycles, cycles_of_trial, together
 from mbkf.study.session.jumps import jump_measures
 from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
@@ -41,6 +42,7 @@ class _Part:
 
     trial: SessionTrial
     subject: Subject
+    body: TrialBody
     sides: tuple[SideCycles, SideCycles]
     gait: Gait | None
     moves: bool
@@ -124,6 +126,7 @@ def _session(
         _joined([part.squats for part in parts]),
         stated.sex or None,
         stated.age,
+        disagreements([part.body for part in parts]),
     )
 
 
@@ -193,6 +196,7 @@ def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
     return _Part(
         trial,
         r.subject,
+        TrialBody.of(r),
         sides,
         gait,
         moves,

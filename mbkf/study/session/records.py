@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from mbkf.conventions import Array
 from mbkf.io.session import TrialKind
 from mbkf.io.subject import Subject
+from mbkf.study.session.agreement import Disagreement
 from mbkf.study.session.cycles import SideCycles
 
 
@@ -80,6 +81,7 @@ class Session:
         jumps: Measures of each jump; empty without.
         squats: Measures of each squat; empty without.
         sex, age: As stated; None: not stated.
+        disagreements: Trials that disagree with the others about the person's body.
     """
 
     name: str
@@ -90,6 +92,7 @@ class Session:
     squats: tuple[Measure, ...] = ()
     sex: str | None = None
     age: float | None = None
+    disagreements: tuple[Disagreement, ...] = ()
 
     def gait(self, kind: TrialKind) -> MovementGroup | None:
         """The gait of a kind; None: the trial has no such gait."""

@@ -12,6 +12,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.labelling.assignment import Indices
 from mbkf.trial.labelling.doubts import Doubts
 from mbkf.trial.labelling.score import LabelScore
+from mbkf.trial.preparation.in_view import FAR_M, LEAST_MARKERS
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class Labelling:
         step_seconds: (T,) computing time of each frame's labels without the filter's; NaN where they were searched.
         relabelled: Number of samples whose label was removed or changed by the offline relabelling.
         doubts: Possible errors in the labels.
+        others: Number of points in the usual frame that lie too far from the subject to be one of the subject's.
     """
 
     markers: MarkerTrajectories
@@ -37,6 +39,17 @@ class Labelling:
     step_seconds: Array
     relabelled: int = 0
     doubts: Doubts | None = None
+    others: int = 0
+
+    @property
+    def others_remark(self) -> str:
+        """A remark on a second person in view; "" without one."""
+        if self.others < LEAST_MARKERS:
+            return ""
+        return (
+            f"{self.others} points lie more than {FAR_M:g} m from the subject's markers in the usual frame: a second "
+            "person is in view; make sure that the right one is named, or record one person alone"
+        )
 
     @property
     def assigned_fraction(self) -> float:
@@ -63,6 +76,7 @@ class LabelSummary(TypedDict):
         first_labelled_frame: First frame with labels.
         starts: Frames whose labels were searched.
         step_seconds_median: Computing time of a frame.
+        others_in_view: Points that lie too far from the subject in the usual frame.
         doubts: Labels that may be wrong.
         correct_fraction, wrong_fraction, missed_fraction: Comparison with a truth, where there is one.
     """
@@ -77,6 +91,7 @@ class LabelSummary(TypedDict):
     first_labelled_frame: int
     starts: list[int]
     step_seconds_median: float | None
+    others_in_view: int
     doubts: NotRequired[dict[str, object]]
     correct_fraction: NotRequired[float]
     wrong_fraction: NotRequired[float]
@@ -97,6 +112,7 @@ def label_summary(found: Labelling, compared: LabelScore | None = None) -> Label
         "first_labelled_frame": found.first_labelled_frame,
         "starts": list(found.starts),
         "step_seconds_median": float(np.median(known)) if len(known) else None,
+        "others_in_view": found.others,
     }
     if found.doubts is not None:
         summary["doubts"] = found.doubts.summary()
@@ -110,4 +126,7 @@ def label_summary(found: Labelling, compared: LabelScore | None = None) -> Label
 def labelled_capture(raw: Capture, found: Labelling) -> Capture:
     """The capture with its labelled markers in place of its points."""
     shown = np.flatnonzero(found.markers.present.any(axis=0))
-    return replace(raw, markers=found.markers.select(tuple(found.markers.names[k] for k in shown)))
+    notes = (*raw.notes, found.others_remark) if found.others_remark else raw.notes
+    return replace(
+        raw, markers=found.markers.select(tuple(found.markers.names[k] for k in shown)), notes=notes
+    )

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from mbkf.io.findings import Finding
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, TITLES, Reason, Word, gravest
-from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, persons, places, rigidity
+from mbkf.trial.checks import clocks, floor, gains, in_view, lengths, mass, newton, persons, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.motion_reasons import Bounds
 from mbkf.trial.verdict.parts import LEGS, PELVIS, TRUNK
@@ -115,6 +115,13 @@ def check_reasons(evidence: Evidence) -> Iterator[Reason]:
     """
     yield from _another_person(evidence)
     outside = {one.name: one for one in evidence.checks if one.verdict == "outside"}
+    second = outside.get(in_view.NAME)
+    if second is not None:
+        found, todo = second.hint.split(in_view.REMEDY)[0], in_view.REMEDY.removeprefix("; ")
+        means = "names may pass from one person to the other, and plates may carry both"
+        for part in MOTION_PARTS:
+            if part not in evidence.unshown:
+                yield Reason(part, "look", found, means, todo, _times(second))
     loose = outside.get(rigidity.NAME)
     if loose is not None:
         found, todo = _stated(loose, "check its name")

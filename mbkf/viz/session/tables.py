@@ -60,7 +60,10 @@ def trials_table(session: Session, terms: Terms) -> str:
         for trial in session.trials
         if trial.left_out
     ]
-    return table([terms.say(one) for one in heads], rows, "trials") + "".join(out) + below
+    against = [
+        paragraph(f"{terms.say(one.word.replace(' ', '_'))}: {one.sentence}") for one in session.disagreements
+    ]
+    return "".join(against) + table([terms.say(one) for one in heads], rows, "trials") + "".join(out) + below
 
 
 def measures_table(

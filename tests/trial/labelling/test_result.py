@@ -61,3 +61,10 @@ def test_the_labelled_capture_shows_only_markers_with_points(found):
     assert named.markers.names == ("a", "b")
     np.testing.assert_array_equal(named.markers.positions_m, found.markers.positions_m[:, :2])
     assert named.plates == raw.plates
+
+
+def test_points_of_a_second_person_are_remarked(found):
+    raw, crowd = walker().raw, replace(found, others=31)
+    assert (found.others_remark, labelled_capture(raw, found).notes) == ("", raw.notes)
+    assert labelled_capture(raw, crowd).notes == (*raw.notes, crowd.others_remark)
+    assert "31 points" in crowd.others_remark and label_summary(crowd)["others_in_view"] == 31

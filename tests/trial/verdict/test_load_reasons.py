@@ -9,7 +9,7 @@ from mbkf.io.findings import Finding, judged
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, Reason, gravest
 from mbkf.scaling.trial_lengths import LengthChange, LengthEvidence
-from mbkf.trial.checks import clocks, floor, lengths, mass, newton, persons, places, rigidity
+from mbkf.trial.checks import clocks, floor, in_view, lengths, mass, newton, persons, places, rigidity
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.load_reasons import check_reasons, load_reasons
 
@@ -143,3 +143,12 @@ def test_lengths_of_another_person_concern_all_that_is_shown(powers, word):
     assert {one.part for one in found} == (set() if word == "use" else set(MOTION_PARTS) - {"left_arm"})
     assert gravest(one.word for one in found) == word
     assert all("thigh 38 ± 9 mm longer" in one.found for one in found)
+
+
+def test_a_second_person_calls_for_a_look_at_all_that_is_shown():
+    hint = f"41 markers that are not the subject's lie up to 1.5 m from it{in_view.REMEDY}"
+    second = Finding(in_view.NAME, 41.0, 2.5, "markers", 5.0, "outside", hint)
+    found = list(check_reasons(Evidence(checks=(second,), unshown=("left_arm",))))
+    assert {one.part for one in found} == set(MOTION_PARTS) - {"left_arm"}
+    assert {one.word for one in found} == {"look"} and found[0].found.endswith("1.5 m from it")
+    assert found[0].do.startswith("make sure")
