@@ -13,6 +13,7 @@ from benchmarks.checks import Check, Context, information
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.foreign.sets import made_persons
 from benchmarks.loads.trials import clean_trials
+from benchmarks.verdict.in_view import second_person_rows
 from benchmarks.verdict.invented import invented, invented_rows, moved_trials
 from benchmarks.verdict.persons import accused, pairs, person_rows
 from benchmarks.verdict.rows import faulty_rows, reason_rows, right_rows
@@ -45,4 +46,5 @@ def run(context: Context) -> list[Check]:
         *reason_rows(found),
         *invented_rows(moved),
         *person_rows(persons),
+        *second_person_rows(data, context.quick),
     ]

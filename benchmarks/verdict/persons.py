@@ -102,7 +102,7 @@ class Pair:
             _, made = synthesise("walk", seed=int(self.trial))
             capture, subject = made.trial, synthesise_subject(int(self.file))
         else:
-            capture, subject = _capture(self.trial, self.data), _subject(self.file, self.data)
+            capture, subject = capture_of(self.trial, self.data), subject_of(self.file, self.data)
         return replace(_cut(capture), plates=capture.plates if self.plates else ()), subject
 
 
@@ -142,16 +142,28 @@ def _source(name: str) -> Source:
     return MORE.get(name) or ALL_SOURCES[name]
 
 
-def _capture(name: str, data: Path) -> Capture:
+def capture_of(name: str, data: Path) -> Capture:
+    """The trial of a public person.
+
+    Args:
+        name: The person.
+        data: Folder of the reference captures.
+    """
     source = _source(name)
     folder = data / source.folder
     return read_capture(folder / source.trial, forces=source.forces and folder / source.forces)
 
 
-def _subject(name: str, data: Path) -> Subject:
+def subject_of(name: str, data: Path) -> Subject:
+    """The subject file of a public person.
+
+    Args:
+        name: The person.
+        data: Folder of the reference captures.
+    """
     source = _source(name)
     if source.static is None:
-        return scale(None, [_capture(name, data)], mass_kg=source.mass_kg)
+        return scale(None, [capture_of(name, data)], mass_kg=source.mass_kg)
     return scale(read_capture(data / source.folder / source.static), mass_kg=source.mass_kg)
 
 
