@@ -164,7 +164,11 @@ class DynamicReport(StateReport[DynamicState]):
         steps = [_step(estimate) for estimate in run]
         states = list(smooth(self.kalman, steps, ROUNDS, wanted, self._smoothing))
         ahead_s = self.kalman.plant.dt_s * np.arange(len(run) - 1, -1, -1)
-        late = zip(run, states, [None, *states], ahead_s, self._bends(states), strict=False)
+        befores: list[DynamicState | None] = [None, *states]
+        if run[0].started and len(states) > 1:
+            # No frame comes before a start, which is as uncertain as an end.
+            befores[0], ahead_s[0] = states[1], 0.0
+        late = zip(run, states, befores, ahead_s, self._bends(states), strict=False)
         return [self.moved(*one) for one in late]
 
     def _bends(self, states: Sequence[DynamicState]) -> Sequence[Array | None]:

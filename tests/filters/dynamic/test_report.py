@@ -193,6 +193,10 @@ def test_a_smoothed_estimate_may_bend_wrongly_where_it_bends():
     share = (DynamicSettings().errors.corner_s / tracking.kalman.plant.dt_s) ** 2
     late = np.array([one.record.detail.late for one in smoothed])
     np.testing.assert_allclose(late[:, 1, : bend.shape[1]], share * bend)
+    np.testing.assert_allclose(
+        np.abs(late[0, 0, : bend.shape[1]]),
+        DynamicSettings().errors.lag_s / tracking.kalman.plant.dt_s * np.abs(stated[1] - stated[0]),
+    )
     (alone,) = tracking.smooth(found[:8], 1)
     assert len(alone.record.detail.late) == 1, "one state has no second difference"
 
