@@ -83,6 +83,9 @@ PLACES_LEAVE = 2.5
 OTHER_PERSON = Bounds(persons.LOOK, persons.LEAVE)
 """Powers of ten for segment lengths of another person."""
 
+CAUSE = 10.0
+"""Weight of another person over that of other findings: it explains most of them, and stands before them."""
+
 SPOILT = Bounds(0.0, 0.1)
 """Share of the frames that an unexplained force spoils."""
 
@@ -164,7 +167,7 @@ def _another_person(evidence: Evidence) -> Iterator[Reason]:
                 f"(10^{_size(found):.0f} to 1)",
                 "it is probably the file of another person, or its static trial had exchanged names",
                 "take the subject file of this person, or scale from a static trial",
-                off[1],
+                CAUSE * off[1],
             )
 
 

@@ -143,6 +143,7 @@ def test_lengths_of_another_person_concern_all_that_is_shown(powers, word):
     assert {one.part for one in found} == (set() if word == "use" else set(MOTION_PARTS) - {"left_arm"})
     assert gravest(one.word for one in found) == word
     assert all("thigh 38 ± 9 mm longer" in one.found for one in found)
+    assert all(one.weight > 8.0 for one in found), "the cause of other findings stands before them"
 
 
 def test_a_second_person_calls_for_a_look_at_all_that_is_shown():
