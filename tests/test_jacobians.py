@@ -79,6 +79,7 @@ ELSEWHERE = {
     "sensors.gating.ObservedDofs.carried_by": "sensors/test_gating.py",
     "scaling.shoulders.TrialShoulders.by_displacements": "scaling/test_shoulders.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
+    "scaling.problem.ScalingProblem.shown": "scaling/test_problem.py",
     "model.scale_derivatives.OriginLevers.summed": "model/test_scale_derivatives.py",
     "scaling.standing.UprightPosture.linearised": "scaling/test_standing.py",
     "sensors.block.Rows.jacobian": "block_contract.py jacobian",

@@ -89,6 +89,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         "(default: %(default)s)",
     )
     parser.add_argument(
+        "--keep-names",
+        action="store_true",
+        help="keep the static trial's names, even where exchanged ones fit the body better",
+    )
+    parser.add_argument(
         "--inertia",
         action="store_true",
         help="estimate masses and centres of mass of segments from the plates, and write them if the evidence supports "
@@ -171,7 +176,7 @@ def _of_folder(args: argparse.Namespace) -> Subject:
 def _settings(args: argparse.Namespace) -> ScalingSettings:
     from mbkf.scaling.records import ScalingSettings
 
-    return ScalingSettings(thesis_factors=args.scaling == "thesis")
+    return ScalingSettings(thesis_factors=args.scaling == "thesis", correct_names=not args.keep_names)
 
 
 def _weighed(args: argparse.Namespace, subject: Subject, captures: Sequence[Capture]) -> Subject:
@@ -200,12 +205,17 @@ def warn_of_fit(subject: Subject) -> None:
 
 def warn_of_markers(subject: Subject) -> None:
     """Prints an inferred set's doubts, exchanged names, and a protocol that knows too few of the person's markers."""
+    from mbkf.io.static_exchanges import static_exchanges
     from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, exchange_notes
+    from mbkf.trial.preparation.static_names import static_exchange_note
 
     inferred = subject.report.get("inferred")
     for name, odds in inferred["doubtful"].items() if isinstance(inferred, dict) else ():
         segments = ", ".join(f"{segment.replace('_', ' ')} {100 * share:.0f} %" for segment, share in odds)
         print(f"warning: the segment of marker {name} is uncertain: {segments}", file=sys.stderr)
+    of_static = static_exchange_note(static_exchanges(subject))
+    if of_static:
+        print(f"warning: {of_static}", file=sys.stderr)
     exchanged = subject.report.get(EXCHANGED_KEY)
     for line in exchange_notes(exchanged) if isinstance(exchanged, list) else ():
         print(f"note: {line}", file=sys.stderr)

@@ -282,7 +282,7 @@ class ScalingProblem:
     def _by_data(self, state: ScalingState) -> tuple[ShownMarkers, ArrowEquations]:
         """Whitened errors, and the equations without prior; kept for the next call, often with another prior."""
         if self._last is None or self._last[0] is not state:
-            shown = self._shown(state)
+            shown = self.shown(state)
             cost = float((shown.errors**2).sum()) + self._posture_cost(state)
             equations = self._equations(shown, *self._frame_equations(state, shown), cost)
             self._last = state, shown, equations
@@ -368,7 +368,7 @@ class ScalingProblem:
         """(N, M, 1) root of a marker's weight over its noise; 0 where it is missing."""
         return np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
 
-    def _shown(self, state: ScalingState) -> ShownMarkers:
+    def shown(self, state: ScalingState) -> ShownMarkers:
         """Whitened errors of all frames and their derivatives."""
         shares = self._shares(state.poses)
         moved = self._displacements_m(state, shares)

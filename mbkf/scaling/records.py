@@ -28,6 +28,7 @@ class ScalingSettings:
         thesis_factors: Scale by the thesis's factors (its Table 4.1): one that the body file splits equals its origin.
         frames_per_trial: Greatest number of frames taken from one trial.
         outlier_m: Distance from the fitted body beyond which a sample is left out, m.
+        correct_names: Put names right that a static trial exchanges (:mod:`mbkf.scaling.standing_names`).
     """
 
     proportion_sd: float = 0.06
@@ -42,6 +43,7 @@ class ScalingSettings:
     thesis_factors: bool = False
     frames_per_trial: int = 40
     outlier_m: float = 0.06
+    correct_names: bool = True
 
 
 RIGID = read_only(np.zeros((0, 0, 3)))

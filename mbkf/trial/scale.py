@@ -11,6 +11,7 @@ import numpy as np
 from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput, MbkfError, NotConverged, NotObservable
 from mbkf.io.records import Capture
+from mbkf.io.static_exchanges import STATIC_EXCHANGED_KEY
 from mbkf.io.subject import Subject
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
@@ -24,6 +25,7 @@ from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, MarkerUse, use_by_protocol
 from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right
 from mbkf.trial.preparation.in_view import others_in_view
+from mbkf.trial.preparation.static_names import Pairs, static_put_right, trials_as_static
 from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set, inferred_choice
 
 EXPECTED = 4.0
@@ -143,7 +145,13 @@ def _scaled(
     checked = checked_for_protocol(chosen.captures, protocol)
     first = 1 if standing else 0
     exchanged = () if chosen.inferred is None else chosen.inferred.exchanged
+    of_static: Pairs = ()
     with single_threaded():
+        if standing and chosen.inferred is None and (settings or ScalingSettings()).correct_names:
+            static, of_static = static_put_right(checked[0], protocol, settings)
+            trials, more = trials_as_static(static, checked[1:], protocol, of_static)
+            exchanged = (*exchanged, *more)
+            checked = [static, *trials]
         if standing and len(checked) > 1:
             trials, more = trials_put_right(checked[0].markers, checked[1:], protocol)
             exchanged = (*exchanged, *more)
@@ -162,6 +170,8 @@ def _scaled(
     extra: dict[str, object] = {USE_KEY: use.as_report()}
     if exchanged:
         extra[EXCHANGED_KEY] = [list(one) for one in exchanged]
+    if of_static:
+        extra[STATIC_EXCHANGED_KEY] = [list(pair) for pair in of_static]
     if axes:
         extra[REPORT_KEY] = axes
     doubts = [*_others_in_view(checked, use), *stature_doubts(height_m, subject, protocol.body)]

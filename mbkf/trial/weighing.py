@@ -16,8 +16,8 @@ from mbkf.trial.checks import mass
 from mbkf.trial.checks.judge import plate_checks
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
-from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.preparation.static_names import markers_as_scaled
 
 PROVISIONAL_KG = 70.0
 """Mass to scale with while it is unknown; scale factors and markers do not depend on it."""
@@ -61,7 +61,7 @@ def _weighed(subject: Subject, capture: Capture) -> Finding:
         with single_threaded():
             try:
                 checked = checked_for_subject(capture, subject)
-                markers = subject_markers(checked.markers, subject)
+                markers = markers_as_scaled(checked.markers, subject)
             except NotObservable:
                 return finding
             person = subject.in_neutral_posture()

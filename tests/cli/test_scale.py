@@ -109,7 +109,7 @@ def renamed(path, *names):
 def test_a_doubtful_body_is_told_first_and_kept_and_an_impossible_one_leaves_no_file(tmp_path, capsys):
     out = tmp_path / "s.toml"
     doubtful = renamed(tmp_path / "doubtful.c3d", "RKNE", "RANK")
-    assert scale(doubtful, "--protocol", "reference36", "--out", out) == 0
+    assert scale(doubtful, "--protocol", "reference36", "--keep-names", "--out", out) == 0
     told = capsys.readouterr().err.splitlines()
     assert told[0].startswith("warning: this body may not be the person's: proportions are unusual")
     assert read_subject(out).report["doubts"] == [
@@ -118,9 +118,17 @@ def test_a_doubtful_body_is_told_first_and_kept_and_an_impossible_one_leaves_no_
     out.unlink()
     around = ("RKNE", "RANK", "LELB", "C7", "RHEE", "LKNE", "LANK", "RELB")
     impossible = renamed(tmp_path / "impossible.c3d", *around)
-    assert scale(impossible, "--protocol", "reference36", "--out", out) == 2
+    assert scale(impossible, "--protocol", "reference36", "--keep-names", "--out", out) == 2
     assert "proportions that people do not have" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_exchanged_names_of_a_static_are_put_right_and_told_with_the_way_to_keep_them(tmp_path, capsys):
+    wrong, out = renamed(tmp_path / "wrong.c3d", "RKNE", "RANK"), tmp_path / "s.toml"
+    assert scale(wrong, "--protocol", "reference36", "--out", out) == 0
+    told = capsys.readouterr().err
+    assert "the static trial exchanges the names of RKNE and RANK" in told and "--keep-names" in told
+    assert read_subject(out).report["static_names_exchanged"] == [["RKNE", "RANK"]]
 
 
 def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):

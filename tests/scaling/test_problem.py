@@ -236,7 +236,7 @@ def test_the_information_is_that_of_the_equations_with_joint_centres(problem, st
         slope = (ends[0] - ends[1]) / (2 * h) * np.where(problem.seen, whiten, 0.0)[..., None]
         columns.append(slope.ravel())
     by_centres = np.array(columns).T
-    shown = problem._shown(state)
+    shown = problem.shown(state)
     by_pose = shown.by_pose.reshape(FRAMES, -1, MODEL.nv)
     frames = problem.linearise(state).frames
     expected = by_centres.T @ by_centres

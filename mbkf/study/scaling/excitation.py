@@ -24,7 +24,7 @@ from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.subject_sensor import subject_sensor
 from mbkf.study.scaling.likeness import StandingMarkers
 from mbkf.study.survey.movement import kind_of_markers
-from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.static_names import markers_as_scaled
 
 FRAMES = 16
 """Greatest number of frames looked at."""
@@ -84,7 +84,7 @@ class StandingBody:
         Raises:
             NotObservable: It shows too few of the person's markers, or those of another person.
         """
-        own = _looked_at(subject_markers(markers, self._subject))
+        own = _looked_at(markers_as_scaled(markers, self._subject))
         if refusal := self._markers.refusal(own):
             raise NotObservable(refusal)
         by_name = {marker.name: marker for marker in self._subject.markers}

@@ -13,7 +13,7 @@ import numpy as np
 
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
-from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.static_names import markers_as_scaled
 
 LEAST_COVERAGE = 0.5
 """Least share of the standing trial's markers that the frames looked at show."""
@@ -36,7 +36,7 @@ class StandingMarkers:
     """
 
     def __init__(self, subject: Subject, standing: MarkerTrajectories) -> None:
-        own = subject_markers(standing, subject)
+        own = markers_as_scaled(standing, subject)
         self._segments = {marker.name: marker.segment for marker in subject.markers}
         there = np.asarray(own.present.any(axis=0))
         self._seen = [name for name, seen in zip(own.names, there, strict=True) if seen]

@@ -20,8 +20,8 @@ from mbkf.io.subject import Subject
 from mbkf.scaling.correction import correct_markers
 from mbkf.trial.preparation.filters import FilterInputs, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.preparation.static_names import markers_as_scaled
 
 SETTLING_S = 0.5
 """Innovations within this time after a start of the filter are left out."""
@@ -147,7 +147,7 @@ def _inputs(
     capture: Capture, subject: Subject, settings: ReconstructSettings
 ) -> tuple[FilterInputs, Recording]:
     """Inputs and readings of a whole trial, nothing hidden or withheld."""
-    shown = subject_markers(capture.markers, subject)
+    shown = markers_as_scaled(capture.markers, subject)
     fixed = settings.correct_markers
     subject = correct_markers(subject, shown) if fixed else subject.in_neutral_posture()
     return trial_inputs(shown, capture.plates, subject, settings)

@@ -24,8 +24,8 @@ from mbkf.trial.inertia.prior import PLACE, inertia_prior
 from mbkf.trial.inertia.rows import STEP_S, TrialRows, trial_rows
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
-from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.preparation.static_names import markers_as_scaled
 
 INERTIA_KEY = "inertia"
 """Key of a subject's report for its inertial parameters as estimated from plates."""
@@ -156,7 +156,7 @@ def rows_of(subject: Subject, capture: Capture) -> tuple[InertialRegressor, Tria
 
 def _rows(regressor: InertialRegressor, subject: Subject, capture: Capture) -> TrialRows:
     checked = checked_for_subject(capture, subject)
-    shown = subject_markers(checked.markers, subject)
+    shown = markers_as_scaled(checked.markers, subject)
     subject = correct_markers(subject, shown)
     inputs, recording = trial_inputs(shown, checked.plates, subject, ReconstructSettings())
     motion = markers_alone(inputs, recording)

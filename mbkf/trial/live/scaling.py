@@ -23,7 +23,7 @@ from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.subject_sensor import subject_sensor
 from mbkf.trial.label_unscaled import label_unscaled
-from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.static_names import markers_as_scaled, under_names_of_static
 from mbkf.trial.scale import scale
 
 STILL_S = 1.0
@@ -185,12 +185,12 @@ def scale_standing(
         _require_straight_legs(model, q)
         if mass_kg is None:
             _require_feet_on_plates(model, q, capture.plates)
-    return subject
+    return under_names_of_static(subject)
 
 
 def _posture(capture: Capture, subject: Subject) -> tuple[HumanModel, Array]:
     """The person's body, and its pose (nq,) in the frame that shows most markers."""
-    shown = subject_markers(capture.markers, subject)
+    shown = markers_as_scaled(capture.markers, subject)
     own = [marker for name in shown.names for marker in subject.markers if marker.name == name]
     model = HumanModel.of(subject)
     sensor = subject_sensor(model, own)

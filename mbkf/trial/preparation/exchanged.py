@@ -17,6 +17,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.preparation.exchanged_sides import crosses, exchanged_by_pose
+from mbkf.trial.preparation.static_names import carried_pairs, exchanged_names
 
 STANDING_SD_M = 0.008
 """Spread of a marker about its place in the standing trial."""
@@ -34,6 +35,8 @@ def names_put_right(
         markers: (T, M, 3) m, under the subject's own names.
         subject: The scaled person.
     """
+    carried = carried_pairs(markers, subject)
+    markers = exchanged_names(markers, carried)
     by_name = {marker.name: marker for marker in subject.markers}
     own = [by_name[name] for name in markers.names]
     sensor = MarkerSensor(
@@ -49,7 +52,8 @@ def names_put_right(
         if by_pose:
             right = undo_exchanges(markers.positions_m, by_pose)
             found = (*by_pose, *_found(right, sensor, neutral, distances))
-    return _changed(markers, found), _exchanges(markers, found)
+    as_static = tuple((a, b, markers.frames) for a, b in carried)
+    return _changed(markers, found), (*as_static, *_exchanges(markers, found))
 
 
 def renamed_by_filter(

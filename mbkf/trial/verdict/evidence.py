@@ -11,6 +11,7 @@ from mbkf.io.contacts import FEET, ContactInterval
 from mbkf.io.findings import Finding
 from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import Reconstruction
+from mbkf.io.static_exchanges import static_exchanges
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS
@@ -42,6 +43,7 @@ class Evidence:
         checks: Checks of the capture.
         doubts: Doubts of the subject's file.
         stood: Joints of the legs that were bent in the static trial, where no one stands bent.
+        static_exchanges: Pairs of names of the static trial that scaling put right, with the parts of their segments.
         explained: Share of the capture's markers that the protocol knows.
         part_of: Part by segment of the body.
     """
@@ -60,6 +62,7 @@ class Evidence:
     checks: tuple[Finding, ...] = ()
     doubts: tuple[str, ...] = ()
     stood: tuple[Stood, ...] = ()
+    static_exchanges: tuple[tuple[str, str, tuple[str, ...]], ...] = ()
     explained: float = 1.0
     part_of: Mapping[str, str] = field(default_factory=dict)
 
@@ -136,6 +139,7 @@ def evidence_from(sums: TrialSums, found: Found) -> Evidence:
         checks=found.checks,
         doubts=doubts_of(followed.subject),
         stood=stood_bent(model, followed.subject),
+        static_exchanges=_static_exchanges(followed.subject, part_of_segment(body)),
         explained=found.explained,
         part_of=part_of_segment(body),
     )
@@ -145,6 +149,17 @@ def doubts_of(subject: Subject) -> tuple[str, ...]:
     """Doubts about the scaled body, from its file."""
     doubts = subject.report.get(DOUBTS_KEY)
     return tuple(str(one) for one in doubts) if isinstance(doubts, list) else ()
+
+
+def _static_exchanges(
+    subject: Subject, part_of: Mapping[str, str]
+) -> tuple[tuple[str, str, tuple[str, ...]], ...]:
+    """The pairs of names that the static trial exchanges, and the parts that rest on them."""
+    segments = {marker.name: marker.segment for marker in subject.markers}
+    return tuple(
+        (a, b, tuple(dict.fromkeys(part_of[segments[one]] for one in (a, b) if one in segments)))
+        for a, b in static_exchanges(subject)
+    )
 
 
 def _lacking(sums: TrialSums, body: BodyDescription) -> frozenset[str]:

@@ -71,6 +71,7 @@ def motion_reasons(evidence: Evidence) -> Iterator[Reason]:
     yield from _ranges(evidence)
     yield from _doubtful_limbs(evidence)
     yield from _stood(evidence)
+    yield from _static_exchanges(evidence)
     yield from _spreads(evidence)
     yield from _whole(evidence)
 
@@ -199,6 +200,23 @@ def _stood(evidence: Evidence) -> Iterator[Reason]:
                 "check the names of the static trial's markers, and scale again",
                 off[1],
             )
+
+
+def _static_exchanges(evidence: Evidence) -> Iterator[Reason]:
+    """Names of the static trial that scaling put right by the fit of the body, once for each part."""
+    pairs: dict[str, list[str]] = {}
+    for a, b, parts in evidence.static_exchanges:
+        for part in parts:
+            pairs.setdefault(part, []).append(f"{a} and {b}")
+    for part, named in pairs.items():
+        yield Reason(
+            part,
+            "look",
+            f"the static trial exchanges the names of {', '.join(named)}",
+            "scaling put them right by the fit of the body, which is a guess",
+            "check these names in the static trial; scale --keep-names keeps them",
+            1.0,
+        )
 
 
 def _spreads(evidence: Evidence) -> Iterator[Reason]:

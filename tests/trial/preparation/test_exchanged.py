@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.capture import read_capture
+from mbkf.io.static_exchanges import static_exchanges
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.verdict import DOUBTS_KEY
@@ -90,7 +91,6 @@ def test_a_laboratory_s_exchange_is_told_and_fits_better(real_data):
 @pytest.mark.parametrize(
     ("trial", "static", "mass_kg"),
     [
-        ("gait2354_walk/subject01_walk1.trc", "gait2354_walk/subject01_static.trc", 72.6),
         ("biomechzoo_walk_turn/HC044A_Straight_HC044A15.c3d", "biomechzoo_walk_turn/HC044A_Static_HC044A01.c3d", 60.3),
         ("biobuddy_functional/functional_right_knee.c3d", "biobuddy_functional/static.c3d", 70.0),
     ],
@@ -102,15 +102,34 @@ def test_clean_captures_stay_as_they_are(trial, static, mass_kg, real_data):
     assert names_put_right(markers, subject) == (markers, ())
 
 
-def test_names_that_are_exchanged_in_standing_and_moving_trials_alike_are_doubted(real_data):
-    """Distances cannot tell the inner from the outer marker of the toes; where scaling had to move them does.
+WRISTS = tuple((f"{side}.Wrist.Lat", f"{side}.Wrist.Med") for side in "RL")
+TOES = ("R.Toe.Lat", "R.Toe.Med")
+FEW = ScalingSettings(frames_per_trial=10)
 
-    A forearm turns until exchanged markers of its wrist fit: those are not noticed.
-    """
-    folder = real_data / "gait2354_walk"
-    recorded = [read_capture(folder / f"subject01_{name}.trc") for name in ("static", "walk1")]
-    assert DOUBTS_KEY not in scale(recorded[0], recorded[1:], mass_kg=72.6).report
-    toes = ("R.Toe.Lat", "R.Toe.Med")
-    wrong = [exchanged(capture, *toes, slice(0, None)) for capture in recorded]
-    (doubt,) = scale(wrong[0], wrong[1:], mass_kg=72.6).report[DOUBTS_KEY]
-    assert doubt == f"{toes[0]} and {toes[1]} are at each other's places; check for exchanged names"
+
+def standing_and_walk(real_data):
+    """A laboratory's captures in which inner and outer wrists have each other's names."""
+    return [
+        read_capture(real_data / "gait2354_walk" / f"subject01_{name}.trc") for name in ("static", "walk1")
+    ]
+
+
+def test_names_that_a_laboratory_exchanges_in_all_trials_are_put_right(real_data):
+    static, walk = (exchanged(one, *TOES, slice(0, None)) for one in standing_and_walk(real_data))
+    subject = scale(static, [walk], mass_kg=72.6, settings=FEW)
+    assert set(static_exchanges(subject)) == {*WRISTS, TOES}
+    assert DOUBTS_KEY not in subject.report
+    every = walk.markers.frames
+    assert {tuple(one) for one in subject.report[EXCHANGED_KEY]} == {
+        (*pair, every) for pair in (*WRISTS, TOES)
+    }
+    _, told = names_put_right(subject_markers(walk.markers, subject), subject)
+    assert set(told) == {(*pair, every) for pair in (*WRISTS, TOES)}
+
+
+def test_names_that_are_kept_and_exchanged_in_all_trials_are_doubted(real_data):
+    """Distances cannot tell the inner from the outer marker of the toes; where scaling had to move them does."""
+    static, walk = (exchanged(one, *TOES, slice(0, None)) for one in standing_and_walk(real_data))
+    kept = replace(FEW, correct_names=False)
+    (doubt,) = scale(static, [walk], mass_kg=72.6, settings=kept).report[DOUBTS_KEY]
+    assert doubt == f"{TOES[0]} and {TOES[1]} are at each other's places; check for exchanged names"

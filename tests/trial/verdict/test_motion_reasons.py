@@ -111,3 +111,13 @@ def test_a_static_in_which_no_one_stands_so_has_its_word(degrees, word):
     stood = (Stood("left_leg", "left_foot", degrees), Stood("left_leg", "left_shank", 16.0))
     assert word_on("left_leg", stood=stood) == word and word_on("right_leg", stood=stood) == "use"
     assert len(list(motion_reasons(Evidence(stood=stood)))) == (word != "use"), "one reason for a leg"
+
+
+def test_names_of_the_static_that_scaling_put_right_ask_for_a_look_at_their_parts():
+    pairs = (("RKNE", "LKNE", ("right_leg", "left_leg")), ("RANK", "RHEE", ("right_leg",)))
+    assert [word_on(part, static_exchanges=pairs) for part in ("right_leg", "left_leg", "pelvis")] == [
+        "look", "look", "use",
+    ]  # fmt: skip
+    right, left = motion_reasons(Evidence(static_exchanges=pairs))
+    assert "RKNE and LKNE, RANK and RHEE" in right.found and "--keep-names" in right.do
+    assert "RANK" not in left.found
