@@ -24,6 +24,7 @@ from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.limb_starts import Order
 from mbkf.trial.checks import mass
 from mbkf.trial.live.filter import LiveInputs
+from mbkf.trial.live.running_contacts import RunningContacts
 from mbkf.trial.results.assembly import FOOT_SD_M
 from mbkf.trial.results.innovations import SETTLING_S
 from mbkf.trial.results.validity import torques_known
@@ -62,6 +63,7 @@ class RunningEvidence:
         held = tuple(compress(names, live.inputs.unobservable))
         followed = Followed(subject, model, live.names, self._clinical.names, names, held, rate_hz)
         self._sums = TrialSums(followed)
+        self._contacts = RunningContacts(tuple(model.description.bearings), rate_hz)
         self._block = max(1, round(BLOCK_S * rate_hz))
         self._rows: list[NDArray] = []
         self._known: list[bool] = []
@@ -105,10 +107,10 @@ class RunningEvidence:
         """The verdict on the frames so far.
 
         Args:
-            found: The evidence that is not summed up over frames.
+            found: The evidence that is not gathered from frames; contacts are.
         """
         self._add()
-        return judge(evidence_from(self._sums, found))
+        return judge(evidence_from(self._sums, replace(found, contacts=self._contacts.intervals())))
 
     def _add(self) -> None:
         """Adds the frames that wait."""
@@ -134,6 +136,7 @@ class RunningEvidence:
             rows["marker_nis"],
             np.arange(first, first + len(rows)) >= self._settles,
         )
+        self._contacts.add(first, rows["support"])
         self._sums.add(Frames(q, markers, rows["angle_sd"], np.array(self._known), np.array(self._spoilt)))
         self._rows, self._known, self._spoilt = [], [], []
 

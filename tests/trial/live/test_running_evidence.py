@@ -141,3 +141,16 @@ def test_bodies_of_a_stream_have_the_names_of_its_markers(subject):
     assert RunningEvidence(live, subject, 100.0).verdict(Found()).overall == "do not use", (
         "nothing is shown yet"
     )
+
+
+def test_a_part_that_bears_load_calls_for_a_look(run, subject):
+    setup, rows, _, _ = run
+    running = RunningEvidence(setup.live, subject, 100.0)
+    for k, row in enumerate(rows):
+        put = row.copy()
+        put["support"] = 0.0
+        put["support"][0, 0, 2] = 300.0 * (k > 30)
+        running.push(put, True, False)
+    verdict = running.verdict(Found())
+    assert verdict.parts["trunk_loads"] == "look"
+    assert any("bears up to 300 N" in one.found for one in verdict.reasons)
