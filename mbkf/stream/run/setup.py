@@ -24,6 +24,7 @@ from mbkf.trial.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.trial.live.labels import live_body
 from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.preparation.in_view import LEAST_MARKERS, plain_name
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 MOST_NAMED = 4
@@ -131,14 +132,13 @@ def prepare(
 
 def _note_named_twice(names: tuple[str, ...], subject: Subject, note: Note) -> None:
     """Reports markers of the person that the stream names more than once, as it does for a second person."""
-    counts = Counter(names)
-    twice = [name for name in match_names(counts, subject.markers) if counts[name] > 1]
-    if twice:
-        listed = ", ".join(twice[:MOST_NAMED]) + (" …" if len(twice) > MOST_NAMED else "")
+    counts = Counter(map(plain_name, names))
+    twice = [name for name in match_names(names, subject.markers) if counts[plain_name(name)] > 1]
+    if len(twice) >= LEAST_MARKERS:
         note(
             "person",
-            f"the stream names {len(twice)} markers more than once ({listed}): the first of each is followed; "
-            "where two persons are in view, send a stream of one",
+            f"the stream names {len(twice)} markers more than once ({', '.join(twice[:MOST_NAMED])} …): the first of "
+            "each is followed; where two persons are in view, send a stream of one",
             None,
             1,
         )

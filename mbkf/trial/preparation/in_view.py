@@ -65,13 +65,13 @@ def others_in_view(markers: MarkerTrajectories, own: Collection[str]) -> Others:
     places = markers.positions_m[::step]
     if not mine or not len(places):
         return Others((), 0.0)
-    namesakes = {_plain(markers.names[m]): m for m in mine}
+    namesakes = {plain_name(markers.names[m]): m for m in mine}
     found, far = [], 0.0
     for m, name in enumerate(markers.names):
         if name in own:
             continue
         nearest = _nearest(places[:, m], places[:, mine])
-        twin = namesakes.get(_plain(name))
+        twin = namesakes.get(plain_name(name))
         elsewhere = twin is not None and _nearest(places[:, m], places[:, [twin]]) > NAMESAKE_M
         if elsewhere or nearest > FAR_M:
             found.append(name)
@@ -96,7 +96,8 @@ def far_points(points_m: Array, own_m: Array) -> int:
     return int(np.median(counts)) if counts else 0
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
+    """A marker's name without a prefix (``B:LASI``) or the number that a reader adds to a repeated one (``LASI_2``)."""
     return _AGAIN.sub("", _PREFIX.sub("", name))
 
 

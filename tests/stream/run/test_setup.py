@@ -12,8 +12,14 @@ def test_markers_that_a_stream_names_twice_are_reported(subject):
     notes = []
     prepare(stream, subject, SETTINGS, True, lambda *one: notes.append(one))
     assert notes == []
-    twice = replace(stream, marker_names=(*stream.marker_names, *stream.marker_names[:5], "other", "other"))
-    setup = prepare(twice, subject, SETTINGS, True, lambda *one: notes.append(one))
-    ((kind, sentence, *_),) = notes
-    assert kind == "person" and "5 markers more than once (RASI, LASI, SACR, C7 …)" in sentence
-    assert list(setup.columns) == list(range(len(setup.names)))
+    own = stream.marker_names
+    few = replace(stream, marker_names=(*own, *own[:5], "other", "other"))
+    prepare(few, subject, SETTINGS, True, lambda *one: notes.append(one))
+    assert notes == []
+    for theirs in (own[:6], [f"B:{name}" for name in own[:6]], [f"{name}_2" for name in own[:6]]):
+        notes.clear()
+        both = replace(stream, marker_names=(*own, *theirs))
+        setup = prepare(both, subject, SETTINGS, True, lambda *one: notes.append(one))
+        ((kind, sentence, *_),) = notes
+        assert kind == "person" and "6 markers more than once (RASI, LASI, SACR, C7 …)" in sentence
+        assert list(setup.columns) == list(range(len(setup.names)))
