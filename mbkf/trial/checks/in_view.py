@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from mbkf.io.findings import INSIDE_SD, Finding, judged
+from mbkf.io.findings import INSIDE_SD, Finding, judged, not_judged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.trial.preparation.in_view import LEAST_MARKERS, others_in_view
 
@@ -14,6 +14,11 @@ BOUND = LEAST_MARKERS - 1
 """Markers of somebody else that are objects beside the subject."""
 
 REMEDY = "; make sure that this person is followed, or record one person alone"
+
+
+def unseen_finding() -> Finding:
+    """The check of a live run, whose log holds the subject's markers alone."""
+    return not_judged(NAME, "markers", BOUND, "a live run knows others by their names only, and reports them")
 
 
 def in_view_finding(markers: MarkerTrajectories, own: Collection[str]) -> Finding:

@@ -19,6 +19,7 @@ from mbkf.io.subject import Subject, read_subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
+from mbkf.trial.checks.in_view import unseen_finding
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.motion_result import Timeline, motion_result
 from mbkf.trial.live.filter import NUMERICAL, live_inputs
@@ -111,7 +112,7 @@ def checks_of(logged: Logged, subject: Subject, settings: ReconstructSettings) -
     try:
         inputs, recording = trial_inputs(shown, logged.stream.plates, subject.in_neutral_posture(), settings)
         alone = markers_alone(inputs, recording) if inputs.plates else None
-        return trial_checks(shown, subject, inputs, recording, alone)
+        return (*trial_checks(shown, subject, inputs, recording, alone), unseen_finding())
     except (MbkfError, *NUMERICAL):  # the first frames of a run may show nobody, or nonsense
         return ()
 
