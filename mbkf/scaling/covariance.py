@@ -13,7 +13,7 @@ from scipy.linalg import block_diag
 from mbkf.conventions import Array
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.model.joint_centres import centre_covariance, centre_names
-from mbkf.numerics.positive import inverse
+from mbkf.numerics.positive import eliminated, inverse
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.sensors.flexed_skin import slide_covariance
 
@@ -43,6 +43,20 @@ def body_covariance(problem: ScalingProblem, information: Array) -> BodyCovarian
     return BodyCovariance.of(
         tuple(problem.body.scale_factors), names, covariance, problem.prior.flexions, centres
     )
+
+
+def factor_errors(problem: ScalingProblem, information: Array) -> Array:
+    """(K,) standard errors of the scale factors, joint centres known.
+
+    Args:
+        problem: The problem that was solved.
+        information: That of :func:`body_covariance`.
+    """
+    count, centres = len(problem.body.scale_factors), len(centre_names(problem.body))
+    known = np.delete(np.arange(len(information)), np.arange(count, count + centres))
+    alone = information[np.ix_(known, known)]
+    factors = eliminated(alone, np.arange(count, len(alone)))
+    return np.asarray(np.sqrt(np.diagonal(inverse(factors))))
 
 
 def _in_places(problem: ScalingProblem, rows: Array) -> Array:

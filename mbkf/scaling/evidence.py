@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.numerics.positive import inverse
+from mbkf.numerics.positive import solved_with_spreads, whitened
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.scaling.records import ScalingPrior, ScalingState
 from mbkf.scaling.shoulders import without_shoulders
@@ -83,18 +83,20 @@ def variance_factors(
         away: (n,) the unknowns at the minimum minus the prior's mean.
         groups: Masks (n,) of the groups.
     """
-    data, pull = information - precision, information @ away
-    squares = np.ones(len(groups))
+    # in units of the prior's spreads, a factor on these shifts the diagonal
+    root = np.asarray(np.linalg.cholesky(precision), dtype=np.float64)
+    data = whitened(information - precision, root)
+    pull = np.asarray(np.linalg.solve(root, information @ away), dtype=np.float64)
+    squares, diagonal = np.ones(len(groups)), np.arange(len(data))
+    of = np.array(groups).T
     for _ in range(ROUNDS):
-        scaled = precision / (np.array(groups).T @ squares)[:, None]
-        covariance = inverse(data + scaled)
-        u = covariance @ pull
-        determined = 1.0 - (covariance * scaled.T).sum(axis=1)
-        squared = u * (precision @ u)
+        variance, posterior = of @ squares, data.copy(order="F")
+        posterior[diagonal, diagonal] += 1.0 / variance
+        u, spread = solved_with_spreads(posterior, pull)
+        determined = 1.0 - spread / variance
         squares = np.array(
             [
-                (PRIOR_WEIGHT + max(0.0, squared[group].sum()))
-                / (PRIOR_WEIGHT + max(0.0, determined[group].sum()))
+                (PRIOR_WEIGHT + (u[group] ** 2).sum()) / (PRIOR_WEIGHT + max(0.0, determined[group].sum()))
                 for group in groups
             ]
         )

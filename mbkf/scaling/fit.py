@@ -16,8 +16,7 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.model.sides import mirrored
 from mbkf.numerics.levenberg_marquardt import Solution
-from mbkf.numerics.positive import inverse
-from mbkf.scaling.covariance import body_covariance
+from mbkf.scaling.covariance import body_covariance, factor_errors
 from mbkf.scaling.evidence import learnt_prior
 from mbkf.scaling.frames import ScalingFrames, choose_frames
 from mbkf.scaling.problem import FACTOR_BOUNDS, KEYPOINT_POSTURE_FRAMES, ScalingProblem
@@ -279,7 +278,7 @@ def _subject(
 ) -> Subject:
     state = solution.state
     markers = _subject_markers(problem, state, protocol)
-    body = problem.body
+    body, information = problem.body, problem.information(state)
     return Subject(
         body=body.name,
         mass_kg=float(mass_kg),
@@ -287,9 +286,9 @@ def _subject(
         markers=markers,
         protocol=protocol.name,
         height_m=height_m,
-        report=_report(problem, solution, frames, dropped, settings),
+        report=_report(problem, solution, factor_errors(problem, information), frames, dropped, settings),
         body_text=body.text,
-        covariance=body_covariance(problem, problem.information(state)),
+        covariance=body_covariance(problem, information),
     )
 
 
@@ -336,15 +335,14 @@ def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:
 def _report(
     problem: ScalingProblem,
     solution: Solution[ScalingState],
+    errors: Array,
     frames: ScalingFrames,
     dropped: BoolArray,
     settings: ScalingSettings,
 ) -> dict[str, object]:
-    """Plain numbers: fit per marker (mm), factors with standard errors and bounds reached, markers left out."""
+    """Plain numbers: fit per marker (mm), factors with standard errors (K,) and bounds reached, markers left out."""
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)
-    count = len(body.scale_factors)
-    errors = np.sqrt(np.diag(inverse(solution.equations.schur_complement()))[:count])
     markers = {}
     for i, marker in enumerate(problem.markers):
         column = errors_mm[:, i][~np.isnan(errors_mm[:, i])]

@@ -1,9 +1,9 @@
-"""The inverse is the general one; the nearest covariance has no negative eigenvalues."""
+"""The inverse and solutions are the general ones; the nearest covariance has no negative eigenvalues."""
 
 import numpy as np
 import pytest
 
-from mbkf.numerics.positive import eliminated, inverse, made_positive
+from mbkf.numerics.positive import eliminated, inverse, made_positive, solved_with_spreads, whitened
 
 SCALES = np.array([1e-4, 1.0, 1e3, 30.0])
 
@@ -52,3 +52,27 @@ def test_elimination_keeps_the_covariance_of_the_others():
     expected = np.linalg.inv(np.linalg.inv(information)[np.ix_(others, others)])
     np.testing.assert_allclose(eliminated(information, unknowns), expected, rtol=1e-10)
     assert eliminated(information, unknowns[:0]) is information
+
+
+@pytest.mark.parametrize("columns, shift", [(9, 0.0), (9, -6.0)])
+def test_solution_and_spreads_are_those_of_the_general_inverse(columns, shift):
+    """Of indefinite matrices, too; the upper triangle is not read."""
+    rng = np.random.default_rng(2)
+    A, right = rng.normal(size=(6, columns)), rng.normal(size=6)
+    P = A @ A.T + shift * np.eye(6)
+    expected = np.linalg.inv(P)
+    found, spreads = solved_with_spreads(np.tril(P), right)
+    np.testing.assert_allclose(found, expected @ right, rtol=1e-8)
+    np.testing.assert_allclose(spreads, np.diag(expected), rtol=1e-8)
+
+
+def test_a_whitened_prior_is_the_identity_and_others_keep_their_ratio_to_it():
+    rng = np.random.default_rng(3)
+    A, B = rng.normal(size=(2, 5, 9))
+    prior, other = A @ A.T, B @ B.T
+    root = np.linalg.cholesky(prior)
+    np.testing.assert_allclose(np.tril(whitened(prior, root)), np.eye(5), atol=1e-12)
+    inverse_root = np.linalg.inv(root)
+    np.testing.assert_allclose(
+        np.tril(whitened(other, root)), np.tril(inverse_root @ other @ inverse_root.T), rtol=1e-9
+    )

@@ -6,7 +6,7 @@ import pytest
 from mbkf.model.human import HumanModel
 from mbkf.model.joint_centres import centre_covariance, centre_names
 from mbkf.numerics.levenberg_marquardt import minimise
-from mbkf.scaling.covariance import body_covariance
+from mbkf.scaling.covariance import body_covariance, factor_errors
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.scaling.records import ScalingPrior, ScalingState
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -60,6 +60,12 @@ def test_the_covariance_is_that_of_the_places_of_drawn_errors(problem):
     np.testing.assert_allclose(
         T.T @ np.linalg.inv(_without_centres(found.covariance)) @ T, information, rtol=1e-6, atol=1e-6
     )
+
+
+def test_errors_of_factors_are_those_of_the_inverse_with_known_centres(problem):
+    whole = random_covariance(np.random.default_rng(9), SIZE + len(CENTRES))
+    expected = np.linalg.inv(_without_centres(whole))
+    np.testing.assert_allclose(factor_errors(problem, whole), np.sqrt(np.diag(expected)[:COUNT]), rtol=1e-8)
 
 
 def test_scaling_errs_as_it_says(problem):
