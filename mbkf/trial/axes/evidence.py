@@ -148,17 +148,12 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
         return None
     frames = enough[spread_indices(len(enough), FRAMES)]
     segments = np.array(places.segments)
+    points = positions[frames]
+    seen = np.asarray(~np.isnan(points).any(axis=2))
+    points = np.where(seen[:, :, None], points, 0.0)
     feet = [np.isin(segments, list(foot)) for foot in places.feet]
-    patterns, which = np.unique(~np.isnan(positions[frames]).any(axis=2), axis=0, return_inverse=True)
-    found = []
-    for n, seen in enumerate(patterns):
-        own = frames[which.ravel() == n]
-        directions = [_foot(positions[own], places.neutral_m, foot & seen) for foot in feet]
-        known = _frames(positions[own][:, seen], places.neutral_m[seen], segments[seen])
-        found.append((own, *known, np.stack(directions, axis=1)))
-    own, *parts = (np.concatenate(one) for one in zip(*found, strict=True))
-    in_order = np.argsort(own)
-    up, stretch, handedness, explained, both_feet = (part[in_order] for part in parts)
+    both_feet = np.stack([_foot(points, places.neutral_m, seen & foot) for foot in feet], axis=1)
+    up, stretch, handedness, explained = _frames(points, seen, places.neutral_m, segments)
     known = ~np.isnan(stretch)
     if not known.any():
         return None
@@ -174,52 +169,56 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
     )
 
 
-def _frames(points: Array, neutral: Array, segments: NDArray[np.str_]) -> tuple[Array, Array, Array, Array]:
-    """Up (F, 3), stretch, handedness and explained share (F,) of frames; up and stretch NaN without evidence on up.
+def _frames(
+    points: Array, seen: BoolArray, neutral: Array, segments: NDArray[np.str_]
+) -> tuple[Array, Array, Array, Array]:
+    """Up (F, 3), stretch, handedness and explained share (F,) of frames; NaN without evidence on up.
 
     Args:
-        points: (F, K, 3) markers of the frames.
+        points: (F, K, 3) markers of the frames, 0 where missing.
+        seen: (F, K) True where they are not.
         neutral: (K, 3) their places on the body.
         segments: (K,) their segments.
     """
-    count = len(points)
-    design = np.column_stack([_depth(neutral, segments), (neutral - neutral.mean(axis=0))[:, 1:]])
-    spread_enough = np.linalg.norm(design, axis=0) >= LEAST_SPREAD_M
-    up, unknown = np.full((count, 3), np.nan), np.full(count, np.nan)
-    if not spread_enough[2]:
-        return up, unknown, unknown, unknown
-    design = design[:, spread_enough]
-    centred = points - points.mean(axis=1, keepdims=True)
-    every = centred.swapaxes(0, 1).reshape(len(design), -1)
-    slopes = np.linalg.lstsq(design, every, rcond=None)[0]
-    left = (every - design @ slopes).reshape(len(design), count, 3)
-    slopes = slopes.reshape(-1, count, 3).swapaxes(0, 1)
-    lengths, spread = np.linalg.norm(slopes, axis=2), (centred**2).sum(axis=(1, 2))
-    clear = (lengths > 0.0).all(axis=1)
-    units = slopes / np.where(clear[:, None], lengths, np.nan)[:, :, None]
-    handedness = unknown
-    if spread_enough.all():
-        handedness = np.where(clear, np.linalg.det(np.where(clear[:, None, None], units, 0.0)), np.nan)
-    explained = 1.0 - (left**2).sum(axis=(0, 2)) / np.where(spread > 0.0, spread, np.inf)
-    stretch = np.where(clear, lengths[:, -1], np.nan)
-    return units[:, -1], stretch, handedness, np.where(spread > 0.0, explained, 0.0)
+    counts = seen.sum(axis=1)[:, None]
+    from_middle = neutral[:, 1:] - (seen @ neutral[:, 1:] / counts)[:, None]
+    design = np.concatenate([_depth(seen, neutral, segments)[:, :, None], from_middle], axis=2)
+    design = np.where(seen[:, :, None], design, 0.0)
+    spread_enough = np.linalg.norm(design, axis=1) >= LEAST_SPREAD_M
+    design = np.where(spread_enough[:, None], design, 0.0)
+    centred = np.where(seen[:, :, None], points - (points.sum(axis=1) / counts)[:, None], 0.0)
+    slopes = np.linalg.pinv(design, rcond=len(neutral) * np.finfo(float).eps) @ centred
+    left, spread = centred - design @ slopes, (centred**2).sum(axis=(1, 2))
+    lengths = np.linalg.norm(slopes, axis=2)
+    clear = ((lengths > 0.0) | ~spread_enough).all(axis=1) & spread_enough[:, 2]
+    units = slopes / np.where(clear[:, None] & (lengths > 0.0), lengths, np.nan)[:, :, None]
+    sided = clear & spread_enough.all(axis=1)
+    handedness = np.where(sided, np.linalg.det(np.where(sided[:, None, None], units, 0.0)), np.nan)
+    explained = 1.0 - (left**2).sum(axis=(1, 2)) / np.where(spread > 0.0, spread, np.inf)
+    return (
+        units[:, 2],
+        np.where(clear, lengths[:, 2], np.nan),
+        handedness,
+        np.where(spread > 0.0, explained, 0.0),
+    )
 
 
-def _depth(neutral: Array, segments: NDArray[np.str_]) -> Array:
-    """(K,) distance of each marker in front of the mean of its segment's."""
-    _, which, counts = np.unique(segments, return_inverse=True, return_counts=True)
-    means = np.bincount(which, weights=neutral[:, 0]) / counts
-    return np.asarray(neutral[:, 0] - means[which])
+def _depth(seen: BoolArray, neutral: Array, segments: NDArray[np.str_]) -> Array:
+    """(F, K) distance of each marker in front of the mean of its segment's that are seen (F, K)."""
+    names, which = np.unique(segments, return_inverse=True)
+    own = np.eye(len(names))[which]
+    means = (seen * neutral[:, 0]) @ own / np.maximum(seen @ own, 1)
+    return np.asarray(neutral[:, 0] - means[:, which])
 
 
 def _foot(points: Array, neutral: Array, own: BoolArray) -> Array:
-    """(F, 3) unit direction from heel to toe in frames (F, K, 3); NaN for a foot with too few markers."""
-    ahead = neutral[own, 0] - neutral[own, 0].mean() if own.any() else np.zeros(0)
-    if np.linalg.norm(ahead) < LEAST_SPREAD_M[0]:
-        return np.full((len(points), 3), np.nan)
-    direction = ahead @ points[:, own]
-    length = np.linalg.norm(direction, axis=1, keepdims=True)
-    return np.asarray(direction / np.where(length > 0.0, length, np.nan))
+    """(F, 3) unit direction from heel to toe in frames (F, K, 3); NaN with too few of the foot's own markers (F, K)."""
+    mean = own @ neutral[:, 0] / np.maximum(own.sum(axis=1), 1)
+    ahead = np.where(own, neutral[:, 0] - mean[:, None], 0.0)
+    direction = (ahead[:, None] @ points)[:, 0]
+    length = np.linalg.norm(direction, axis=1)
+    enough = (length > 0.0) & (np.linalg.norm(ahead, axis=1) >= LEAST_SPREAD_M[0])
+    return np.asarray(direction / np.where(enough, length, np.nan)[:, None])
 
 
 def _sizes(positions: Array, places: MarkerPlaces, segments: NDArray[np.str_]) -> tuple[float, float, float]:
