@@ -111,9 +111,12 @@ def body_distances(sensor: MarkerSensor, placement_m: Array) -> Distances:
     neutral = model.neutral()
     poses = [model.integrate(neutral, spread * rng.standard_normal(model.nv)) for _ in range(POSTURES)]
     places = np.array([sensor.positions(q) for q in poses])
-    apart = np.linalg.norm(places[:, :, None] - places[:, None], axis=3)
-    placed = placement_m[:, None] ** 2 + placement_m**2
-    return Distances(apart.mean(axis=0), np.sqrt(apart.var(axis=0) + placed))
+    first, second = np.triu_indices(len(placement_m), 1)
+    apart = np.linalg.norm(places[:, first] - places[:, second], axis=2)
+    mean, variance = np.zeros((2, len(placement_m), len(placement_m)))
+    mean[first, second] = mean[second, first] = apart.mean(axis=0)
+    variance[first, second] = variance[second, first] = apart.var(axis=0)
+    return Distances(mean, np.sqrt(variance + placement_m[:, None] ** 2 + placement_m**2))
 
 
 def observed_distances(positions_m: Array, distances: Distances) -> Distances:
@@ -178,23 +181,30 @@ def misfits(positions_m: Array, distances: Distances) -> tuple[Array, Array]:
 
 def _suspects(shown_m: Array, distances: Distances, turning: BoolArray) -> Indices:
     """(P, 2) pairs that fit better with exchanged names in some examined frame, or whose δ reverses (M, M)."""
-    looks = spread_indices(len(shown_m), LOOKS)
-    near, frames = distances.neighbours, shown_m[looks]
-    count = shown_m.shape[1]
-    apart = np.sqrt(np.maximum(_squared(frames), 0.0))  # (F, M, M)
+    frames = shown_m[spread_indices(len(shown_m), LOOKS)]
+    suspect = turning.copy()
+    for first in range(0, len(frames), BLOCK):  # small blocks stay in the processor's cache
+        suspect |= _gaining(frames[first : first + BLOCK], distances)
+    return np.argwhere(np.triu(suspect, 1))
+
+
+def _gaining(frames_m: Array, distances: Distances) -> BoolArray:
+    """(M, M) True for pairs that fit better with exchanged names in one of some frames (F, M, 3)."""
+    near, count = distances.neighbours, frames_m.shape[1]
+    apart = np.sqrt(np.maximum(_squared(frames_m), 0.0))  # (F, M, M)
     markers = np.arange(count)[:, None]
     expected, spread = distances.expected_m[markers, near], distances.sd_m[markers, near]
-    cost = np.zeros((len(looks), count, count))  # of point b (last but one) as marker a (last)
+    cost = np.zeros(apart.shape)  # of point b (last but one) as marker a (last)
     for k in range(near.shape[1]):
         off = apart[:, :, near[:, k]] - expected[:, k]
         off *= off / spread[:, k] ** 2
         off[:, near[:, k], np.arange(count)] = 0.0
-        cost += np.minimum(np.nan_to_num(off, nan=0.0), WORST)
+        off[np.isnan(off)] = 0.0
+        cost += np.minimum(off, WORST, out=off)
     own = np.einsum("tmm->tm", cost)
     gain = own[:, :, None] + own[:, None] - cost - cost.transpose(0, 2, 1)
     both = ~np.isnan(apart) & (apart >= APART_M)
-    suspect = (both & (gain > SUSPECT_GAIN)).any(axis=0) | turning
-    return np.argwhere(np.triu(suspect, 1))
+    return np.asarray((both & (gain > SUSPECT_GAIN)).any(axis=0))
 
 
 def _squared(frames_m: Array) -> Array:

@@ -15,6 +15,7 @@ from mbkf.labelling.exchanges import Distances, Exchange, body_distances, find_e
 from mbkf.labelling.turned_segments import find_turned
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.numerics.percentiles import known_percentiles
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.trial.preparation.exchanged_sides import crosses, exchanged_by_pose
 from mbkf.trial.preparation.static_names import carried_pairs, exchanged_names
@@ -147,19 +148,19 @@ def _as_stood(
 
 def _middle(positions_m: Array) -> Array:
     """(M, 3) median place of each marker; NaN of a marker that is never seen."""
-    places = np.full(positions_m.shape[1:], np.nan)
-    seen = np.isfinite(positions_m).any(axis=(0, 2))
-    places[seen] = np.nanmedian(positions_m[:, seen], axis=0)
-    return places
+    return np.asarray(known_percentiles(positions_m, (50.0,))[0])
 
 
 def _standing(positions_m: np.ndarray, sensor: MarkerSensor) -> Distances:
     """Distances as a standing trial has them, with the spread that movement brings."""
     body = body_distances(sensor, np.full(len(sensor.segments), STANDING_SD_M))
-    apart = np.linalg.norm(positions_m[:, :, None] - positions_m[:, None], axis=3)
-    seen = ~np.isnan(apart).all(axis=0)
+    first, second = np.triu_indices(len(sensor.segments), 1)
+    apart = np.linalg.norm(positions_m[:, first] - positions_m[:, second], axis=2)
+    median = known_percentiles(apart, (50.0,))[0]
     middle = body.expected_m.copy()
-    middle[seen] = np.nanmedian(apart[:, seen], axis=0)
+    middle[first, second] = middle[second, first] = np.where(
+        np.isnan(median), body.expected_m[first, second], median
+    )
     return Distances(middle, body.sd_m)
 
 
