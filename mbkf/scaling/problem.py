@@ -32,7 +32,7 @@ from mbkf.numerics.levenberg_marquardt import ArrowEquations
 from mbkf.scaling.records import FrameWeights, ScalingPrior, ScalingSettings, ScalingState, ShownMarkers
 from mbkf.scaling.shoulders import TrialShoulders, without_shoulders
 from mbkf.scaling.standing import UprightPosture
-from mbkf.scaling.usual_posture import UsualPosture
+from mbkf.scaling.usual_posture import Turned, UsualPosture
 from mbkf.sensors.flexed_skin import FlexedSkin
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -97,8 +97,9 @@ class ScalingProblem:
         self._upright = UprightPosture(model)
         self._worn = ScaledMarkers(model, self.segments, self.reference_m)
         self._last: tuple[ScalingState, ShownMarkers, ArrowEquations] | None = None
-        number = np.zeros(len(self.measured_m), dtype=np.intp) if trial is None else trial
-        self.shoulders = TrialShoulders(self._worn.girdle, number)
+        self._turns: Turned | None = None
+        every = np.zeros(len(self.measured_m), dtype=np.intp)
+        self.shoulders = TrialShoulders(self._worn.girdle, every if trial is None else trial)
 
     def _model(self, factors: Array) -> HumanModel:
         return HumanModel(self.body, factors, self.body.reference_mass_kg, centres_m=self._centres_m)
@@ -135,7 +136,7 @@ class ScalingProblem:
 
     def errors_m(self, state: ScalingState) -> Array:
         """(N, M, 3) modelled minus measured, NaN where a marker is missing."""
-        moved = self._displacements_m(state, self._shares(state.poses))
+        moved = self._displacements_m(state, self._shares(state))
         raised = self.shoulders.displaced_m(state.girdle_m)
         return self._worn.places(state.poses, state.factors, moved, raised) - self.measured_m
 
@@ -151,16 +152,23 @@ class ScalingProblem:
     def usual_shares(self, poses: Array) -> Array:
         """(D, M) mean share of each displacement in the frames (N, nq) that show the marker."""
         seen = np.maximum(self.seen, 1e-9)
-        shares = np.array([self.skin.shares(q) for q in poses])[:, :, : len(self.prior.slides_m)]
+        shares = self.skin.shares_of(self._turned(poses).deviations)[:, :, : len(self.prior.slides_m)]
         return np.asarray((np.moveaxis(shares, 2, 0) * seen).sum(axis=1) / seen.sum(axis=0))
 
-    def _shares(self, poses: Array) -> Array:
+    def _turned(self, poses: Array) -> Turned:
+        """Turns of the joints, kept for the next call: cost and derivatives need those of the same configurations."""
+        if self._turns is None or self._turns.poses is not poses:
+            deviations, jacobians = zip(*(self.posture.deviation(q) for q in poses), strict=True)
+            self._turns = Turned(poses, np.array(deviations), jacobians)
+        return self._turns
+
+    def _shares(self, state: ScalingState) -> Array:
         """(1 + D, N, M) 1 and f of N configurations."""
-        size = (len(poses), len(self.markers))
+        one = np.ones((1, len(state.poses), len(self.markers)))
         if not self.prior.flexions and not self.prior.slides_m.any():
-            return np.ones((1, *size))
-        found = np.array([self.skin.shares(q) for q in poses]).reshape(*size, -1)
-        return np.concatenate([np.ones((1, *size)), np.moveaxis(found, 2, 0)])
+            return one
+        found = self.skin.shares_of(self._turned(state.poses).deviations)
+        return np.concatenate([one, np.moveaxis(found, 2, 0)])
 
     def _displacements_m(self, state: ScalingState, shares: Array) -> Array:
         """(N, M, 3) δ + Σ_d f_d c_d; (M, 3) without displacements."""
@@ -212,21 +220,16 @@ class ScalingProblem:
         """Sum of squared residuals."""
         errors = np.where(self.seen[:, :, None], self.errors_m(state), 0.0) / self.noise_m[:, None]
         markers = float(self.weights.markers @ (errors**2).sum(axis=(1, 2)))
-        return markers + self._shared_cost(state) + self._posture_cost(state)
+        away = self.prior.away(state)
+        return markers + float(away @ self._precision @ away) + self._posture_cost(state)
 
     def _posture_cost(self, state: ScalingState) -> float:
-        total = 0.0
-        for t, q in enumerate(state.poses):
-            if self.weights.posture[t]:
-                total += self.weights.posture[t] * self._usual.cost(q, bool(self.weights.standing[t]))
-            if self.weights.upright[t]:
-                tilt = self._upright.residuals(self.posture.model, q)
-                total += self.weights.upright[t] * float(tilt @ tilt)
+        weights, turns = self.weights, self._turned(state.poses).deviations
+        total = float(weights.posture @ self._usual.costs(turns, weights.standing))
+        for t in np.flatnonzero(weights.upright):
+            tilt = self._upright.residuals(self.posture.model, state.poses[t])
+            total += weights.upright[t] * float(tilt @ tilt)
         return total
-
-    def _shared_cost(self, state: ScalingState) -> float:
-        away = self.prior.away(state)
-        return float(away @ self._precision @ away)
 
     def move(self, state: ScalingState, own: Array, shared: Array) -> ScalingState:
         """The state after a step; factors stay inside their bounds, and a frame's joints turn by a radian at most.
@@ -332,12 +335,13 @@ class ScalingProblem:
         flat = shown.by_pose.reshape(len(state.poses), -1, nv)
         frames = flat.swapaxes(1, 2) @ flat + 1e-9 * np.eye(nv)
         gradient = (shown.errors.reshape(len(flat), 1, -1) @ flat)[:, 0]
-        for t, q in enumerate(state.poses):
-            usual, pull = self._usual.equations(q, bool(weights.standing[t]))
+        turned = self._turned(state.poses)
+        for t, (deviation, jacobian) in enumerate(zip(turned.deviations, turned.jacobians, strict=True)):
+            usual, pull = self._usual.equations(deviation, jacobian, bool(weights.standing[t]))
             frames[t] += weights.posture[t] * usual
             gradient[t] += weights.posture[t] * pull
             if weights.upright[t]:
-                tilt, by_tilt = self._upright.linearised(self.posture.model, q)
+                tilt, by_tilt = self._upright.linearised(self.posture.model, state.poses[t])
                 frames[t] += weights.upright[t] * (by_tilt.T @ by_tilt)
                 gradient[t] += weights.upright[t] * (by_tilt.T @ tilt)
         return frames, gradient
@@ -370,7 +374,7 @@ class ScalingProblem:
 
     def shown(self, state: ScalingState) -> ShownMarkers:
         """Whitened errors of all frames and their derivatives."""
-        shares = self._shares(state.poses)
+        shares = self._shares(state)
         moved = self._displacements_m(state, shares)
         reading = self._worn.reading(
             state.poses, state.factors, moved, self.shoulders.displaced_m(state.girdle_m)
@@ -379,8 +383,8 @@ class ScalingProblem:
         errors = np.array([one.positions_m for one in reading.markers]) - self.measured_m
         by_pose = np.array([one.jacobian for one in reading.markers])
         if state.slides_m.any():
-            by_share = np.array([self.skin.linearised(q)[1] for q in state.poses])
-            by_pose += (reading.axes @ np.moveaxis(state.slides_m, 0, 2)) @ by_share
+            displaced = reading.axes @ np.moveaxis(state.slides_m, 0, 2)
+            self.skin.add_by_poses(by_pose, displaced, *self._turned(state.poses)[1:])
         by_factors = reading.by_factors
         if self.prior.raised:
             by_factors = np.concatenate([by_factors, self.shoulders.by_displacements(reading.trunks)], axis=3)

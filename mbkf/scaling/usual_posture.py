@@ -8,14 +8,31 @@ distribution. Near neutral it is s; on a joint held elsewhere it has little effe
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.sensors.posture import prior_information
 from mbkf.sensors.posture_sensor import PostureSensor
 
 ON_PURPOSE = 2.0
 """Standard deviations of straight standing beyond which a joint is held elsewhere on purpose (c)."""
+
+
+class Turned(NamedTuple):
+    """Turns of the joints from neutral.
+
+    Attributes:
+        poses: (N, nq) configurations.
+        deviations: (N, nv) rad, 0 for the root.
+        jacobians: (nv, nv) derivative in each of them.
+    """
+
+    poses: Array
+    deviations: Array
+    jacobians: Sequence[Array]
 
 
 class UsualPosture:
@@ -33,16 +50,26 @@ class UsualPosture:
         dofs = [np.isin(sensor.dofs, np.arange(joint.v.start, joint.v.stop)) for joint in joints]
         self._joints = np.array([own for own in dofs if own.any()], dtype=np.float64)
 
-    def cost(self, q: Array, standing: bool) -> float:
-        """The term at q (nq,)."""
-        deviation = self.sensor.deviation(q)[0][self.sensor.dofs]
-        if not standing:
-            return float(((deviation / self.sensor.sd) ** 2).sum())
-        return float(ON_PURPOSE**2 * np.log1p(self._squared(deviation) / ON_PURPOSE**2).sum())
+    def costs(self, deviations: Array, standing: BoolArray) -> Array:
+        """(N,) the term of N postures.
 
-    def equations(self, q: Array, standing: bool) -> tuple[Array, Array]:
-        """Gauss–Newton matrix (nv, nv) and half the gradient (nv,) of the cost at q (nq,)."""
-        deviation, jacobian = self.sensor.deviation(q)
+        Args:
+            deviations: (N, nv) turns of the joints from neutral, rad.
+            standing: (N,) True where the person stands straight.
+        """
+        turned = deviations[:, self.sensor.dofs]
+        moving = ((turned / self.sensor.sd) ** 2).sum(axis=1)
+        held = ON_PURPOSE**2 * np.log1p(self._squared(turned) / ON_PURPOSE**2).sum(axis=1)
+        return np.where(standing, held, moving)
+
+    def equations(self, deviation: Array, jacobian: Array, standing: bool) -> tuple[Array, Array]:
+        """Gauss–Newton matrix (nv, nv) and half the gradient (nv,) of a posture's cost.
+
+        Args:
+            deviation: (nv,) turns of the joints from neutral, rad.
+            jacobian: (nv, nv) their derivative.
+            standing: True where the person stands straight.
+        """
         weights = np.zeros(len(deviation))
         weights[self.sensor.dofs] = 1.0 / self._sd(deviation[self.sensor.dofs], standing)
         known = prior_information(self.sensor, deviation, jacobian, weights)
@@ -56,5 +83,5 @@ class UsualPosture:
         return np.asarray((held @ self._joints) * self.standing_sd)
 
     def _squared(self, deviation: Array) -> Array:
-        """(joints,) s of each joint."""
-        return np.asarray(self._joints @ (deviation / self.standing_sd) ** 2)
+        """(…, joints) s of each joint."""
+        return np.asarray((deviation / self.standing_sd) ** 2 @ self._joints.T)

@@ -55,7 +55,11 @@ class FlexedSkin:
 
     def shares(self, q: Array) -> Array:
         """(M, D) f(θ) at a configuration q (nq,)."""
-        return _share(self._turning @ self._posture.deviation(q)[0])[self._which]
+        return self.shares_of(self._posture.deviation(q)[0])
+
+    def shares_of(self, deviations: Array) -> Array:
+        """(…, M, D) f(θ) where joints are turned by (…, nv) rad from neutral."""
+        return _share(deviations @ self._turning.T)[..., self._which]
 
     @property
     def carried(self) -> BoolArray:
@@ -76,13 +80,26 @@ class FlexedSkin:
         """
         return SkinDisplacement(self._posture, self._turning, self._which, slides_m)
 
-    def linearised(self, q: Array) -> tuple[Array, Array]:
-        """(M, D) f(θ) at a configuration q (nq,) and their derivative (M, D, nv) in its tangent space."""
-        deviation, jacobian = self._posture.deviation(q)
-        theta = self._turning @ deviation
-        slope = 0.5 * np.cos(0.5 * theta) / np.sin(0.5 * FLEXED_RAD)
-        by_q = slope[:, None] * (self._turning @ jacobian)
-        return _share(theta)[self._which], by_q[self._which]
+    def add_by_poses(
+        self, by_pose: Array, moved: Array, deviations: Array, jacobians: Sequence[Array]
+    ) -> None:
+        """Adds the displacements' derivatives to those of the markers' places by N poses.
+
+        Args:
+            by_pose: (N, M, 3, nv) derivatives; changed.
+            moved: (N, M, 3, D) displacement of each marker by a share of 1.
+            deviations: (N, nv) turns of the joints from neutral, rad.
+            jacobians: (nv, nv) their derivative in each pose.
+        """
+        theta = deviations @ self._turning.T
+        slopes = 0.5 * np.cos(0.5 * theta) / np.sin(0.5 * FLEXED_RAD)
+        by_q = slopes[:, :, None] * np.array([self._turning @ one for one in jacobians])
+        for flexion in np.flatnonzero(self._turning.any(axis=1)):
+            markers, kinds = np.nonzero(self._which == flexion)
+            dofs = np.flatnonzero((by_q[:, flexion] != 0.0).any(axis=0))  # those of the joints that bend
+            each = moved[:, markers, :, kinds].swapaxes(0, 1)
+            along = each[..., None] * by_q[:, None, None, flexion, dofs]
+            by_pose[:, markers[:, None, None], np.arange(3)[:, None], dofs] += along
 
 
 class SkinDisplacement:

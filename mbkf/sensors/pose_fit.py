@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,14 +30,19 @@ class PoseFit:
     Attributes:
         q: (nq,) configuration.
         rms_m: RMS distance of the markers used, m.
-        covariance: (nv, nv) of q in its tangent space.
+        information: (nv, nv) on q in its tangent space.
         converged: True if the iteration settled.
     """
 
     q: Array
     rms_m: float
-    covariance: Array
+    information: Array
     converged: bool
+
+    @cached_property
+    def covariance(self) -> Array:
+        """(nv, nv) of q in its tangent space; built on demand."""
+        return np.asarray(np.linalg.inv(self.information))
 
 
 def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
@@ -194,7 +200,7 @@ def fit_pose(
     q = solution.state
     distance = np.linalg.norm(sensor.positions(q)[seen] - target, axis=1)
     rms = float(np.sqrt((distance**2).mean())) if seen.any() else np.inf
-    return PoseFit(q, rms, np.linalg.inv(solution.equations.frames[0]), solution.converged)
+    return PoseFit(q, rms, solution.equations.frames[0], solution.converged)
 
 
 def fit_most_markers(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.flexed_skin import FLEXED_RAD, FlexedSkin, flexions_of, slide_covariance
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.motions import assert_near, central_difference, moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -42,12 +43,20 @@ def test_a_joint_at_60_degrees_moves_its_neighbours_markers_alone(joint, marker,
     assert moved == {SEGMENTS[marker]}
 
 
-def test_derivatives_are_those_of_the_shares():
-    q = moderate_pose(MODEL, np.random.default_rng(1))
-    shares, jacobian = SKIN.linearised(q)
-    np.testing.assert_array_equal(shares, SKIN.shares(q))
-    numeric = central_difference(MODEL, lambda at: SKIN.shares(at).ravel(), q)
-    assert_near(jacobian.reshape(-1, MODEL.nv), numeric, 1e-8)
+def test_derivatives_are_those_of_the_displacements():
+    """Of several poses at once, added to what is there."""
+    rng, posture = np.random.default_rng(1), PostureSensor(MODEL)
+    poses = [moderate_pose(MODEL, rng) for _ in range(3)]
+    moved = rng.normal(0.0, 0.01, (3, len(SEGMENTS), 3, SKIN.flexions))
+    before = rng.normal(size=(3, len(SEGMENTS), 3, MODEL.nv))
+    found = before.copy()
+    deviations, jacobians = zip(*(posture.deviation(q) for q in poses), strict=True)
+    SKIN.add_by_poses(found, moved, np.array(deviations), jacobians)
+    for n, q in enumerate(poses):
+        numeric = central_difference(
+            MODEL, lambda at, n=n: (moved[n] @ SKIN.shares(at)[..., None]).ravel(), q
+        )
+        assert_near((found - before)[n].reshape(-1, MODEL.nv), numeric, 1e-8)
 
 
 def test_known_displacements_add_up_by_their_shares():
