@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -28,6 +29,8 @@ from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.verdict.evidence import Evidence, evidence_of
 from mbkf.trial.verdict.judge import judge
+
+NUMBER = re.compile(r"\d+")
 
 RIGHT = ""
 """Kind of a trial without a fault."""
@@ -97,10 +100,11 @@ class Found:
 
     @property
     def reasons(self) -> frozenset[tuple[str, str]]:
-        """Words with the meanings of their reasons, against parts that the capture shows."""
+        """Words with the meanings of their reasons, without numbers, against parts that the capture shows."""
         if self.evidence is None:
             return frozenset()
-        return frozenset((one.word, one.means) for one in judge(self.evidence).reasons if one.shown)
+        reasons = judge(self.evidence).reasons
+        return frozenset((one.word, NUMBER.sub("…", one.means)) for one in reasons if one.shown)
 
 
 def spoilt_trials(data: Path, quick: bool = False) -> list[Spoilt]:

@@ -28,6 +28,9 @@ times the best of the others."""
 BOUND_ALL = 2.0
 """The same of all plates laid down alike. Right captures have 0.1 to 1.1."""
 
+BETTER = 1.2
+"""All plates laid down alike fit this many times as well as plates corrected one by one."""
+
 TIMES_SD = 0.5
 """Standard deviation of that ratio between two ways that fit alike."""
 
@@ -52,16 +55,21 @@ UNLOADED = "nothing stands on this plate alone for long enough"
 def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateReadings, ...]]:
     """One finding for each plate, and the plates with wrong axes corrected.
 
-    The plate that gains most is corrected first; the others are then judged beside the corrected one.
+    The plate that gains most is corrected first; the others are then judged beside the corrected one. Where all plates
+    laid down alike fit better than the corrected ones, these are the plates as they fit.
     """
     found: dict[int, Finding] = {}
+    as_read = evidence
     while True:
         others = [p for p in range(len(evidence.plates)) if p not in found]
         judged = {p: _axes(evidence, p) for p in others}
         outside = [p for p in others if judged[p][0].verdict == "outside"]
         if not outside:
             found |= {p: finding for p, (finding, _) in judged.items()}
-            alike, plates = (None, evidence.plates) if len(found) > len(others) else _all_axes(evidence)
+            alike, plates = _all_axes(as_read)
+            corrected, _ = better_fit(as_read, [evidence.plates])
+            if alike is None or (alike.value or 0.0) < BETTER * corrected:
+                alike, plates = None, evidence.plates
             return (*(found[p] for p in sorted(found)), *([] if alike is None else [alike])), plates
         worst = max(outside, key=lambda p: judged[p][0].value or 0.0)
         found[worst], laid_down = judged[worst]
@@ -218,7 +226,8 @@ def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, 
     """A finding on all plates laid down alike, as one wrong convention does, and the plates as they fit; None if right.
 
     Where two feet share the load all along, as in a squat, one plate corrected beside a wrong one fits no better. Axes
-    of the markers' file that are turned against those of the plates turn the places of the plates as well.
+    of the markers' file that are turned against those of the plates turn the places of the plates as well; that has to
+    fit better than a displacement of all plates.
     """
     if len(evidence.plates) < 2:
         return None, evidence.plates
@@ -229,6 +238,7 @@ def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, 
         )
         for quarters, mirrored, words in _ways()
     ]
+    alike = len(tried)
     tried += [
         (
             f"with all plates and their places turned by {90 * quarters}° about the laboratory's origin they fit "
@@ -240,9 +250,20 @@ def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, 
     times, best = better_fit(evidence, [plates for _, plates in tried])
     if best is None or not times > BOUND_ALL:
         return None, evidence.plates
+    if best >= alike and times < BETTER * _displaced_fit(evidence):
+        return None, evidence.plates
     hint, plates = tried[best]
     words = hint.format(times=times)
     return Finding("axes of all plates", times, TIMES_SD, "times", BOUND_ALL, "outside", words), plates
+
+
+def _displaced_fit(evidence: Evidence) -> float:
+    """Misfit of the plates over that of the best displacement of all of them together."""
+    frames, gain = carried(evidence), _gain(evidence)
+    missing = (gain * evidence.asked - evidence.total)[frames]
+    force, left, weight_n = evidence.total[frames, 2], missing.copy(), gain * evidence.weight_n
+    left[:, 3:5] -= np.outer(force, force @ missing[:, 3:5]) / (force @ force)
+    return _misfit(missing, weight_n) / max(_misfit(left, weight_n), 1e-9)
 
 
 def better_fit(evidence: Evidence, tried: Sequence[tuple[PlateReadings, ...]]) -> tuple[float, int | None]:

@@ -44,6 +44,10 @@ def all_of(word):
         (floor.NAME, 130.0, "look"),
         ("place of plate 'r'", 127.0, "look"),
         ("place of plate 'r'", 200.0, "do not use"),
+        ("place of all plates", 55.0, "look"),
+        ("place of all plates", 103.0, "do not use"),
+        ("order of plates '1' and '2'", 2.5, "look"),
+        ("order of plates '1' and '2'", 11.0, "do not use"),
     ],
 )
 def test_checks_outside_have_words_by_their_size(name, value, word):
