@@ -100,6 +100,8 @@ class Posterior(NamedTuple):
         lost: The body is elsewhere than it was predicted: most markers, and at least half of all, lie far off.
         uncorrected: Smoothing failed here (:mod:`mbkf.filters.plausibility`); the estimate is the filtered one.
         placed: Instruments show at once where the body is; without cameras later frames may move it far.
+        rejoined: The step into this frame began from another estimate of the frame before than was given: a contact had
+            opened there.
     """
 
     q: Array
@@ -115,6 +117,7 @@ class Posterior(NamedTuple):
     lost: bool = False
     uncorrected: bool = False
     placed: bool = True
+    rejoined: bool = False
 
 
 class Prediction(NamedTuple):

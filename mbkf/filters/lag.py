@@ -43,8 +43,8 @@ class FixedLag:
         self._given: Posterior | None = None
 
     def push(self, t: int, estimate: Posterior) -> list[tuple[int, Posterior]]:
-        """Frame t's estimate in, an earlier one out; a restart gives back all before it."""
-        done = self.finish() if estimate.started else []
+        """Frame t's estimate in, an earlier one out; a restart, or a contact that opens, gives back all before it."""
+        done = self.finish() if estimate.started or estimate.rejoined else []
         if self.frames == 0:
             return [*done, (t, estimate)]
         if self._waiting:

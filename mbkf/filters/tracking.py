@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.errors import NotObservable
 from mbkf.filters.body_errors import BodyErrors
+from mbkf.filters.contact_opening import ContactWatch
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
@@ -33,6 +34,7 @@ def track(
     spreads: Collection[str] = ASKED,
     keep_covariance: bool = False,
     progress: Callable[[int, int], None] | None = None,
+    contacts: ContactWatch | None = None,
 ) -> Track:
     """Runs the filter over all frames.
 
@@ -45,6 +47,8 @@ def track(
         spreads: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are stated.
         keep_covariance: Whether to keep the full covariance of (q, v) of every frame.
         progress: Called with frames done and frames in all.
+        contacts: Without smoothing, opens contacts of other parts than the feet on the way; None: those of the
+            recording.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
@@ -66,7 +70,7 @@ def track(
             if covariance is not None:
                 covariance[t] = filter.covariance(posterior) + spread.offset_covariance
 
-    loop, earliest = TrackingLoop(filter), None
+    loop, earliest = TrackingLoop(filter, contacts), None
     later: FixedLag | FixedLagSmoother = FixedLag(filter, lag_s)
     if smoothing is not None:
         later = smoother = FixedLagSmoother(filter, smoothing)

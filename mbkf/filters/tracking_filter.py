@@ -11,6 +11,7 @@ from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.innovations import Innovations
 from mbkf.filters.limb_mend import LimbMend, with_limb
 from mbkf.filters.report import AnyReport, FirstMotion
+from mbkf.filters.spread import Spread
 from mbkf.numerics.later_frames import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.limb_fit import LimbFits
@@ -45,6 +46,21 @@ class Start(Protocol):
         """
 
 
+class Widening(Protocol):
+    """The same filter with more states.
+
+    Attributes:
+        report: Reads its states.
+    """
+
+    @property
+    def report(self) -> AnyReport:
+        """Reads the wide filter's states."""
+
+    def widened(self, estimate: Posterior) -> Posterior:
+        """An estimate of the narrow filter, from which the wide one goes on."""
+
+
 class TrackingFilter:
     """A filter as trials, streams and smoothers drive it.
 
@@ -55,17 +71,59 @@ class TrackingFilter:
         dt_s: Time between frames.
         restart_after_s: Time without enough readings after which the filter starts anew.
         limbs: Judges and fits limbs by their markers; None for a filter without markers.
-        covariance, spread, wrench_sd, support_sd, level_variance, smooth, predict: Methods of the report.
+        smooth: Method of the report.
     """
 
-    def __init__(self, report: AnyReport, start: Start) -> None:
+    def __init__(self, report: AnyReport, start: Start, widening: Widening | None = None) -> None:
+        """Makes it.
+
+        Args:
+            report: Reads the filter's states.
+            start: Finds the motion from which the filter starts.
+            widening: Gives estimates room for contacts of other parts than the feet; None where they have it from the
+                start, or the filter knows none.
+        """
         self.report, self.kalman, self.model = report, report.kalman, report.model
         self.clinical, self.dt_s = report.reader.clinical, report.kalman.plant.dt_s
         self.restart_after_s, self._start, self._placed = start.restart_after_s, start, start.placed
-        self.limbs = start.limbs
-        self.covariance, self.spread, self.smooth = report.covariance, report.spread, report.smooth
-        self.wrench_sd, self.support_sd, self.predict = report.wrench_sd, report.support_sd, report.predict
-        self.level_variance = report.level_variance
+        self.limbs, self.smooth, self._widening = start.limbs, report.smooth, widening
+        self._size = report.kalman.layout.size
+
+    def report_of(self, estimate: Posterior) -> AnyReport:
+        """The report that reads an estimate: the wide filter's, where the estimate has room for other contacts."""
+        if self._widening is None or len(estimate.record.state.P) == self._size:
+            return self.report
+        return self._widening.report
+
+    def widened(self, estimate: Posterior) -> Posterior:
+        """The estimate with room for contacts of other parts than the feet, from which the wide filter goes on."""
+        if self._widening is None or len(estimate.record.state.P) != self._size:
+            return estimate
+        return self._widening.widened(estimate)
+
+    def covariance(self, estimate: Posterior) -> Array:
+        """(2 nv, 2 nv) covariance of (q, v)."""
+        return self.report_of(estimate).covariance(estimate)
+
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+        """Standard deviations at an estimate; without ``torques`` those of the generalised forces may be NaN."""
+        return self.report_of(estimate).spread(estimate, torques)
+
+    def wrench_sd(self, estimate: Posterior) -> Array:
+        """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""
+        return self.report_of(estimate).wrench_sd(estimate)
+
+    def support_sd(self, estimate: Posterior) -> Array:
+        """(B, 6) standard deviations of the wrenches on parts besides the feet, NaN where the filter has none."""
+        return self.report_of(estimate).support_sd(estimate)
+
+    def level_variance(self, estimate: Posterior) -> Array | None:
+        """(2, L, 3) variances of the trunk's moments at the body's levels by way; None where the filter has none."""
+        return self.report_of(estimate).level_variance(estimate)
+
+    def predict(self, before: Posterior) -> Prediction:
+        """The frame after an estimate by the filter's own plant."""
+        return self.report_of(before).predict(before)
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """An estimate at a frame that already knows its velocity.
@@ -92,13 +150,13 @@ class TrackingFilter:
             t: The frame.
             prediction: Result of :meth:`predict` for ``before``, where it is known; good for one step.
         """
-        was, frame = before.record, recording.frame(t)
+        was, frame, report = before.record, recording.frame(t), self.report_of(before)
         prior = None if prediction is None else prediction.prior
         try:
-            step = self.kalman.step(was.state, was.memory, frame, prior)
-            found = self.report.posterior(step, before, frame)
+            step = report.kalman.step(was.state, was.memory, frame, prior)
+            found = report.posterior(step, before, frame)
         except (np.linalg.LinAlgError, ValueError) as error:
-            found = self.report.unsolved(error, before, frame)
+            found = report.unsolved(error, before, frame)
         return found if self._placed else found._replace(placed=False)
 
     def mended(
@@ -114,11 +172,12 @@ class TrackingFilter:
         """
         if before is None or "u" in self.kalman.layout:  # torques as states belong to the old pose
             return self.start(recording, t, mend.q)
-        was, frame, kalman = before.record, recording.frame(t), self.kalman
+        was, frame, report = before.record, recording.frame(t), self.report_of(before)
+        kalman = report.kalman
         prior = kalman.predict(was.state, was.memory)
         state = with_limb(self.model, prior.state, kalman.layout, mend)
         step = kalman.correct(kalman.prepared(state, prior.noise, was.memory), was.memory, frame)
-        found = self.report.posterior(step, before, frame)
+        found = report.posterior(step, before, frame)
         a = found.a.copy()
         a[mend.dofs] = 0.0
         return found._replace(a=a, started=True, tracked=True, lost=False)
@@ -139,7 +198,8 @@ class TrackingFilter:
         N = len(state.P)
         if step is None:
             return LinearStep(state.P, np.zeros((N, N)), np.zeros(N), np.eye(N))
-        transition = self.kalman.plant.step_transition(before.record.state, step.prior.state)
+        plant = self.report_of(estimate).kalman.plant
+        transition = plant.step_transition(before.record.state, step.prior.state)
         known = step.readings
         return LinearStep(state.P, known.whole_matrix, known.whole_vector, transition.matrix(N))
 
@@ -153,7 +213,7 @@ class TrackingFilter:
             later: Information of the later frames; None where there are none.
             before: Corrected estimate of the frame before, None at a start; for differences over time.
         """
-        state = estimate.record.state
+        state, report = estimate.record.state, self.report_of(estimate)
         if later is not None:
-            state = self.kalman.plant.retract(state, *later.corrected(state.P))
-        return self.report.moved(estimate, state, None if before is None else before.record.state)
+            state = report.kalman.plant.retract(state, *later.corrected(state.P))
+        return report.moved(estimate, state, None if before is None else before.record.state)

@@ -16,6 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.filters.contact_opening import ContactWatch, OpenContacts
 from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.limb_mend import LimbMend
 from mbkf.filters.limb_search import agrees
@@ -41,10 +42,12 @@ class TrackingLoop:
         implausible: The latest frame has no estimate, since its start was implausible.
         watch: Watches the limbs; None for a filter that follows no markers.
         mend: Better pose of a limb that the latest frame was given; None in most frames.
+        contacts: Contacts of other parts than the feet that open and close on the way; None: those of the recording.
     """
 
-    def __init__(self, filter: TrackingFilter) -> None:
+    def __init__(self, filter: TrackingFilter, contacts: ContactWatch | None = None) -> None:
         self.filter = filter
+        self.contacts = None if contacts is None else OpenContacts(filter, contacts)
         self.estimate: Posterior | None = None
         self.again = self.implausible = False
         self.watch = None if filter.limbs is None else LimbWatch(filter.limbs, filter.dt_s)
@@ -52,6 +55,7 @@ class TrackingLoop:
         self._number = 0
         self._lost_for = 0
         self._prediction: Prediction | None = None
+        self._rejoined = False
         self._renamed: tuple[Recording, Order, Recording] | None = None
 
     @property
@@ -69,16 +73,20 @@ class TrackingLoop:
         """Prediction of the next frame, None where it has to start; the step into that frame goes on from it."""
         if self.estimate is None or self.must_start:
             return None
+        self._rejoined = self._opened() or self._rejoined
         if self._prediction is None:
             self._prediction = self.filter.predict(self.estimate)
         return self._prediction
 
     def advance(self, recording: Recording, t: int) -> Posterior | None:
         """The estimate of frame t, the one after the latest; None as long as no start has succeeded, and ``again``."""
+        rejoined, self._rejoined = self._opened() or self._rejoined, False
         before, fresh = self.estimate, None
         prediction, self._prediction = self._prediction, None
         starting, self.again, self.mend = self.must_start, False, None
         named = self._named(recording)
+        if self.contacts is not None:
+            named = self.contacts.added_to(named, t)
         with np.errstate(all="ignore"):  # the result is checked
             if starting:
                 fresh = self.filter.start(named, t, None if before is None else before.q)
@@ -95,10 +103,21 @@ class TrackingLoop:
             return None
         if fresh is not None:
             fresh = self._watched(before, fresh, recording, t)
+            fresh = fresh._replace(rejoined=True) if rejoined else fresh
             self.estimate = fresh
             self._lost_for = 0 if fresh.tracked else self._lost_for + 1
+            if self.contacts is not None:
+                self.contacts.note(fresh, named.frame(t))
         self._number += 1
         return fresh
+
+    def _opened(self) -> bool:
+        """Goes on from an estimate that knows a contact that has opened; True where one has."""
+        found = None if self.contacts is None or self.estimate is None else self.contacts.opened()
+        if found is None:
+            return False
+        self.estimate, self._prediction = found, None
+        return True
 
     def take_up(
         self, before: Posterior | None, recording: Recording, t: int, mend: LimbMend
@@ -146,6 +165,8 @@ class TrackingLoop:
     def forget(self) -> None:
         """Drops the estimate; the next frame has to start anew."""
         self.estimate, self._lost_for, self._prediction, self.again = None, 0, None, False
+        if self.contacts is not None:
+            self.contacts.forget()
 
 
 def followed(

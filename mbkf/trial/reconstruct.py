@@ -29,7 +29,7 @@ from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, re
 from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import Motion, markers_alone
-from mbkf.trial.preparation.other_contacts import with_other_contacts
+from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
 from mbkf.trial.preparation.selection import hidden_samples, plates_without, subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
@@ -72,9 +72,7 @@ def reconstruct(
             does not exist.
     """
     settings = settings or ReconstructSettings()
-    _check_names(settings)
-    if imus is not None and settings.filter != "dynamic":
-        raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
+    _check_names(settings, imus is not None)
     zero_posture(settings.angles_zero, subject)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
@@ -94,7 +92,7 @@ def reconstruct(
         recording = replace(recording, readings=readings) if readings else recording
         alone = _markers_alone(settings, inputs, recording, progress)
         if alone is not None and settings.other_contacts and settings.filter == "dynamic":
-            inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone)
+            inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone, settings.smooths)
         result = track(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None, plant),
             recording,
@@ -103,7 +101,8 @@ def reconstruct(
             body=inputs.body,
             spreads=settings.spreads,
             keep_covariance=settings.keep_covariance,
-            progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
+            progress=None if progress is None else partial(progress, "Filtering"),
+            contacts=None if settings.smooths or blocks else contact_opener(inputs, settings),
         )
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
@@ -121,14 +120,16 @@ def reconstruct(
         )
 
 
-def _check_names(settings: ReconstructSettings) -> None:
-    """Refuses a filter, a frame or a reading that does not exist."""
+def _check_names(settings: ReconstructSettings, sensors: bool) -> None:
+    """Refuses a filter, a frame or a reading that does not exist, and ``sensors`` for a filter that reads none."""
     if settings.filter not in FILTERS:
         raise UnknownName("filter", settings.filter, FILTERS)
     if settings.pelvis not in PELVIS_FRAMES:
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     if settings.angles not in ANGLES:
         raise UnknownName("reading of angles", settings.angles, ANGLES)
+    if sensors and settings.filter != "dynamic":
+        raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
 
 
 def _for_trial(

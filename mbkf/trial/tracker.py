@@ -16,6 +16,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import ShapeError
 from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import Posterior
+from mbkf.filters.inverse_dynamics import support_torques
 from mbkf.filters.plant import PlantMaker
 from mbkf.filters.record import HeldErrors
 from mbkf.filters.spread import Spread
@@ -29,6 +30,7 @@ from mbkf.sensors.block import NO_READINGS, AnyBlock, Frame
 from mbkf.sensors.contact.possible import without_impossible
 from mbkf.trial.live.filter import LiveFilter, LiveInputs, live_inputs, live_settings
 from mbkf.trial.preparation.filters import standard, tracking_filter
+from mbkf.trial.preparation.other_contacts import contact_opener
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 
@@ -84,7 +86,25 @@ class Estimate:
     def tau(self) -> Array:
         """(nv,) generalised forces, N and N m; the first six are the residual at the root."""
         wrenches = np.nan_to_num(self.wrenches)
-        return self._balance.tau(self.q, self.v, self.a, wrenches.ravel())
+        tau = self._balance.tau(self.q, self.v, self.a, wrenches.ravel())
+        return tau - support_torques(self._filter.model, self.q, self.support) if self.support.any() else tau
+
+    @cached_property
+    def support(self) -> Array:
+        """(B, 6) wrenches on parts besides the feet, as ``wrenches``, in the order of ``support_names``."""
+        parts = len(self._filter.model.description.bearings)
+        known = self.posterior.support
+        return np.zeros((parts, 6)) if known is None else known
+
+    @property
+    def support_sd(self) -> Array:
+        """(B, 6) their standard deviations, the filter's part; NaN before a contact has opened."""
+        return self._filter.support_sd(self.posterior)
+
+    @property
+    def support_names(self) -> tuple[str, ...]:
+        """(B,) parts besides the feet that may bear load."""
+        return tuple(self._filter.model.description.bearings)
 
     @cached_property
     def tau_sd(self) -> Array:
@@ -217,7 +237,8 @@ class Tracker:
         self._weight_n = GRAVITY_M_S2 * subject.mass_kg
         with single_threaded():
             self._filter = tracking_filter(settings.filter, live.inputs, blocks, plant)
-        self._live = LiveFilter(self._filter, settings.lag_s)
+        opener = contact_opener(live.inputs, settings) if blocks is None else None
+        self._live = LiveFilter(self._filter, settings.lag_s, opener)
         self._balance = NewtonEuler(self._filter.model)
         self._body = HeldErrors(live.inputs.body, self._filter.dt_s)
         self._number = 0

@@ -37,8 +37,8 @@ class Told:
     q, v, a = reference_model().neutral(), np.zeros(1), np.zeros(1)
     wrench, tracked, placed = np.zeros((2, 6)), True, True
 
-    def __init__(self, t, started=False):
-        self.t, self.started = t, started
+    def __init__(self, t, started=False, rejoined=False):
+        self.t, self.started, self.rejoined = t, started, rejoined
 
 
 def returned(frames, settings, starts=(0,)):

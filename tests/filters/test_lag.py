@@ -38,7 +38,7 @@ class Counter:
         self.befores = {}
 
     def linear_step(self, before, estimate):
-        assert estimate.t == before.t + 1 and not estimate.started
+        assert estimate.t == before.t + 1 and not estimate.started and not estimate.rejoined
         return LinearStep(np.zeros((1, 1)), np.zeros((1, 1)), -np.ones(1), np.eye(1))
 
     def corrected(self, estimate, later, before):
@@ -47,12 +47,12 @@ class Counter:
         return estimate
 
 
-def returned(frames, lag_s, starts=(0,)):
+def returned(frames, lag_s, starts=(0,), rejoined=()):
     """The frames that come back, each with the one put in when it did, and the filter."""
     counter = Counter()
     lag, found = FixedLag(counter, lag_s), []
     for t in frames:
-        found += [(t, k, e) for k, e in lag.push(t, Told(t, t in starts))]
+        found += [(t, k, e) for k, e in lag.push(t, Told(t, t in starts, t in rejoined))]
     return found + [(frames[-1], k, e) for k, e in lag.finish()], counter
 
 
@@ -67,8 +67,9 @@ def test_every_frame_comes_back_once_in_order_and_as_late_as_the_lag(frames, lag
     assert counter.befores == {k: None if k == frames[0] else k - 1 for k in frames}
 
 
-def test_a_restart_tells_nothing_of_the_frames_before_it():
-    found, counter = returned(range(30), 4 * DT, starts=(0, 17))
+@pytest.mark.parametrize("cut", [{"starts": (0, 17)}, {"rejoined": (17,)}])
+def test_a_restart_or_a_contact_that_opens_tells_nothing_of_the_frames_before_it(cut):
+    found, counter = returned(range(30), 4 * DT, **cut)
     heard = {k: e.heard for _, k, e in found}
     assert [heard[k] for k in range(11, 19)] == [4, 4, 3, 2, 1, 0, 4, 4]
     assert [t for t, k, _ in found if 13 <= k < 17] == [17] * 4

@@ -8,7 +8,8 @@ plates, and without plates, parts that lie low and still on the floor carry load
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import bridged, dilated
-from mbkf.sensors.contact.offline import FootLoads
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.momentum import WholeBody
@@ -63,6 +63,22 @@ FREE_S, MASS_ERROR = 0.5, 0.06
 so long: else the error of a mass lasts on as a seat that was left."""
 
 
+class FeetLoads(Protocol):
+    """Loads of the feet by the plates (:class:`mbkf.sensors.contact.offline.FootLoads`)."""
+
+    @property
+    def wrench(self) -> Array:
+        """(T, 2, 6) force N and moment N m about the world's origin on right and left foot."""
+
+    @property
+    def valid(self) -> BoolArray:
+        """(T,) frames in which every loaded foot stands on a recorded plate."""
+
+    @property
+    def floor_m(self) -> float:
+        """Height of the floor; NaN where it is not known."""
+
+
 @dataclass(frozen=True)
 class OtherContacts:
     """Parts that carry load besides the feet.
@@ -70,10 +86,12 @@ class OtherContacts:
     Attributes:
         flags: (T, B) loaded parts.
         remarks: Remarks on missing wrenches that no contact explains.
+        lighter: Share by which the body is lighter than stated; NaN where frames without a missing force are too few.
     """
 
     flags: BoolArray
     remarks: tuple[str, ...] = ()
+    lighter: float = float("nan")
 
 
 def other_contacts(
@@ -81,7 +99,7 @@ def other_contacts(
     q: Array,
     v: Array,
     rate_hz: float,
-    loads: FootLoads,
+    loads: FeetLoads,
     read: BoolArray,
     doubted: BoolArray | None = None,
 ) -> OtherContacts:
@@ -103,7 +121,8 @@ def other_contacts(
     body, soles = WholeBody.of(model, q, v), sole_points(model, q)
     reached = np.concatenate([points, soles.mean(axis=2)], axis=1)
     searched = judged if doubted is None else judged & ~doubted
-    flags, remarks = _missing(bearings, reached, body, rate_hz, loads, searched)
+    found = _missing(bearings, reached, body, rate_hz, loads, searched)
+    flags = found.flags
     lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
     # Beside a part that carries load on the floor, others that lie there do so as well.
     kneels = (flags & lying).any(axis=1)
@@ -112,7 +131,7 @@ def other_contacts(
         k = bearings.seat
         seated = sits(body, soles, points[:, k], speeds[:, k], rate_hz, loads.floor_m)
         flags[:, k] |= seated & ~lying.any(axis=1)
-    return OtherContacts(flags, remarks)
+    return replace(found, flags=flags)
 
 
 def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
@@ -129,10 +148,10 @@ def _missing(
     points: Array,
     body: WholeBody,
     rate_hz: float,
-    loads: FootLoads,
+    loads: FeetLoads,
     judged: BoolArray,
-) -> tuple[BoolArray, tuple[str, ...]]:
-    """(T, B) parts through which a missing wrench leads, and remarks on wrenches that miss every part.
+) -> OtherContacts:
+    """Parts through which a missing wrench leads, and remarks on wrenches that miss every part.
 
     Args:
         bearings: The parts.
@@ -152,13 +171,14 @@ def _missing(
     if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
         share = float(np.mean(slow[lacks, 2])) / weight_n
         if abs(share) < MASS_SHARE or np.median(given[lacks, 2]) < SEATED_SHARE * weight_n:
-            return flags, (
+            remark = (
                 f"the motion requires {100.0 * share:+.0f} % of body weight more than the plates read, throughout: "
-                "check the mass, the plates' scale and the axes",
+                "check the mass, the plates' scale and the axes"
             )
+            return OtherContacts(flags, (remark,))
     lighter = _lighter(slow[:, 2], given[:, 2], clear & ~lacks, rate_hz)
     for missing in (slow, fast):
-        missing[:, :3] -= lighter * (missing[:, :3] + given[:, :3])
+        missing[:, :3] -= np.nan_to_num(lighter) * (missing[:, :3] + given[:, :3])
     size = np.where(clear, np.linalg.norm(slow[:, :3], axis=1), 0.0)
     lacks = size > LEAST_SHARE * weight_n
     remarks = []
@@ -178,11 +198,11 @@ def _missing(
             )
         else:
             flags[frames[:, None], list(parts)] = True
-    return _bridged(flags, judged, rate_hz), tuple(remarks)
+    return OtherContacts(_bridged(flags, judged, rate_hz), tuple(remarks), lighter)
 
 
 def _lighter(missing_n: Array, given_n: Array, free: BoolArray, rate_hz: float) -> float:
-    """Share by which the body is lighter than stated, by frames in which feet bear it alone; 0 where they are too few.
+    """Share by which the body is lighter than stated, by frames in which feet bear it alone; NaN where these are few.
 
     Args:
         missing_n: (T,) vertical force that the motion requires besides the given one.
@@ -193,7 +213,7 @@ def _lighter(missing_n: Array, given_n: Array, free: BoolArray, rate_hz: float) 
     required = missing_n + given_n
     free = free & (required > 0.5 * np.median(required[free])) if free.any() else free
     if free.sum() < FREE_S * rate_hz:
-        return 0.0
+        return float("nan")
     return float(np.clip(np.median(missing_n[free] / required[free]), -MASS_ERROR, MASS_ERROR))
 
 

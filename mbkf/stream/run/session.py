@@ -143,12 +143,12 @@ class LiveSession:
         checks = LiveChecks(log.folder, setup.stream.rate_hz, note) if setup.sensors is None else None
 
         def report_running() -> None:
-            counts, found = receiver.counts(), {"unexplained": loads.plain(), **verdict.plain()}
+            counts, found = receiver.counts(), {**loads.lists(), **verdict.plain()}
             with suppress(OSError):  # the disk is full; the next one may have room
                 report.write(self._report(RUNNING, counts, statistics, 0, **found))
 
         writer = LogWriter(log, self._disk_failed, report_running, partial(failure.of, "writing the log"))
-        notices = partial(self._events.sentences, NOTICES)
+        notices = partial(self._notices, loads)
         verdict = VerdictWatch(setup, self._subject, loads, note, checks, writer.put_doubt, notices)
         receiver = Receiver(
             self._source,
@@ -189,7 +189,7 @@ class LiveSession:
             receiver.counts(loop.until),
             statistics,
             unlogged,
-            unexplained=loads.plain(),
+            **loads.lists(),
             **(verdict.plain() | {"verdict": final}),
             ended_by=ended_by,
             frames_written=logged,
@@ -197,6 +197,10 @@ class LiveSession:
             log=str(kept) if kept.is_dir() else None,
         )
         return LiveOutcome(plain, written.summary, problem, failure.cause, _last_report(report, plain))
+
+    def _notices(self, loads: LoadWatch) -> tuple[str, ...]:
+        """Remarks beside the running verdict: events on the stream, and contacts of other parts than the feet."""
+        return (*self._events.sentences(NOTICES), *loads.contacts.sentences())
 
     def _begun(self, setup: LiveSetup) -> tuple[LiveLog, ReportFile]:
         """The log and live.json of a run that begins; where one of them cannot be made, what was there stays."""

@@ -25,6 +25,7 @@ from mbkf.trial.live.labels import live_body
 from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.in_view import LEAST_MARKERS, plain_name
+from mbkf.trial.preparation.other_contacts import contact_opener
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 MOST_NAMED = 4
@@ -123,7 +124,7 @@ def prepare(
     return LiveSetup(
         stream,
         live,
-        LiveFilter(chosen, settings.lag_s),
+        LiveFilter(chosen, settings.lag_s, contact_opener(live.inputs, settings)),
         FrameMaker(live, stream.rate_hz),
         FrameRecorder(chosen, len(live.names), live.inputs.body, settings.spreads),
         None if stream.marker_names else PointNames(subject, live.names, 1.0 / stream.rate_hz, patient, note),

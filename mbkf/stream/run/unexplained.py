@@ -13,16 +13,13 @@ from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, KeptContact
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
+from mbkf.stream.run.contacts import ContactList
 from mbkf.trial.live.filter import LiveInputs
-from mbkf.trial.loads.balance import centres_of_mass
-from mbkf.trial.loads.running import RunningBalance, RunningLoad
+from mbkf.trial.loads.balance import CentreOfMass
+from mbkf.trial.loads.running import RunningBalance, RunningLoad, StrayLoad
 
 MOST = 100
 """Number of loads that are listed."""
-
-STRAY_SHARE, STRAY_S = 0.05, 0.3
-"""Where plates read so much more than the feet are given, as a share of body weight, for less than this time, a foot is
-on them that is not recognised yet; for longer, something else."""
 
 HINT = "no contact gives it; torques and reactions are not to be used"
 
@@ -34,6 +31,7 @@ class _Stated:
     from_s: float
     to_s: float
     vector_n: Array
+    explained: bool = False
 
 
 class LoadWatch:
@@ -41,6 +39,7 @@ class LoadWatch:
 
     Attributes:
         read: Plates read every loaded foot in the latest frame.
+        contacts: Contacts of other parts than the feet, which give what is no longer missing.
     """
 
     def __init__(self, live: LiveInputs, rate_hz: float, note: Note) -> None:
@@ -56,7 +55,8 @@ class LoadWatch:
         self._running = RunningBalance(self._model.mass_kg, rate_hz)
         self._feet = ContactDetector(self._model, inputs.plates, inputs.dt_s) if inputs.plates else None
         self._memory: KeptContact | None = None if self._feet is None else self._feet.begin()
-        self._stray, self._most_stray = 0, round(STRAY_S * rate_hz)
+        self._stray, self._centre = StrayLoad(self._model.mass_kg, rate_hz), CentreOfMass(self._model)
+        self.contacts = ContactList(tuple(self._model.description.bearings), note)
         self._first: int | None = None
         self._loads: list[_Stated] = []
         self._acts = self._sized = False
@@ -76,20 +76,28 @@ class LoadWatch:
             self._running.cut()
         contacts_n, judged = self._contacts(ready, row)
         self.read = judged
-        known = np.array([bool(found["known"])])
-        centre = centres_of_mass(self._model, found["q"][None], known)[0] if known[0] else np.full(3, np.nan)
-        load = self._running.push(centre, contacts_n, judged)
-        self._listed(load, (ready.number - self._first) / self._rate_hz, ready.number)
+        time_s = (ready.number - self._first) / self._rate_hz
+        if self.contacts.push(found["support"], time_s, ready.number):
+            self._running.explained()
+            if self._acts and self._loads:
+                self._loads[-1].explained = True
+        centre_m = self._centre.at(found["q"]) if found["known"] else np.full(3, np.nan)
+        load = self._running.push(centre_m, contacts_n, judged)
+        self._listed(load, time_s, ready.number)
         return load
 
     def stated(self) -> tuple[UnexplainedLoad, ...]:
-        """Loads stated so far whose size is known."""
-        return tuple(self._load(one) for one in list(self._loads) if one.vector_n.any())
+        """Loads stated so far whose size is known, but for those that a contact gives which opened after."""
+        return tuple(self._load(one) for one in list(self._loads) if one.vector_n.any() and not one.explained)
+
+    def lists(self) -> dict[str, object]:
+        """Loads and contacts so far, for live.json."""
+        return {"unexplained": self.plain(), "contacts": self.contacts.plain()}
 
     def plain(self) -> list[dict[str, object]]:
         """Loads stated so far, for live.json."""
         found: list[dict[str, object]] = []
-        for load in self.stated():
+        for load in [self._load(one) for one in list(self._loads) if one.vector_n.any()]:
             found.append(
                 {
                     "from_s": load.from_s,
@@ -116,13 +124,7 @@ class LoadWatch:
             on_feet_n = wrench[:, :3].sum(axis=0)
         judged = bool(found["tracked"]) and Contact.UNMEASURED not in footing
         others_n = np.nan_to_num(found["support"][:, :3]).sum(axis=0)
-        return self._with_stray(on_feet_n, np.nan_to_num(ready.plates[:, :3]).sum(axis=0)) + others_n, judged
-
-    def _with_stray(self, on_feet_n: Array, read_n: Array) -> Array:
-        """(3,) force on the feet: that of all plates while one of them has just been loaded by no foot."""
-        stray = read_n[2] - on_feet_n[2] > STRAY_SHARE * self._model.mass_kg * GRAVITY_M_S2
-        self._stray = self._stray + 1 if stray else 0
-        return np.asarray(read_n if 0 < self._stray <= self._most_stray else on_feet_n)
+        return self._stray.counted(on_feet_n, ready.plates) + others_n, judged
 
     def _listed(self, load: RunningLoad, time_s: float, number: int) -> None:
         """Lists a load, and notes where it begins."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
+from mbkf.filters.contact_opening import ContactWatch
 from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.kinematic.warm_start import warm_up_frames
 from mbkf.filters.lag import FixedLag
@@ -73,14 +74,17 @@ class LiveFilter:
         loop: The filter's way through the stream; it knows nothing of the lag.
     """
 
-    def __init__(self, filter: TrackingFilter, lag_s: float = 0.0) -> None:
+    def __init__(
+        self, filter: TrackingFilter, lag_s: float = 0.0, contacts: ContactWatch | None = None
+    ) -> None:
         """Prepares the filter.
 
         Args:
             filter: The filter.
             lag_s: How long answers wait for readings that correct them; covariances stay those without a lag.
+            contacts: Opens contacts of other parts than the feet; None: only feet bear.
         """
-        self.loop = TrackingLoop(filter)
+        self.loop = TrackingLoop(filter, contacts)
         self._filter, self._lag = filter, FixedLag(filter, lag_s, covariances=False)
         self._lagging: deque[LiveStep] = deque()
         self._ahead = warm_up_frames(filter.dt_s)

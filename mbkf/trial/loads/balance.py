@@ -198,11 +198,22 @@ def centres_of_mass(model: Body, q: Array, known: BoolArray) -> Array:
         q: (T, nq) configurations.
         known: (T,) frames that are asked for; others are 0.
     """
-    data = pin.Data(model.pin_model)
-    found = np.zeros((len(q), 3))
+    centre, found = CentreOfMass(model), np.zeros((len(q), 3))
     for t in np.flatnonzero(known):
-        found[t] = pin.centerOfMass(model.pin_model, data, q[t])
+        found[t] = centre.at(q[t])
     return found
+
+
+class CentreOfMass:
+    """The centre of mass of a body, one configuration after another; making it costs as much as sixty of them."""
+
+    def __init__(self, model: Body) -> None:
+        """Args: the body."""
+        self._model, self._data = model.pin_model, pin.Data(model.pin_model)
+
+    def at(self, q: Array) -> Array:
+        """(3,) centre of mass at a configuration q (nq,), m."""
+        return np.array(pin.centerOfMass(self._model, self._data, q))
 
 
 def _along(series: Array, weights: Array) -> Array:

@@ -41,6 +41,37 @@ HELD_S = 1.0
 :data:`~mbkf.trial.loads.balance.BRIDGE_S` before."""
 
 
+STRAY_SHARE, STRAY_S = 0.05, 0.3
+"""Where plates read so much more than the feet are given, as a share of body weight, for less than this time, a foot is
+on them that is not recognised yet; for longer, something else."""
+
+
+class StrayLoad:
+    """The load of a plate on which a foot is not recognised yet; takes frames in order.
+
+    Attributes:
+        reads: True while it counts.
+    """
+
+    def __init__(self, mass_kg: float, rate_hz: float) -> None:
+        """Args: the body's mass, and the frame rate."""
+        self._least_n, self._most = STRAY_SHARE * mass_kg * GRAVITY_M_S2, round(STRAY_S * rate_hz)
+        self._frames, self.reads = 0, False
+
+    def counted(self, on_feet_n: Array, plates: Array) -> Array:
+        """(3,) force on the feet: that of all plates while one of them has just been loaded by no foot.
+
+        Args:
+            on_feet_n: (3,) force on the feet by the contacts that were decided.
+            plates: (K, 6) wrenches that the plates read.
+        """
+        read_n = np.nan_to_num(plates[:, :3]).sum(axis=0)
+        stray = read_n[2] - on_feet_n[2] > self._least_n
+        self._frames = self._frames + 1 if stray else 0
+        self.reads = 0 < self._frames <= self._most
+        return np.asarray(read_n if self.reads else on_feet_n)
+
+
 class RunningLoad(NamedTuple):
     """Judgement of one frame.
 
@@ -100,6 +131,11 @@ class RunningBalance:
     def cut(self) -> None:
         """Begins anew after a gap or a restart of the filter."""
         self._first = self._after
+
+    def explained(self) -> None:
+        """Begins anew without a force: a contact has opened or closed that gives what was missing."""
+        self._first = self._after
+        self._acting = self._quiet = 0
 
     def _judged(self, new: bool) -> RunningLoad:
         """The frame that was kept last; a force is stated anew only if ``new``."""

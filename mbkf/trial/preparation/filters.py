@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 from mbkf.conventions import Array, BoolArray
@@ -12,6 +13,7 @@ from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
 from mbkf.filters.dynamic.report import DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.dynamic.widening import WiderFilter
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.report import KinematicReport
 from mbkf.filters.kinematic.settings import KinematicSettings
@@ -89,9 +91,17 @@ def motion_filter(inputs: FilterInputs) -> TrackingFilter:
 
 
 def _dynamic(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
+    narrow = _dynamic_report(inputs, own)
+    if own.blocks is not None or inputs.other_contacts or not inputs.sensor.model.description.bearings:
+        return _started(narrow, inputs)
+    wide = partial(_dynamic_report, replace(inputs, other_contacts=True), own)
+    return _started(narrow, inputs, WiderFilter(narrow.kalman, wide))
+
+
+def _dynamic_report(inputs: FilterInputs, own: OwnParts) -> DynamicReport:
     known = inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.unobservable, inputs.dynamic
     blocks = standard(inputs) if own.blocks is None else own.blocks
-    return _started(DynamicReport(DynamicFilter(*known, blocks, inputs.spread_m, own.plant)), inputs)
+    return DynamicReport(DynamicFilter(*known, blocks, inputs.spread_m, own.plant))
 
 
 def standard(inputs: FilterInputs) -> list[AnyBlock]:
@@ -116,9 +126,9 @@ def _torque(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
     return _started(TorqueReport(TorqueFilter.standard(*known)), inputs)
 
 
-def _started(report: AnyReport, inputs: FilterInputs) -> TrackingFilter:
+def _started(report: AnyReport, inputs: FilterInputs, wider: WiderFilter | None = None) -> TrackingFilter:
     limbs = LimbFits(inputs.sensor, inputs.noise_m, inputs.unobservable, inputs.names)
-    return TrackingFilter(report, WarmStart(_starter(inputs), limbs))
+    return TrackingFilter(report, WarmStart(_starter(inputs), limbs), wider)
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:

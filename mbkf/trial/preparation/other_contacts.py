@@ -12,27 +12,33 @@ from mbkf.filters.estimate import Recording
 from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.body import Body
 from mbkf.sensors.contact.offline import FootLoads, assign_feet
+from mbkf.sensors.contact.plates import surface_height
 from mbkf.sensors.supports.block import BEARING
 from mbkf.sensors.supports.search import other_contacts
 from mbkf.trial.loads.balance import LoadBalance
+from mbkf.trial.loads.opening import ContactOpener
 from mbkf.trial.loads.unexplained import unexplained_loads
 from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.markers_alone import Motion
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 EVERYWHERE = ("mass", "clock")
 """Causes that hold throughout a trial."""
 
 
 def with_other_contacts(
-    inputs: FilterInputs, recording: Recording, times_s: Array, motion: Motion
+    inputs: FilterInputs, recording: Recording, times_s: Array, motion: Motion, missing: bool = True
 ) -> tuple[FilterInputs, Recording]:
     """Inputs and readings with the parts that bear load besides the feet; unchanged without such a part.
+
+    Parts are found by the force that plates lack, and by lying on the floor where plates do not judge.
 
     Args:
         inputs: Inputs of the filters.
         recording: Readings of the instruments.
         times_s: (T,) times of the frames.
         motion: The motion by markers alone.
+        missing: False where a missing force is not searched: a causal filter opens those contacts on its way.
     """
     if not inputs.sensor.model.description.bearings:
         return inputs, recording
@@ -42,12 +48,30 @@ def with_other_contacts(
     plates = recording.plates
     read = np.full(len(plates), plates.shape[1] > 0) & ~np.isnan(plates).any(axis=(1, 2))
     judged = contradictions(model, q, times_s, rate_hz, loads, read)
-    found = other_contacts(model, q, v, rate_hz, loads, read, _doubted(judged, times_s))
+    doubted = _doubted(judged, times_s) if missing else np.ones(len(q), dtype=bool)
+    found = other_contacts(model, q, v, rate_hz, loads, read, doubted)
     inputs = replace(inputs, remarks=(*inputs.remarks, *found.remarks), contradictions=judged)
     if not found.flags.any():
         return inputs, recording
     readings = {**recording.readings, BEARING: found.flags.astype(float)}
     return replace(inputs, other_contacts=True), replace(recording, readings=readings)
+
+
+def contact_opener(inputs: FilterInputs, settings: ReconstructSettings) -> ContactOpener | None:
+    """Opens contacts of other parts than the feet while a motion goes on.
+
+    Args:
+        inputs: Inputs of the filters.
+        settings: The filter, and whether contacts are looked for.
+
+    Returns:
+        None where the filter has no such contacts, or nothing reads the feet's loads.
+    """
+    bearings = inputs.sensor.model.description.bearings
+    if not settings.other_contacts or settings.filter != "dynamic" or not inputs.plates or not bearings:
+        return None
+    floor_m = min(surface_height(plate) for plate in inputs.plates)
+    return ContactOpener(inputs.sensor.model, 1.0 / inputs.dt_s, floor_m)
 
 
 def contradictions(

@@ -17,6 +17,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.result_groups import Measurements, Provenance, Quality
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.io.utf8 import storable
 from mbkf.model.body import Body
 from mbkf.sensors.gap_filling import filled
@@ -37,6 +38,10 @@ from mbkf.version import __version__
 
 FOOT_SD_M = 0.03
 """A foot whose height is known no better than this may or may not touch the floor."""
+
+
+OPENED_S = 0.1
+"""A causal filter opens a contact no longer after the end of the load that it was found by."""
 
 
 def assemble(
@@ -112,9 +117,26 @@ def assemble(
             measured=ground.measured & located,
             valid=ground.accounted & located & known & ~judged.acts,
             unexplained_force_n=judged.force_n,
-            unexplained=judged.loads,
+            unexplained=judged.loads if result.smoothed else before_contacts(judged.loads, bears, times_s),
             limb_doubts=in_time(result.limb_doubts, times_s),
         ),
+    )
+
+
+def before_contacts(
+    loads: Sequence[UnexplainedLoad], bears: BoolArray, times_s: Array
+) -> tuple[UnexplainedLoad, ...]:
+    """Loads but for those that a contact gives which opened before they ended; their frames do not count either way.
+
+    Args:
+        loads: The loads.
+        bears: (T, B) parts besides the feet that bear.
+        times_s: (T,) times of the frames.
+    """
+    any_bears = np.asarray(bears.any(axis=1))
+    opened_s = times_s[1:][any_bears[1:] & ~any_bears[:-1]]
+    return tuple(
+        one for one in loads if not ((opened_s > one.from_s) & (opened_s <= one.to_s + OPENED_S)).any()
     )
 
 

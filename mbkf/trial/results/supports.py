@@ -21,14 +21,20 @@ LEAST_N = 20.0
 
 
 def supports_of(model: Body, track: Track) -> SupportLoads:
-    """Loads on other parts than the feet of a tracked trial; NaN where it is not started."""
+    """Loads on other parts than the feet of a tracked trial; NaN where it is not started.
+
+    Before the first contact of a causal run has opened only feet bear.
+    """
     if not np.isfinite(track.support).any():
         return support_loads((), np.zeros((len(track.q), 0, 6)))
     parts = BearingParts(model)
-    point_m = np.full((*track.support.shape[:2], 3), np.nan)
-    for t in np.flatnonzero(np.nan_to_num(track.support).any(axis=(1, 2))):
-        point_m[t] = pressed_points(parts, track.q[t], track.support[t])
-    return support_loads(parts.names, track.support, track.support_sd, point_m)
+    followed = np.isfinite(track.q).all(axis=1)
+    narrow = np.isnan(track.support) & np.asarray(followed)[:, None, None]
+    support, support_sd = (np.where(narrow, 0.0, one) for one in (track.support, track.support_sd))
+    point_m = np.full((*support.shape[:2], 3), np.nan)
+    for t in np.flatnonzero(np.nan_to_num(support).any(axis=(1, 2))):
+        point_m[t] = pressed_points(parts, track.q[t], support[t])
+    return support_loads(parts.names, support, support_sd, point_m)
 
 
 def support_loads(

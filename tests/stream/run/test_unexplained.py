@@ -108,3 +108,18 @@ def test_a_load_is_noted_once_its_size_is_known(stream, subject):
     assert (kind, frame) == ("unexplained", 50) and "150 N upward" in sentence
     (load,) = standing.watch.stated()
     assert (load.from_s, load.to_s) == (0.3, 0.6) and load.force_n == pytest.approx(90.0 * np.sqrt(3.0))
+
+
+def test_a_load_whose_contact_opens_is_listed_and_not_judged(stream, subject):
+    standing = Standing(stream, subject)
+    standing.frames(100, 1.0)
+    assert standing.frames(60, 0.4)[-1].acts
+    row, _ = standing.rows.row(standing.number, standing.unseen, None, 0.0)
+    row["known"] = row["tracked"] = True
+    row["q"], row["footing"], row["wrench"], row["v"], row["a"] = standing.q, (1, 1), 0.0, 0.0, 0.0
+    row["wrench"][0, 0, 2], row["support"] = 0.4 * standing.weight_n, 0.0
+    row["support"][0, 0, 2] = 0.6 * standing.weight_n
+    ready = ReadyFrame(standing.number + 7, 0.0, standing.unseen, np.zeros((0, 3)), np.zeros((2, 6)))
+    assert not standing.watch.push(ready, row).acts
+    assert standing.watch.stated() == () and len(standing.watch.plain()) == 1
+    assert [one["part"] for one in standing.watch.lists()["contacts"]] == ["pelvis"]

@@ -13,10 +13,11 @@ from mbkf.filters.tracking import track
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.supports.block import BEARING
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
+from mbkf.trial.live.filter import LiveFilter
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
-from mbkf.trial.preparation.other_contacts import with_other_contacts
+from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from tests.dynamics import trial
@@ -143,12 +144,84 @@ def test_torques_of_hips_and_knees_are_the_true_ones(smooth):
     assert (np.abs(error) <= 3.0 * sd)[SETTLED].mean() >= 0.95
 
 
+@cache
+def on_the_way():
+    """The trial through the causal filter, which opens contacts on its way."""
+    _, inputs, recording, _ = prepared("sit_to_stand")
+    filter = tracking_filter("dynamic", inputs)
+    return track(filter, recording, contacts=contact_opener(inputs, SETTINGS))
+
+
+def test_a_causal_filter_opens_the_seat_within_a_second_and_closes_it():
+    found, weight_n = on_the_way(), GRAVITY_M_S2 * seated().model.mass_kg
+    opened, true = np.nan_to_num(found.support[:, SEAT]).any(axis=1), seat(seated().motion)[:, 2]
+    assert not np.nan_to_num(np.delete(found.support, SEAT, axis=1)).any()
+    first = int(np.argmax(opened))
+    assert true[0] > 0.5 * weight_n and 0 < first <= seated().motion.rate_hz
+    bears = opened & (true > 0.08 * weight_n)
+    assert bears.sum() > 10 and opened[first:][true[first:] > 0.08 * weight_n].all()
+    assert found.support[bears, SEAT, 2].mean() == pytest.approx(true[bears].mean(), rel=0.15)
+    assert not opened[-20:].any()
+
+
+def test_from_when_it_has_opened_the_seat_is_as_if_it_had_been_known():
+    """The frames in which it bore already are taken again."""
+    found, known = on_the_way(), followed(False)
+    opened = np.nan_to_num(found.support[:, SEAT]).any(axis=1) & known.support[:, SEAT].any(axis=1)
+    error = np.linalg.norm((found.support - known.support)[opened, SEAT, :3], axis=1)
+    assert error.max() < 0.05 * GRAVITY_M_S2 * seated().model.mass_kg
+    off = np.array(
+        [seated().model.difference(*pair) for pair in zip(found.q[opened], known.q[opened], strict=True)]
+    )
+    assert np.abs(off).max() < 0.01
+    assert (found.support_sd[opened, SEAT] > 0.0).all()
+
+
+def test_a_live_filter_takes_the_same_steps():
+    _, inputs, recording, _ = prepared("sit_to_stand")
+    live, expected = (
+        LiveFilter(tracking_filter("dynamic", inputs), 0.0, contact_opener(inputs, SETTINGS)),
+        on_the_way(),
+    )
+    steps = []
+    for t in range(len(recording)):
+        steps += live.push(t, recording.frame(t))
+        live.predict()
+    for step in steps:
+        np.testing.assert_array_equal(step.estimate.q, expected.q[step.number])
+        given = np.nan if step.estimate.support is None else step.estimate.support
+        np.testing.assert_array_equal(
+            np.zeros_like(expected.support[0]) + given, expected.support[step.number]
+        )
+
+
+def test_a_causal_filter_is_told_of_no_missing_force():
+    """Contacts of later frames are not known then."""
+    recorded, inputs, recording, _ = prepared("sit_to_stand")
+    alone = markers_alone(inputs, recording)
+    found, read = with_other_contacts(inputs, recording, recorded.markers.times_s, alone, missing=False)
+    assert read is recording and not found.other_contacts
+
+
+@pytest.mark.parametrize("changes", [{"filter": "kinematic"}, {"other_contacts": False}])
+def test_contacts_open_for_the_dynamic_filter_and_where_they_are_wanted(changes):
+    inputs = prepared("squat")[1]
+    assert contact_opener(inputs, SETTINGS) is not None
+    assert contact_opener(inputs, replace(SETTINGS, **changes)) is None
+    assert contact_opener(replace(inputs, plates=()), SETTINGS) is None
+
+
 @pytest.mark.slow
 def test_reconstruct_asks_unless_told_that_only_feet_bear():
     recorded = prepared("sit_to_stand")[0]
-    found = reconstruct(recorded, seated().subject, settings=SETTINGS)
-    np.testing.assert_allclose(found.q, followed(False).q, atol=1e-9)
-    np.testing.assert_allclose(found.foot_wrench, followed(False).wrench, atol=1e-6)
-    plain = reconstruct(recorded, seated().subject, settings=replace(SETTINGS, other_contacts=False))
-    ours, theirs = (rms((one.a - seated().motion.a)[SETTLED, :3]) for one in (found, plain))
-    assert ours < 0.3 * theirs, "a body that nothing holds falls"
+    smoothed, opens = replace(SETTINGS, smooth=True), SETTINGS
+    found = reconstruct(recorded, seated().subject, settings=smoothed)
+    np.testing.assert_allclose(found.q, followed(True).q, atol=1e-9)
+    np.testing.assert_allclose(found.foot_wrench, followed(True).wrench, atol=1e-6)
+    causal = reconstruct(recorded, seated().subject, settings=opens)
+    np.testing.assert_allclose(causal.q, on_the_way().q, atol=1e-9)
+    assert not np.isnan(causal.support_wrench).any()
+    plain = reconstruct(recorded, seated().subject, settings=replace(opens, other_contacts=False))
+    bears = causal.support_wrench[:, SEAT].any(axis=1) & (seat(seated().motion)[:, 2] > 100.0)
+    ours, theirs = (rms((one.a - seated().motion.a)[bears, :3]) for one in (causal, plain))
+    assert ours < 0.5 * theirs, "a body that nothing holds falls"

@@ -8,10 +8,11 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.tracking import track
 from mbkf.io.records import PlateReadings
+from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.results.assembly import FOOT_SD_M, assemble
+from mbkf.trial.results.assembly import FOOT_SD_M, assemble, before_contacts
 from tests.motions import (
     capture_of,
     marker_positions,
@@ -91,3 +92,14 @@ def test_a_hidden_marker_is_predicted_where_its_skin_was(trial):
     off = np.linalg.norm(found.predicted_m - shifted, axis=2)[:, 0]
     assert off[hidden[:, 0]].max() < 0.01
     assert off[~hidden[:, 0]].min() > 0.01
+
+
+def test_a_load_whose_contact_opened_is_not_listed():
+    times_s = 0.1 * np.arange(40)
+    loads = [
+        UnexplainedLoad(a, b, (0.0, 0.0, 300.0), 5.0, 0.4) for a, b in ((0.5, 1.2), (2.0, 2.5), (3.0, 3.4))
+    ]
+    bears = np.zeros((40, 2), dtype=bool)
+    bears[10:15, 1] = bears[28:, 0] = True
+    assert before_contacts(loads, bears, times_s) == tuple(loads[1:])
+    assert before_contacts(loads, np.zeros((40, 0), dtype=bool), times_s) == tuple(loads)

@@ -72,8 +72,9 @@ def test_a_trial_has_names_and_points_of_every_frame(model, rng):
     names, zero = tuple(model.description.bearings), np.zeros((4, model.nv))
     support = np.zeros((4, len(names), 6))
     support[2, 3, :3] = [0.0, 0.0, 300.0]
-    support[3] = np.nan
+    support[1], support[3], q[3] = np.nan, np.nan, np.nan
     found = supports_of(model, track_of(q, zero, zero, support=support, support_sd=0.1 * support))
+    support[1] = 0.0  # followed before the first contact opened
     assert found.support_names == names
     np.testing.assert_array_equal(found.support_wrench, support)
     np.testing.assert_array_equal(found.support_wrench_sd, 0.1 * support)
