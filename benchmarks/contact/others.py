@@ -55,8 +55,9 @@ def other_rows(context: Context) -> list[Check]:
         for name, smooth in PASSES.items():
             settings = ReconstructSettings(smooth=smooth)
             trials = [Trial(s, c.truth, reconstruct(c.trial, s, settings=settings)) for s, c in made]
-            rows += _motion_rows(motion, name, trials)
-            if motion == "sit_to_stand":
+            if smooth:  # a causal filter opens contacts on its way: `python -m benchmarks loads`
+                rows += _motion_rows(motion, name, trials)
+            if smooth and motion == "sit_to_stand":
                 rows += _other_mass_rows(f"{motion}, {name}", made, settings)
             over_sd[name] += [_over_sd(trial) for trial in trials]
     for name, several in over_sd.items():

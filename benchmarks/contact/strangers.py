@@ -29,6 +29,8 @@ LIFTS = {"stoop1": "t169_f620f800", "stoop2": "t169_f1395f1590", "stoop3": "t169
 STANDING, LIFTER_KG = "neu_t169_f250f350.c3d", 81.7
 BOX_N, BOX_SHARE, LIFTED_N = 147.0, 0.15, 40.0
 FOUND_S, LEAST_R, TORQUE_NM_KG = 0.2, 0.95, 0.25
+OPENED_S = 1.0
+"""Causally, contacts open on the way; moments before do not know of them."""
 
 PRONE = "KneeltoProne01_labelled.c3d"
 PRONE_FROM_S, SOLDIER_KG = 5.5, 80.0
@@ -55,6 +57,8 @@ def _lift_rows(folder: Path) -> Iterator[Check]:
             hands = [k for k, part in enumerate(found.support_names) if part.endswith("hand")]
             held = -np.nan_to_num(found.support_wrench[:, hands, 2]).sum(axis=1)
             carries = load_n[: len(held)] > 0.9 * BOX_N
+            if not smooth:  # from when the contact has opened
+                carries &= held != 0.0
             mean = float(held[carries].mean())
             yield from within(
                 f"{title}: load on the hands", mean, (1 - BOX_SHARE) * BOX_N, (1 + BOX_SHARE) * BOX_N, "N"
@@ -63,9 +67,9 @@ def _lift_rows(folder: Path) -> Iterator[Check]:
                 f"{title}: its error, RMS", rms(held[carries] - load_n[: len(held)][carries]), "N"
             )
             late = (int(np.argmax(held > 0.0)) - lifted) / found.rate_hz if held.any() else float("inf")
-            yield Check(f"{title}: hands found", abs(late), FOUND_S, "<=", "s")
+            yield Check(f"{title}: hands found", abs(late), FOUND_S if smooth else OPENED_S, "<=", "s")
             reference = np.loadtxt(folder / "reference_l5s1" / f"{name}_l5s1Bu.csv", delimiter=",")[:, 2]
-            yield from lumbosacral_rows(title, found, reference, TORQUE_NM_KG)
+            yield from lumbosacral_rows(title, found, reference, TORQUE_NM_KG if smooth else None)
             other = found.moment("lumbar_extension")[: len(reference)] - reference[: found.frames]
             off = rms(other) / subject.mass_kg
             yield information(f"{title}: the moment at T12/L1 in its place, RMS", off, "N m/kg")

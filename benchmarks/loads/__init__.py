@@ -12,6 +12,7 @@ from benchmarks.dynamic.methods import in_parallel
 from benchmarks.foreign.sets import made_persons
 from benchmarks.loads.judged import clean_rows, judged, violator_rows
 from benchmarks.loads.live import live_rows, streamed
+from benchmarks.loads.opened import opened_rows
 from benchmarks.loads.trials import clean_trials, violators
 from mbkf.errors import MissingDependency
 
@@ -28,4 +29,4 @@ def run(context: Context) -> list[Check]:
         bad, good = violators(data, context.quick), clean_trials(data, made, context.quick)
         found, clean = mapper(judged, bad), mapper(judged, good)
         live = live_rows(mapper(streamed, good), mapper(streamed, bad))
-    return [*rows, *violator_rows(found), *clean_rows(clean), *live]
+    return [*rows, *violator_rows(found), *clean_rows(clean), *live, *opened_rows(data, context.quick)]

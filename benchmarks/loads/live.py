@@ -18,6 +18,7 @@ from benchmarks.checks import Check, information
 from benchmarks.loads.judged import SPOILT_SHARE
 from benchmarks.loads.trials import Trial
 from mbkf.conventions import GRAVITY_M_S2, BoolArray
+from mbkf.io.contacts import bearing
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.numerics.runs import runs
@@ -44,6 +45,7 @@ class Streamed:
     Attributes:
         label: The trial.
         frames, stated: Number of frames, and of those in which a force is stated.
+        opened: Number of frames in which a contact of another part than the feet is open.
         spoilt: Frames under a load above :data:`~benchmarks.loads.judged.SPOILT_SHARE` that count,
             :data:`STATED_AFTER_S` after it begins; NaN where the load is not known.
         longest_s: Longest time from a load's beginning until it is stated, and from its end until it is not; NaN
@@ -53,6 +55,7 @@ class Streamed:
     label: str
     frames: int
     stated: int
+    opened: int
     spoilt: float
     longest_s: tuple[float, float]
 
@@ -65,17 +68,18 @@ def streamed(trial: Trial) -> Streamed:
     """
     with single_threaded():
         capture, subject, unread = trial.load()
-        acts = stated_frames(capture, subject)
+        acts, bears = judged_frames(capture, subject)
+    counted = len(acts), int(acts.sum()), int(bears.sum())
     if unread is None:
-        return Streamed(trial.label, len(acts), int(acts.sum()), float("nan"), (float("nan"), float("nan")))
+        return Streamed(trial.label, *counted, float("nan"), (float("nan"), float("nan")))
     rate_hz, frames = capture.markers.rate_hz, min(len(unread), len(acts))
     loaded = np.linalg.norm(unread[:frames], axis=1) > SPOILT_SHARE * subject.mass_kg * GRAVITY_M_S2
-    spoilt, begins, ends = against_truth(acts[:frames], loaded, rate_hz)
-    return Streamed(trial.label, len(acts), int(acts.sum()), spoilt, (begins, ends))
+    spoilt, begins, ends = against_truth(acts[:frames], loaded & ~bears[:frames], rate_hz)
+    return Streamed(trial.label, *counted, spoilt, (begins, ends))
 
 
-def stated_frames(capture: Capture, subject: Subject) -> BoolArray:
-    """(T,) frames of a stream in which an unexplained force is stated.
+def judged_frames(capture: Capture, subject: Subject) -> tuple[BoolArray, BoolArray]:
+    """(T,) frames of a stream in which an unexplained force is stated, and (T,) those with a contact besides the feet.
 
     Args:
         capture: The capture that is played.
@@ -84,9 +88,12 @@ def stated_frames(capture: Capture, subject: Subject) -> BoolArray:
     source = played(capture)
     setup = prepare(source.stream, subject, ReconstructSettings(), True, _unnoted)
     watch = LoadWatch(setup.live, source.stream.rate_hz, _unnoted)
-    return np.array(
-        [watch.push(ready, row).acts for ready, row in _answered(source, setup, subject)], dtype=bool
-    )
+    found = [
+        (watch.push(ready, row).acts, bearing(row["support"]).any())
+        for ready, row in _answered(source, setup, subject)
+    ]
+    acts, bears = np.array(found, dtype=bool).reshape(-1, 2).T
+    return acts, bears
 
 
 def _answered(source: Played, setup: LiveSetup, subject: Subject) -> Iterator[tuple[ReadyFrame, NDArray]]:
@@ -148,6 +155,11 @@ def live_rows(clean: Sequence[Streamed], violating: Sequence[Streamed]) -> Itera
     yield Check(
         f"live: clean streams accused for more than {MOST_FRAMES} frames, of {len(clean)}", accused, 0, "<="
     )
+    for one in clean:
+        if one.opened:
+            yield information(f"live, clean, {one.label}: frames of {one.frames} with a contact", one.opened)
+    opened = sum(one.opened > 0 for one in clean)
+    yield Check(f"live: clean streams in which a contact opens, of {len(clean)}", opened, 0, "<=")
     stated = sum(one.stated > 0 for one in violating)
     yield Check(
         f"live: violators in which a force is stated, of {len(violating)}", stated, len(violating), ">="
