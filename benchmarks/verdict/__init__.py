@@ -3,7 +3,8 @@
 Twenty-six kinds of faults are put into twenty trials of 1.8 s. Bounds of the words (:mod:`mbkf.trial.verdict`) were set
 on right trials of ``python -m benchmarks loads`` and on the first ten of the twenty with their faults ("chosen on");
 the other trials are shown, but are no independent proof: order and place of all plates, markers turned against the
-laboratory, and the bound of missing forces came from faults of both groups. Findings are kept in the output folder, so that a run that stopped goes on.
+laboratory, and the bound of missing forces came from faults of both groups. Findings are kept in the output folder, so
+that a run that stopped goes on.
 """
 
 from __future__ import annotations
