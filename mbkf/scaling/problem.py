@@ -106,9 +106,8 @@ class ScalingProblem:
 
     def start(self, poses: Array) -> ScalingState:
         """State with the prior's factors, offsets and displacements."""
-        return ScalingState(
-            poses, self.prior.factors, self.prior.offsets_m, self.prior.slides_m, self.prior.girdle_m
-        )
+        prior = self.prior
+        return ScalingState(poses, prior.factors, prior.offsets_m, prior.slides_m, prior.girdle_m)
 
     def start_from(self, state: ScalingState) -> ScalingState:
         """A state of a problem with another number of flexions, with the prior's displacements."""
@@ -141,13 +140,16 @@ class ScalingProblem:
         return self._worn.places(state.poses, state.factors, moved, raised) - self.measured_m
 
     def with_shoulders(self, poses: Array, standing: Array | None = None) -> ScalingProblem:
-        """The problem with a displacement of each shoulder in each trial, with a prior by the arms' elevation.
+        """The problem with a displacement of each shoulder in each trial with raised arms, with a prior by elevation.
 
         Args:
             poses: (N, nq) configurations.
             standing: (nq,) that in which the person was scaled before.
         """
-        return self.with_prior(self.shoulders.expected(self.prior, self.body, poses, standing))
+        shoulders = self.shoulders.raised(poses, standing)
+        other = self.with_prior(shoulders.expected(self.prior, self.body, poses))
+        other.shoulders = shoulders
+        return other
 
     def usual_shares(self, poses: Array) -> Array:
         """(D, M) mean share of each displacement in the frames (N, nq) that show the marker."""

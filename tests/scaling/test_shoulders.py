@@ -42,13 +42,23 @@ def test_displacements_are_expected_by_the_mean_elevation_of_a_trial():
     np.testing.assert_allclose(np.linalg.inv(without_shoulders(information, found, 2)), others, rtol=1e-12)
 
 
-def test_shoulders_stay_on_the_trunk_where_no_arm_is_raised_here_or_where_one_was_scaled():
+def test_shoulders_are_displaced_in_trials_with_raised_arms_alone():
+    """A trial with hanging arms places the shoulders; after a scaling with raised arms none has placed them."""
     hanging, raised = MODEL.neutral(), MODEL.neutral()
     raised[MODEL.joint("left_upper_arm").q] = [np.sin(0.5), 0.0, 0.0, np.cos(0.5)]
     prior = ScalingPrior(np.ones(2), np.eye(2), np.zeros((1, 3)), np.eye(3))
     low, high = np.array([hanging] * 3), np.array([hanging, hanging, raised])
 
     def free(poses, standing=None):
-        return TrialShoulders(GIRDLE, TRIAL).expected(prior, MODEL.description, poses, standing).raised
+        shoulders = TrialShoulders(GIRDLE, TRIAL).raised(poses, standing)
+        return shoulders.expected(prior, MODEL.description, poses)
 
-    assert (free(low), free(low, hanging), free(high), free(low, raised)) == (0, 0, 12, 12)
+    assert (free(low).raised, free(low, hanging).raised, free(low, raised).raised) == (0, 0, 12)
+    found = free(high)
+    mean, covariance = girdle_prior(MODEL.description, GIRDLE.raised(high[2:]))
+    np.testing.assert_allclose(found.girdle_m, mean, atol=1e-15)
+    np.testing.assert_allclose(found.girdle_covariance, covariance, atol=1e-15)
+    shoulders = TrialShoulders(GIRDLE, TRIAL).raised(high)
+    displaced = shoulders.displaced_m(np.arange(6.0))
+    np.testing.assert_array_equal(displaced[:2], np.zeros((2, 2, 3)))
+    np.testing.assert_array_equal(displaced[2].ravel(), np.arange(6.0))
