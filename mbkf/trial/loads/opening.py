@@ -19,6 +19,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.contact_opening import Noted
 from mbkf.model.body import Body
+from mbkf.numerics.runs import runs
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.supports.search import LASTING_S, LASTING_SHARE, LEAST_SHARE, other_contacts
 from mbkf.trial.loads.balance import CentreOfMass, LoadBalance
@@ -39,6 +40,11 @@ RECHECKED_S = (0.25, 0.5, 1.0)
 
 NOW_S = 0.05
 """A part bears now where it bears in any of the last frames of so long."""
+
+LANDED_SHARE, TOGETHER_S, STANCE_S, AFTER_S = 0.02, 0.2, 1.0, 0.5
+"""A foot stands that bears more than the first share of body weight. A force that begins within the second time of its
+landing may be the part of it that a plate does not read: no contact opens for it during that stance, if it is no longer
+than the third time, nor in the fourth time after it, over which forces are averaged."""
 
 LEFT_S = 0.1
 """A contact closes when the mean of its force over such a time is small, or is not judged for :data:`LASTING_S`."""
@@ -138,7 +144,7 @@ class ContactOpener:
                 self._look_again()
             elif self._searches():
                 found = self._found()
-                if found.any() and self._is_load():
+                if found.any() and not self._began_with_a_step() and self._is_load():
                     self._change(found)
         return self.flags
 
@@ -193,6 +199,18 @@ class ContactOpener:
         ):  # while a contact is open, frames without a missing force are those of its beginning
             self._lighter = found.lighter
         return np.asarray(flags)
+
+    def _began_with_a_step(self) -> bool:
+        """True where the force began as a foot landed whose stance lasts or is just over."""
+        feet_n = np.array([one.wrench[:, :3] for one in self._kept])
+        count, began = len(feet_n), len(feet_n) - self.began
+        for force_n in np.linalg.norm(feet_n, axis=2).T:
+            for first, after in runs(force_n > LANDED_SHARE * self._weight_n):
+                brief = first > 0 and after - first <= self._frames(STANCE_S)
+                if brief and count - after <= self._frames(AFTER_S):
+                    if abs(began - first) <= self._frames(TOGETHER_S):
+                        return True
+        return False
 
     def _is_load(self) -> bool:
         """True where a force acts now that no wrong mass, unequal clocks or foot beside its plate explains."""

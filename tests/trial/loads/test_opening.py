@@ -110,6 +110,17 @@ def test_nothing_opens_while_a_foot_stands_beside_the_plates():
     assert not opened(model, motion, wrench, support, contact=beside)[0].any()
 
 
+def test_a_force_that_begins_with_a_step_opens_nothing():
+    """The hand pulls while the right foot stands; the same pull opens where the foot stood before it."""
+    model, motion, wrench, support = pulled("right_hand", 0.4, 0.6, 1.4)
+    for landed_s, opens in ((0.6, False), (0.2, True)):
+        stepped, step = wrench.copy(), slice(round(100 * landed_s), 140)
+        stepped[:, 1] += stepped[:, 0]
+        stepped[:, 0] = 0.0
+        stepped[step] = wrench[step]
+        assert opened(model, motion, stepped, support)[0].any() == opens
+
+
 def test_a_start_begins_anew():
     """The contact closes, and opens again when it is seen again."""
     model, motion, wrench, support = pulled("right_hand", 0.2, 0.6, 2.0)
