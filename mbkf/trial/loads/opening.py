@@ -207,9 +207,9 @@ class ContactOpener:
         for force_n in np.linalg.norm(feet_n, axis=2).T:
             for first, after in runs(force_n > LANDED_SHARE * self._weight_n):
                 brief = first > 0 and after - first <= self._frames(STANCE_S)
-                if brief and count - after <= self._frames(AFTER_S):
-                    if abs(began - first) <= self._frames(TOGETHER_S):
-                        return True
+                late = count - after <= self._frames(AFTER_S)
+                if brief and late and abs(began - first) <= self._frames(TOGETHER_S):
+                    return True
         return False
 
     def _is_load(self) -> bool:
