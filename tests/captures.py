@@ -53,12 +53,13 @@ def made_markers(
 
 
 def made_plates(frames: int = 60) -> tuple[PlateReadings, ...]:
-    """One plate under each foot, each with half of the weight."""
+    """One plate under each foot, each with half of the weight, below the centre of mass from ahead to behind."""
     model = HumanModel.scaled(mass_kg=MASS_KG)
     soles = sole_points(model, model.neutral()[None])[0].mean(axis=1)
+    x = model.centre_of_mass(model.neutral())[0]
     force = np.tile([0.0, 0.0, 0.5 * MASS_KG * GRAVITY_M_S2], (10 * frames, 1))
     plates = []
-    for name, (x, y, _) in zip(("1", "2"), soles, strict=True):
+    for name, (_, y, _) in zip(("1", "2"), soles, strict=True):
         middle = np.array([x, y, 0.0])
         corners = middle + np.array(
             [[0.2, -0.08, 0.0], [-0.2, -0.08, 0.0], [-0.2, 0.08, 0.0], [0.2, 0.08, 0.0]]

@@ -146,9 +146,14 @@ def _scaled(
     first = 1 if standing else 0
     exchanged = () if chosen.inferred is None else chosen.inferred.exchanged
     of_static: Pairs = ()
+    refusal: NotConverged | None = None
     with single_threaded():
         if standing and chosen.inferred is None and (settings or ScalingSettings()).correct_names:
-            static, of_static = static_put_right(checked[0], protocol, settings)
+            static = checked[0]
+            try:
+                static, of_static = static_put_right(static, protocol, settings)
+            except NotConverged as error:
+                refusal = error  # scaling may know better what is wrong: axes, unit, a sitting person
             trials, more = trials_as_static(static, checked[1:], protocol, of_static)
             exchanged = (*exchanged, *more)
             checked = [static, *trials]
@@ -165,6 +170,8 @@ def _scaled(
             settings=settings,
             progress=progress,
         )
+    if refusal is not None:
+        raise refusal
     axes = corrected_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
     extra: dict[str, object] = {USE_KEY: use.as_report()}

@@ -29,7 +29,7 @@ def errors(seed, unseen=0.0):
         3.0,
         free,
         2.0,
-        None if seed % 2 else rng.normal(size=NV + 18),
+        None if seed % 2 else rng.normal(size=(2, NV + 18)),
         rng.normal(size=(4, 12)),
         new_rates=(0.2, 0.4),
         plates=0.4,

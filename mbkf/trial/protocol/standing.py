@@ -13,6 +13,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
+from mbkf.scaling.records import ScalingSettings
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_most_markers, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -119,7 +120,8 @@ def scale_nominally(capture: Capture, protocol: Protocol, progress: StageCallbac
     """
     mass = capture.subject_mass_kg or NOMINAL_MASS_KG
     static, trials = (capture, ()) if stands_still(capture.markers) else (None, (capture,))
-    return scale(static, trials, mass_kg=mass, protocol=protocol, progress=progress)
+    names_as_read = ScalingSettings(correct_names=False)  # the set is judged by its names
+    return scale(static, trials, mass_kg=mass, protocol=protocol, settings=names_as_read, progress=progress)
 
 
 def stands_still(markers: MarkerTrajectories, share: float = 0.5) -> bool:
