@@ -23,8 +23,7 @@ from benchmarks.foreign.rows import (
     static_rows,
 )
 from benchmarks.foreign.score import score
-from benchmarks.foreign.sets import PersonSet, made_persons, own_sets, shared_set
-from mbkf.errors import MissingDependency
+from benchmarks.foreign.sets import PersonSet, made_or_left_out, own_sets, shared_set
 
 SESSION, WALK, STATIC = "session", "walk", "static"
 
@@ -32,12 +31,8 @@ SESSION, WALK, STATIC = "session", "walk", "static"
 def run(context: Context) -> list[Check]:
     """Rows of the shared persons and, unless quick, of persons of our own, scaled from a session and from standing."""
     data = context.require_data()
-    sets, rows = [shared_set(data)], []
-    if not context.quick:
-        try:
-            sets += own_sets(made_persons(data, context.out / "persons", context.seed))
-        except MissingDependency as missing:
-            rows.append(information(f"persons of our own are left out: {missing}", float("nan")))
+    made, rows = made_or_left_out(context)
+    sets = [shared_set(data), *([] if made is None else own_sets(made))]
     everyone: list[Judged] = []
     with in_parallel() as mapper:
         for one in sets:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from benchmarks.checks import Check, Context, information
 from benchmarks.dynamic.methods import Mapper
 from benchmarks.foreign.errors import Judged
 from benchmarks.foreign.followed import SMOOTHED, followed, jobs
@@ -14,6 +15,7 @@ from benchmarks.foreign.making import make
 from benchmarks.foreign.making.persons import CHOSEN_ON, SHOWN_ON
 from benchmarks.foreign.making.skin import MODELS
 from benchmarks.foreign.truth import FOLDER, Foreigner, foreigners
+from mbkf.errors import MissingDependency
 
 MARK = "made_by.txt"
 """In a folder of made persons: a digest of the sources that made them, and the seed."""
@@ -84,6 +86,20 @@ def made_persons(data: Path, folder: Path, seed: int) -> Path:
         make(data, folder, seed)
         mark.write_text(wanted, encoding="utf-8")
     return folder
+
+
+def made_or_left_out(context: Context) -> tuple[Path | None, list[Check]]:
+    """The folder with persons of our own in the output folder; None where OpenSim is missing, with a row, and if quick.
+
+    Args:
+        context: Where data are, where files go, and the seed.
+    """
+    if context.quick:
+        return None, []
+    try:
+        return made_persons(context.require_data(), context.out / "persons", context.seed), []
+    except MissingDependency as missing:
+        return None, [information(f"persons of our own are left out: {missing}", float("nan"))]
 
 
 def digest() -> str:

@@ -7,24 +7,19 @@ these trials were looked at: for them the rows are no independent proof.
 
 from __future__ import annotations
 
-from benchmarks.checks import Check, Context, information
+from benchmarks.checks import Check, Context
 from benchmarks.dynamic.methods import in_parallel
-from benchmarks.foreign.sets import made_persons
+from benchmarks.foreign.sets import made_or_left_out
 from benchmarks.loads.judged import clean_rows, judged, violator_rows
 from benchmarks.loads.live import live_rows, streamed
 from benchmarks.loads.opened import opened_rows
 from benchmarks.loads.trials import clean_trials, violators
-from mbkf.errors import MissingDependency
 
 
 def run(context: Context) -> list[Check]:
     """Rows of violators and clean captures; persons of our own are left out where OpenSim is missing, and if quick."""
-    data, made, rows = context.require_data(), None, []
-    if not context.quick:
-        try:
-            made = made_persons(data, context.out / "persons", context.seed)
-        except MissingDependency as missing:
-            rows.append(information(f"persons of our own are left out: {missing}", float("nan")))
+    data = context.require_data()
+    made, rows = made_or_left_out(context)
     with in_parallel() as mapper:
         bad, good = violators(data, context.quick), clean_trials(data, made, context.quick)
         found, clean = mapper(judged, bad), mapper(judged, good)

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from benchmarks.checks import Check, Context, information
+from benchmarks.checks import Check, Context
 from benchmarks.dynamic.methods import in_parallel
-from benchmarks.foreign.sets import made_persons
+from benchmarks.foreign.sets import made_or_left_out
 from benchmarks.loads.trials import clean_trials
 from benchmarks.verdict.in_view import second_person_rows
 from benchmarks.verdict.invented import invented, invented_rows, moved_trials
@@ -21,17 +21,12 @@ from benchmarks.verdict.persons import accused, pairs, person_rows
 from benchmarks.verdict.rows import faulty_rows, reason_rows, right_rows
 from benchmarks.verdict.spoilt import sources_folder, spoilt_trials, stored
 from benchmarks.verdict.trials import judged, shown_right
-from mbkf.errors import MissingDependency
 
 
 def run(context: Context) -> list[Check]:
     """Rows of right and of faulty trials, those that bounds were chosen on apart from the others."""
-    data, made, rows = context.require_data(), None, []
-    if not context.quick:
-        try:
-            made = made_persons(data, context.out / "persons", context.seed)
-        except MissingDependency as missing:
-            rows.append(information(f"persons of our own are left out: {missing}", float("nan")))
+    data = context.require_data()
+    made, rows = made_or_left_out(context)
     keep = partial(stored, folder=sources_folder(context.out))
     with in_parallel() as mapper:
         found = mapper(keep, spoilt_trials(data, context.quick))

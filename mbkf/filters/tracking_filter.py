@@ -47,7 +47,7 @@ class Start(Protocol):
 
 
 class Widening(Protocol):
-    """The same filter with more states.
+    """A filter that has the states of another one and more, and goes on from its estimates.
 
     Attributes:
         report: Reads its states.

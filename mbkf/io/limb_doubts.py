@@ -62,7 +62,7 @@ class LimbDoubt:
         """The doubt of JSON.
 
         Raises:
-            InvalidInput: The text is no doubt about a limb.
+            InvalidInput: The text lacks an entry of a doubt, or is not JSON.
         """
         try:
             plain = json.loads(text)

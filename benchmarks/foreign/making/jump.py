@@ -20,13 +20,13 @@ DOWN_S, LOWEST_S, OFF_S, FLIGHT_S, SOFT_S, UP_S = 0.35, 0.85, 1.15, 0.40, 0.22, 
 """Beginning of the downward movement, lowest point, take-off; durations of flight, of the landing and of getting up."""
 
 DEPTH, SOFT_DEPTH, BENT = 0.32, 0.26, 0.04
-"""How deep the pelvis goes before the flight and after it, and below straight legs throughout, in leg lengths."""
+"""Depth of the pelvis below straight legs before the flight, after it, and in the whole movement, in leg lengths."""
 
 PUSH, CATCH = 0.4, 0.5
 """Acceleration at both lowest points, in g."""
 
 HEEL, LIFT = 0.13, 0.22
-"""How high heels rise at take-off, and feet in flight, in leg lengths."""
+"""Rise of the heels at take-off and of the feet in flight, in leg lengths."""
 
 
 def jump(legs_m: float, height_m: float, feet_m: Array) -> tuple[Stance, dict[str, Array]]:

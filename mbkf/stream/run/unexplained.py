@@ -39,7 +39,7 @@ class LoadWatch:
 
     Attributes:
         read: Plates read every loaded foot in the latest frame.
-        contacts: Contacts of other parts than the feet, which give what is no longer missing.
+        contacts: Contacts of other parts than the feet; their forces count as explained.
     """
 
     def __init__(self, live: LiveInputs, rate_hz: float, note: Note) -> None:

@@ -37,7 +37,7 @@ def person_finding(lengths: LengthEvidence) -> Finding:
 
 
 def finding_of_markers(subject: Subject, markers: MarkerTrajectories) -> Finding:
-    """The same of a subject whose markers are not corrected, on a few frames: of a trial, or of the last seconds live.
+    """A finding on segment lengths by a few frames of a trial or of a live run, without a correction of markers.
 
     Args:
         subject: The person.

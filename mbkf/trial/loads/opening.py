@@ -42,9 +42,10 @@ NOW_S = 0.05
 """A part bears now where it bears in any of the last frames of so long."""
 
 LANDED_SHARE, TOGETHER_S, STANCE_S, AFTER_S = 0.02, 0.2, 1.0, 0.5
-"""A foot stands that bears more than the first share of body weight. A force that begins within the second time of its
-landing may be the part of it that a plate does not read: no contact opens for it during that stance, if it is no longer
-than the third time, nor in the fourth time after it, over which forces are averaged."""
+"""A foot stands while it bears more than the first share of body weight. A plate may read a part of a step alone: where
+a force begins within the second time of a landing, no contact opens during that stance, unless the stance lasts longer
+than the third time. Nor does one open in the fourth time after the stance, over which forces are averaged. Set on five
+walks with half a step beside a plate (``python -m benchmarks loads``)."""
 
 LEFT_S = 0.1
 """A contact closes when the mean of its force over such a time is small, or is not judged for :data:`LASTING_S`."""
