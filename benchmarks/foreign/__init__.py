@@ -7,7 +7,7 @@ reached.
 
 from __future__ import annotations
 
-from benchmarks.checks import Check, Context, information
+from benchmarks.checks import Check, Context
 from benchmarks.dynamic.methods import Mapper, in_parallel
 from benchmarks.foreign.errors import Judged
 from benchmarks.foreign.followed import CAUSAL
