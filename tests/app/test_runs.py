@@ -39,11 +39,13 @@ class Quick:
     """An executor that answers at once, without a process."""
 
     done: list = []  # noqa: RUF012
+    begin = threading.Event()
 
     def __init__(self, workers):
         self.workers = workers
 
     def run(self, tasks, watch=None):
+        assert Quick.begin.wait(PATIENCE_S)
         for number, task in enumerate(tasks):
             watch({number: Progress("Filtering", 1, 2)})
             if isinstance(task, ReconstructTrial):
@@ -75,6 +77,7 @@ class Slow(Quick):
 @pytest.fixture
 def quick(monkeypatch):
     Quick.done = []
+    Quick.begin.set()
     monkeypatch.setattr(module, "LocalWorkers", Quick)
 
 
@@ -104,9 +107,11 @@ def test_results_are_those_of_a_batch(tmp_path):
 
 @pytest.mark.usefixtures("quick")
 def test_sessions_run_one_after_the_other_and_failures_are_told(workspace):
+    Quick.begin.clear()
     runs = Runs(workspace, 1)
     for name in ("P1", "P2", "P1"):
         runs.start(name)
+    Quick.begin.set()
     for name in ("P1", "P2"):
         wait_for(runs, name, FINISHED)
     state = runs.state("P2")
