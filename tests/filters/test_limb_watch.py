@@ -125,3 +125,16 @@ def test_a_doubt_that_goes_on_is_stated_before_it_ends(course):
     doubt = watch.so_far(FRAMES)
     watch.finish(FRAMES)
     assert tuple(watch.doubts) == doubt == watch.so_far(FRAMES)
+
+
+@pytest.mark.parametrize(("off_m", "stated"), [(0.04, 0), (0.15, 1)])
+def test_a_short_doubt_is_stated_where_the_limb_is_far(course, off_m, stated):
+    positions = marker_positions(SENSOR, course)
+    shank = np.flatnonzero(np.array(SENSOR.segments) == "left_shank")
+    directions = np.random.default_rng(2).normal(size=(len(shank), 3))
+    positions[AT : AT + 3, shank] += off_m * directions / np.linalg.norm(directions, axis=1)[:, None]
+    watch, estimate = LimbWatch(FITS, DT), SimpleNamespace(started=False, record=SimpleNamespace(step=None))
+    for t in range(FRAMES):
+        watch.look(t, SimpleNamespace(q=course[t], **vars(estimate)), positions[t])
+    assert len(watch.doubts) == stated
+    assert [one.to_s for one in watch.doubts] == pytest.approx([(AT + 3) * DT] * stated)
