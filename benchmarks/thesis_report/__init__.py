@@ -1,1 +1,1 @@
-"""What a study of the thesis reports: bounded numbers, verdicts on its claims, tables and figures, on one page."""
+"""Reports of studies that redo a source text: bounded numbers, verdicts on its claims, tables and figures, on one page."""

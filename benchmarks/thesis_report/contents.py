@@ -1,4 +1,4 @@
-"""Bounded numbers (bands), statements of the thesis (claims), and tables written as CSV and shown on the page."""
+"""Bounded numbers (bands), statements of a source text (claims), and tables written as CSV and shown on the page."""
 
 from __future__ import annotations
 
@@ -96,13 +96,14 @@ def _plain(cell: str | float) -> str:
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the thesis, and its measurement.
+    """A statement of the source text, and its measurement.
 
     Attributes:
         source: Where it stands.
         statement: The statement in words.
         measured: The numbers found here.
-        verdict: "holds", "partly" or "does not hold".
+        verdict: "holds", "partly" or "does not hold" where a statement is tested; "reproduced", "differs" or
+            "cannot be had" where a published result is redone, with the reason in ``measured``.
     """
 
     source: str
@@ -114,6 +115,11 @@ class Claim:
 def judged(holds: bool, partly: bool = False) -> str:
     """The verdict on a claim."""
     return "holds" if holds else "partly" if partly else "does not hold"
+
+
+def redone(same: bool) -> str:
+    """The verdict on a published result that was redone."""
+    return "reproduced" if same else "differs"
 
 
 @dataclass(frozen=True)

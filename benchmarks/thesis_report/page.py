@@ -1,4 +1,4 @@
-"""One self-contained HTML page: thesis and measurement side by side, with a verdict per claim."""
+"""One self-contained HTML page: a source text and measurement side by side, with a verdict per claim."""
 
 from __future__ import annotations
 
@@ -37,7 +37,14 @@ sub { font-size: .75em; line-height: 0; }
 @media (max-width: 36rem) { body { padding: 1rem; } .figures { grid-template-columns: 1fr; } }
 """
 
-_MARKS = {"holds": "good", "partly": "half", "does not hold": "bad"}
+_MARKS = {
+    "holds": "good",
+    "partly": "half",
+    "does not hold": "bad",
+    "reproduced": "good",
+    "differs": "half",
+    "cannot be had": "soft",
+}
 
 
 @dataclass(frozen=True)
@@ -50,9 +57,10 @@ class Texts:
         trials: Number and kind of the trials, for the head of the page: ("100", "seeds per number").
         command: The command that makes the page.
         bands: What the bounded numbers are.
-        claims: Heading of the thesis's statements.
+        claims: Heading of the source's statements.
         figures: Key to the colours of the figures.
         remark: A further sentence on how the numbers came about.
+        source: The text that the claims stand in; columns that hold this word are set apart as its own numbers.
     """
 
     title: str
@@ -63,6 +71,7 @@ class Texts:
     claims: str
     figures: str
     remark: str = ""
+    source: str = "thesis"
 
 
 @dataclass(frozen=True)
@@ -102,11 +111,11 @@ class Report:
             f"<h2 id='bands'>Bands</h2><p class='soft'>{_rich(texts.bands)}</p>",
             _band_table(self.bands, self.quick),
             f"<h2 id='claims'>{escape(texts.claims)}</h2>",
-            _claim_table(self.claims),
+            _claim_table(self.claims, texts.source),
             f"<h2 id='figures'>Figures</h2><p class='soft'>{_rich(texts.figures)}</p><div class='figures'>",
             *(_picture(drawing, svg) for drawing, svg in pictures),
             "</div><h2 id='tables'>Tables</h2>",
-            *(_sheet(sheet) for sheet in self.sheets if sheet.rows),
+            *(_sheet(sheet, texts.source) for sheet in self.sheets if sheet.rows),
             "</body></html>\n",
         ]
         return "\n".join(parts)
@@ -114,20 +123,29 @@ class Report:
     def _head(self) -> str:
         decided = [band for band in self.bands if not (self.quick and band.needs_all_seeds)]
         kept = sum(band.kept for band in decided)
-        verdicts = [claim.verdict for claim in self.claims]
+        number_of_claims, outcome = _count([claim.verdict for claim in self.claims], self.texts.source)
         look = " This was a quick look: too few trials to judge the statistical rows." if self.quick else ""
         number, kind = self.texts.trials
         return (
             f"<h1>{escape(self.texts.title)}</h1><p>{_rich(self.texts.introduction)}</p>"
             f"<div class='sum'><div><b>{kept} of {len(decided)}</b>bands kept</div>"
-            f"<div><b>{verdicts.count('holds')} of {len(verdicts)}</b>claims of the thesis hold, "
-            f"{verdicts.count('partly')} partly</div>"
+            f"<div><b>{number_of_claims}</b>{escape(outcome)}</div>"
             f"<div><b>{escape(number)}</b>{escape(kind)}</div></div>"
             f"<p class='soft'>Seeds are 0, 1, 2, …: the same command gives the same numbers.{look} "
             f"{_rich(self.texts.remark)} <code>{escape(self.texts.command)}</code></p>"
             "<nav><a href='#bands'>Bands</a><a href='#claims'>Claims</a><a href='#figures'>Figures</a>"
             "<a href='#tables'>Tables</a></nav>"
         )
+
+
+def _count(verdicts: Sequence[str], source: str) -> tuple[str, str]:
+    """Number of the claims that hold out of all, and the words for it, in the words of the verdicts."""
+    if "reproduced" not in verdicts:
+        words = f"claims of the {source} hold, {verdicts.count('partly')} partly"
+        return f"{verdicts.count('holds')} of {len(verdicts)}", words
+    differ, missing = verdicts.count("differs"), verdicts.count("cannot be had")
+    words = f"claims of the {source} reproduced, {differ} differ, {missing} cannot be had"
+    return f"{verdicts.count('reproduced')} of {len(verdicts)}", words
 
 
 def _rich(text: str) -> str:
@@ -149,18 +167,18 @@ def _band_table(bands: Sequence[Band], quick: bool) -> str:
     return f"<div class='wide'><table>{head}{''.join(rows)}</table></div>"
 
 
-def _claim_table(claims: Sequence[Claim]) -> str:
+def _claim_table(claims: Sequence[Claim], source: str) -> str:
     rows = [
         f"<tr><td>{escape(claim.source)}</td><td>{_rich(claim.statement)}</td><td>{_rich(claim.measured)}</td>"
         f"<td class='chip {_MARKS[claim.verdict]}'>{claim.verdict}</td></tr>"
         for claim in claims
     ]
-    head = "<tr><th>where</th><th>the thesis</th><th>measured</th><th>verdict</th></tr>"
+    head = f"<tr><th>where</th><th>the {escape(source)}</th><th>measured</th><th>verdict</th></tr>"
     return f"<div class='wide'><table>{head}{''.join(rows)}</table></div>"
 
 
-def _sheet(sheet: Sheet) -> str:
-    """Columns "x" and "x ±" become one, the thesis's are set apart, and a group's name stands in its first row."""
+def _sheet(sheet: Sheet, source: str) -> str:
+    """Columns "x" and "x ±" become one, the source's are set apart, and a group's name stands in its first row."""
     heads: list[str] = []
     kinds: list[str] = []
     bodies: list[list[str]] = []
@@ -170,7 +188,7 @@ def _sheet(sheet: Sheet) -> str:
             continue
         worded = any(isinstance(cell, str) for cell in cells)
         heads.append(name)
-        kinds.append("" if worded else "t n" if "thesis" in name else "n")
+        kinds.append("" if worded else "t n" if source in name else "n")
         bodies.append(_texts(cells))
     head = "".join(f"<th class='{kind}'>{_rich(name)}</th>" for name, kind in zip(heads, kinds, strict=True))
     if len(bodies) > 2 and kinds[:2] == ["", ""]:

@@ -2,11 +2,12 @@
 
 import csv
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from benchmarks.thesis_report.contents import OPEN, Band, Claim, Sheet, judged
+from benchmarks.thesis_report.contents import OPEN, Band, Claim, Sheet, judged, redone
 from benchmarks.thesis_report.figures import Drawing, axes
 from benchmarks.thesis_report.page import Report, Texts
 
@@ -60,6 +61,19 @@ def test_the_page_stands_alone(tmp_path):
     rows = list(csv.reader((tmp_path / "t.csv").read_text().splitlines()))
     assert rows[1] == ["a", "1.25", "0.5", "2"]
     assert (tmp_path / "figure_3_7.svg").read_bytes().startswith(b"<?xml")
+
+
+def test_the_page_of_another_source_names_it_and_counts_in_its_verdicts(tmp_path):
+    texts = replace(TEXTS, source="paper")
+    sheet = Sheet("t", "Errors", ("row", "x", "x, paper"), (("a", 1.0, 2.0),))
+    verdicts = [redone(True), redone(False), redone(True), "cannot be had"]
+    claims = [Claim("Figure 5", "An error", "Measured", verdict) for verdict in verdicts]
+    Report(texts, False, [], claims, [sheet], []).write(tmp_path)
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "<b>2 of 4</b>claims of the paper reproduced, 1 differ, 1 cannot be had" in page
+    assert "<th>the paper</th>" in page
+    assert "<td class='t n'>2.000</td>" in page
+    assert "thesis" not in page
 
 
 def test_figures_of_our_own_are_named_by_their_title():
