@@ -1,1 +1,1 @@
-"""Reports of studies that redo a source text: bounded numbers, verdicts on its claims, tables and figures, on one page."""
+"""Reports of studies that redo a source: bounded numbers, verdicts on claims, tables and figures, on one page."""
