@@ -7,7 +7,7 @@ Methods:
   smoother     Kalman filter with zero-velocity updates and backward smoother (default)
   filter       the same without the smoother, from earlier readings only
   key-points   stable windows, gravity carried between them, two integrations; its windows of 0.2 s hardly fit into
-               the rests of ordinary walking, so it is for slow or single steps
+               the rests of ordinary walking, so it is for slow or single steps; --as-printed runs it by the letter
 
 A foot must rest on the ground for a moment in every stride, and should stand still for a second at the start. A capture
 with a sensor on each foot gives both feet in one frame, with step times and cadence.
@@ -17,6 +17,7 @@ Examples:
   mbkf imu stride left.csv right.csv --units acc=g,gyr=deg/s --rate 100 --out strides
   mbkf imu stride body.csv --sensor left_foot --sensor right_foot --level --out strides
   mbkf imu stride step.csv --method key-points --weights 0.2,0.4,0.4 --out step
+  mbkf imu stride step.csv --method key-points --as-printed --out printed
 
 Writes strides.csv, trajectory.csv, summary.json and feet.png, a picture with the rests marked (needs matplotlib, the
 extra 'figures').
@@ -61,6 +62,12 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--window", type=int, metavar="N", help="key points: samples per window at 50 Hz (10)"
     )
+    parser.add_argument(
+        "--as-printed",
+        action="store_true",
+        help="key points: the paper by the letter: weights 0.2,0.4,0.4, the gyroscope's bias from the first second, "
+        "and velocities that rests do not set to zero",
+    )
     add_out(parser, "DIR", "folder to write", required=True)
 
 
@@ -103,9 +110,11 @@ def _draw(measured: StrideMeasurement, path: Path) -> bool:
 
 
 def _settings(args: argparse.Namespace) -> StrideSettings:
+    from dataclasses import replace
+
     from mbkf.errors import InvalidInput
     from mbkf.imu.foot_filter import LEVEL_M, FootFilterSettings
-    from mbkf.imu.key_points import KeyPointSettings
+    from mbkf.imu.key_points import KeyPointSettings, as_printed
     from mbkf.trial.inertial.stride import StrideSettings
 
     own = {name: getattr(args, name) for name in ("threshold", "window") if getattr(args, name) is not None}
@@ -117,12 +126,14 @@ def _settings(args: argparse.Namespace) -> StrideSettings:
                 f"--weights {args.weights}: give three numbers, as in 0.1,0.45,0.45"
             ) from error
         own["weights"] = spread, change, rotation
-    if own and args.method != "key-points":
-        raise InvalidInput(f"--{next(iter(own))} belongs to --method key-points")
+    own_options = [*own, *(["as-printed"] if args.as_printed else [])]
+    if own_options and args.method != "key-points":
+        raise InvalidInput(f"--{own_options[0]} belongs to --method key-points")
     if args.level and args.method == "key-points":
         raise InvalidInput("--level belongs to the Kalman filter; leave it out with --method key-points")
     kalman = FootFilterSettings(level_m=LEVEL_M if args.level else None)
-    return StrideSettings(method=args.method, kalman=kalman, key_points=KeyPointSettings(**own))
+    key_points = replace(as_printed() if args.as_printed else KeyPointSettings(), **own)
+    return StrideSettings(method=args.method, kalman=kalman, key_points=key_points)
 
 
 def _feet(args: argparse.Namespace) -> list[ImuReadings]:

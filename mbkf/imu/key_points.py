@@ -12,28 +12,41 @@ study's pseudocode; its prose says the reverse, which fails): gravity is the mea
 Between two key points gravity is turned by the gyroscope from either side and blended (stride eqs. 2–4). The readings
 are then turned level by gravity's direction, gravity is taken off (stride eq. 5) and the rest is integrated twice
 (stride eq. 6).
+
+Three choices differ from the printed text by default; :func:`as_printed` gives the printed ones. The velocity is zero
+at key points, where equation 6 integrates over them. The gyroscope's bias is its mean over the first rest, where the
+study takes the first second, in rest or not. The constant c of equation 4, which the study leaves to its source, is
+half of the gap between two key points: for every other value the weight jumps at c.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.frames import attitude, exponential, rotate
 from mbkf.numerics.runs import runs
 
 USUAL_WEIGHTS, NOISY_WEIGHTS = (0.1, 0.45, 0.45), (0.2, 0.4, 0.4)
 """α_σ, α_μ (s²/m) and α_ω (s/rad) as the study has them: in general, and for noise and drift together."""
 
+BIAS_FROM = ("rest", "start")
+"""Readings whose mean angular velocity is the gyroscope's bias: those of the first rest, or the first ones."""
+
 _LOW_PASS_ORDER = 4
+
+StabilityMeasure = Callable[[Array, Array, tuple[float, float, float]], Array]
+"""Stability of windows: (K, N, 3) specific force, (K, N, 3) angular velocity and the three weights give (K,)."""
 
 
 @dataclass(frozen=True)
 class KeyPointSettings:
-    """The study's numbers, and one choice of ours.
+    """The study's numbers, and our choices where :func:`as_printed` has others.
 
     Attributes:
         rate_hz: Rate the readings are brought to.
@@ -43,6 +56,9 @@ class KeyPointSettings:
         threshold: E_s.
         low_pass_hz: Corner of the accelerometer's low pass (Butterworth, no delay); None: no low pass.
         still_s: The mean angular velocity of the first rest, at most this long, is the gyroscope's bias; 0 leaves it.
+        bias_from: "rest", or "start": the bias is the mean over the first ``still_s`` of the readings, as printed.
+        zero_velocity: The velocity is zero at key points; False: stride eq. 6 as printed, which integrates over them.
+        middle: Constant c of stride eq. 4 as a share of the gap between two key points.
         loss: α of stride eq. 2, the share of gravity lost per step from a key point; the study sets it by trial.
         by_sample: Carry gravity and integrate sample by sample between key windows, not window by window (ours).
     """
@@ -54,6 +70,9 @@ class KeyPointSettings:
     threshold: float = 1.0
     low_pass_hz: float | None = 15.0
     still_s: float = 1.0
+    bias_from: Literal["rest", "start"] = "rest"
+    zero_velocity: bool = True
+    middle: float = 0.5
     loss: float = 0.0
     by_sample: bool = False
 
@@ -66,10 +85,25 @@ class KeyPointSettings:
             self.rate_hz > 0.0 and self.threshold > 0.0 and self.still_s >= 0.0 and 0.0 <= self.loss < 1.0
         ):
             raise InvalidInput("rate and threshold must be positive, the loss at least 0 and below 1")
+        if self.bias_from not in BIAS_FROM:
+            raise UnknownName("source of the gyroscope's bias", self.bias_from, BIAS_FROM)
+        if not 0.0 < self.middle < 1.0:
+            raise InvalidInput(
+                f"the constant c must lie inside the gap, between 0 and 1, got {self.middle:g}"
+            )
         if self.low_pass_hz is not None and not 0.0 < self.low_pass_hz < 0.5 * self.rate_hz:
             raise InvalidInput(
                 f"the low pass must lie between 0 and half of {self.rate_hz:g} Hz, got {self.low_pass_hz:g} Hz"
             )
+
+
+def as_printed(weights: tuple[float, float, float] = NOISY_WEIGHTS) -> KeyPointSettings:
+    """The study's numbers and equations as printed: its first second for the bias, its equation 6 for the position.
+
+    Args:
+        weights: α_σ, α_μ, α_ω; the study takes :data:`NOISY_WEIGHTS` for real readings.
+    """
+    return KeyPointSettings(weights=weights, bias_from="start", zero_velocity=False)
 
 
 @dataclass(frozen=True)
@@ -99,6 +133,7 @@ def follow_key_points(
     settings: KeyPointSettings,
     *,
     start_s: float = 0.0,
+    measure: StabilityMeasure | None = None,
 ) -> KeyPointPath:
     """Runs the algorithm.
 
@@ -108,6 +143,7 @@ def follow_key_points(
         rate_hz: Sample rate; other rates than the settings' are brought to it.
         settings: Windows and weights.
         start_s: Time of the first sample.
+        measure: Stability of windows, small where the foot rests; :func:`stability` when None.
 
     Raises:
         InvalidInput: Key points are missing, or every window is incomplete.
@@ -119,7 +155,7 @@ def follow_key_points(
         raise InvalidInput(f"{len(f)} samples at {settings.rate_hz:g} Hz hold less than two windows of {N}")
     f, w = (x[settings.first : settings.first + K * N] for x in (f, w))
     windows = f.reshape(K, N, 3)
-    unsteadiness = stability(windows, w.reshape(K, N, 3), settings.weights)
+    unsteadiness = (measure or stability)(windows, w.reshape(K, N, 3), settings.weights)
     key = unsteadiness < settings.threshold
     if not key.any():
         raise InvalidInput(
@@ -136,9 +172,9 @@ def follow_key_points(
     else:
         f, w = means, w.reshape(K, N, 3).mean(axis=1)
         time, step = time.reshape(K, N).mean(axis=1), N * step
-    gravity = _between_key_points(gravity, key, step * w, settings.loss)
+    gravity = _between_key_points(gravity, key, step * w, settings)
     linear = rotate(attitude(gravity), f - gravity)
-    velocity, position = _integrated(linear, key, step)
+    velocity, position = _integrated(linear, key & settings.zero_velocity, step)
     return KeyPointPath(time, position, velocity, gravity, key, unsteadiness)
 
 
@@ -181,12 +217,12 @@ def stability(force_windows: Array, rate_windows: Array, weights: tuple[float, f
     return total
 
 
-def blend_weight(x: Array) -> Array:
+def blend_weight(x: Array, middle: float = 0.5) -> Array:
     """Weight W of the gravity carried backwards (stride eq. 4), at x from 0 (key point before) to 1 (after).
 
-    2x² in the first half and 1 − 2(1 − x)² in the second: each side weighs most near its own key point.
+    2x² before ``middle`` (the constant c) and 1 − 2(1 − x)² after it: each side weighs most near its own key point.
     """
-    return np.where(x < 0.5, 2.0 * x**2, 1.0 - 2.0 * (1.0 - x) ** 2)
+    return np.where(x < middle, 2.0 * x**2, 1.0 - 2.0 * (1.0 - x) ** 2)
 
 
 def _low_passed(x: Array, corner_hz: float, rate_hz: float) -> Array:
@@ -203,25 +239,25 @@ def _low_passed(x: Array, corner_hz: float, rate_hz: float) -> Array:
 
 
 def _bias(w: Array, key: BoolArray, settings: KeyPointSettings) -> Array:
-    """(3,) mean angular velocity (T, 3) of the first rest."""
+    """(3,) mean angular velocity (T, 3) of the first rest, or of the first readings."""
     if settings.still_s == 0.0:
         return np.zeros(3)
-    start, stop = runs(key)[0]
+    start, stop = runs(key)[0] if settings.bias_from == "rest" else (0, len(w))
     size = max(1, round(settings.still_s * settings.rate_hz))
     mean: Array = w[start : min(stop, start + size)].mean(axis=0)
     return mean
 
 
-def _between_key_points(gravity: Array, key: BoolArray, angle: Array, loss: float) -> Array:
+def _between_key_points(gravity: Array, key: BoolArray, angle: Array, settings: KeyPointSettings) -> Array:
     """(K, 3) gravity in the sensor's axes everywhere, from that at key points (stride eqs. 2–4).
 
     Args:
         gravity: (K, 3) at key points.
         key: (K,) key points.
         angle: (K, 3) rotation of the sensor during each step, rad.
-        loss: α.
+        settings: Loss α and constant c.
     """
-    found = gravity.copy()
+    found, loss = gravity.copy(), settings.loss
     # A vector fixed in the world turns against the sensor; a step reaches from middle to middle of two windows.
     halfway = exponential(-0.5 * (angle[1:] + angle[:-1]))
     back = halfway * np.array([-1.0, -1.0, -1.0, 1.0])
@@ -237,16 +273,16 @@ def _between_key_points(gravity: Array, key: BoolArray, angle: Array, loss: floa
         if start == 0 or stop == len(key):
             found[inside] = (backwards if start == 0 else forwards)[inside]
             continue
-        W = blend_weight(np.arange(1, stop - start + 1) / (stop - start + 1))[:, None]
+        W = blend_weight(np.arange(1, stop - start + 1) / (stop - start + 1), settings.middle)[:, None]
         found[inside] = (1.0 - W) * forwards[inside] + W * backwards[inside]
     return found
 
 
-def _integrated(acceleration: Array, key: BoolArray, step_s: float) -> tuple[Array, Array]:
-    """Velocity (K, 3), zero at key points, and position (K, 3) by the trapezoidal rule (stride eq. 6)."""
+def _integrated(acceleration: Array, held: BoolArray, step_s: float) -> tuple[Array, Array]:
+    """Velocity (K, 3), zero where held, and position (K, 3) by the trapezoidal rule (stride eq. 6)."""
     velocity = np.zeros_like(acceleration)
-    for k in range(1, len(key)):
-        if not key[k]:
+    for k in range(1, len(held)):
+        if not held[k]:
             velocity[k] = velocity[k - 1] + 0.5 * step_s * (acceleration[k - 1] + acceleration[k])
     position = np.zeros_like(velocity)
     position[1:] = np.cumsum(0.5 * step_s * (velocity[1:] + velocity[:-1]), axis=0)

@@ -1,12 +1,16 @@
 """`mbkf imu stride`."""
 
+import argparse
 import json
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from mbkf.cli.imu_stride import _settings, options
 from mbkf.cli.main import main
+from mbkf.imu.key_points import NOISY_WEIGHTS, KeyPointSettings, as_printed
 from tests.foot_walks import foot_walk
 
 pytestmark = pytest.mark.slow
@@ -89,6 +93,21 @@ def test_key_points_take_their_own_options(tables, tmp_path):
     assert run(tables / "left.csv", *words, "--out", tmp_path / "out") == 0
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["method"] == "key-points"
+
+
+def test_the_paper_runs_by_the_letter(tables, tmp_path, refused):
+    def settings(*words):
+        parser = argparse.ArgumentParser()
+        options(parser)
+        return _settings(parser.parse_args(["one.csv", "--out", "x", "--method", "key-points", *words]))
+
+    assert settings("--as-printed").key_points == as_printed(NOISY_WEIGHTS)
+    assert settings("--as-printed", "--window", "5").key_points == replace(as_printed(), window=5)
+    assert settings().key_points == KeyPointSettings()
+    refused(
+        ["imu", "stride", tables / "left.csv", "--as-printed", "--out", tmp_path / "x"],
+        "--as-printed belongs to --method key-points",
+    )
 
 
 def test_bad_input_is_refused(tables, tmp_path, refused):

@@ -8,11 +8,12 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.key_points import (
     NOISY_WEIGHTS,
     KeyPointSettings,
     _between_key_points,
+    as_printed,
     blend_weight,
     follow_key_points,
     stability,
@@ -56,6 +57,14 @@ def test_the_blend_rises_without_a_jump():
     assert 0.0 < np.diff(weights).min() < np.diff(weights).max() < 3e-3
 
 
+def test_half_of_the_gap_is_the_only_constant_without_a_jump():
+    x = np.linspace(0.0, 1.0, 1001)
+    # At 0.25 from 2·0.25² down to 1 − 2·0.75², at 0.75 from 2·0.75² down to 1 − 2·0.25².
+    assert np.diff(blend_weight(x, 0.25)).min() == pytest.approx(-0.25, abs=0.01)
+    assert np.diff(blend_weight(x, 0.75)).min() == pytest.approx(-0.25, abs=0.01)
+    assert np.diff(blend_weight(x)).min() > 0.0
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_gravity_is_carried_exactly_by_a_gyroscope_that_reads_exactly(seed):
     """Steady rotation: wherever the key points are, gravity between them is the true one."""
@@ -65,7 +74,7 @@ def test_gravity_is_carried_exactly_by_a_gyroscope_that_reads_exactly(seed):
     true = turned.inv().apply([0.0, 0.0, GRAVITY_M_S2])
     key = np.zeros(30, dtype=bool)
     key[[3, 4, 12, 25]] = True
-    found = _between_key_points(np.where(key[:, None], true, np.nan), key, angle, 0.0)
+    found = _between_key_points(np.where(key[:, None], true, np.nan), key, angle, KeyPointSettings())
     assert np.allclose(found, true)
 
 
@@ -74,7 +83,7 @@ def test_a_biased_gyroscope_does_least_harm_near_the_key_points():
     true = np.tile([0.0, 0.0, GRAVITY_M_S2], (21, 1))
     key = np.zeros(21, dtype=bool)
     key[[0, 20]] = True
-    off = np.linalg.norm(_between_key_points(true, key, angle, 0.0) - true, axis=1)
+    off = np.linalg.norm(_between_key_points(true, key, angle, KeyPointSettings()) - true, axis=1)
     assert off[0] == off[20] == 0.0
     # Forwards and backwards drift in opposite directions and cancel in the middle.
     assert off[10] < off[5] < 0.6
@@ -85,7 +94,7 @@ def test_loss_shortens_gravity_away_from_key_points():
     angle, key = np.zeros((9, 3)), np.zeros(9, dtype=bool)
     key[[0, 8]] = True
     full = np.tile([0.0, 0.0, GRAVITY_M_S2], (9, 1))
-    found = np.linalg.norm(_between_key_points(full, key, angle, 0.1), axis=1)
+    found = np.linalg.norm(_between_key_points(full, key, angle, KeyPointSettings(loss=0.1)), axis=1)
     assert found[4] == pytest.approx(GRAVITY_M_S2 * 0.9**4)
     assert found[0] == found[8] == GRAVITY_M_S2
 
@@ -106,6 +115,47 @@ def test_the_first_rest_takes_a_constant_bias_away():
     kept = path_of(cubic_steps("drift"), still_s=0.0)
     assert np.allclose(clean.position_m, drift.position_m)
     assert not np.allclose(clean.position_m, kept.position_m, atol=1e-3)
+
+
+def test_as_printed_velocity_runs_on_through_rests_and_drift_grows_with_it():
+    """The constant that drift adds to a gap's acceleration stays in the velocity: its way grows with the rest."""
+    walk = cubic_steps("drift")
+    kept, printed = (path_of(walk, still_s=0.0, zero_velocity=zero) for zero in (True, False))
+    assert np.array_equal(kept.still, printed.still)
+    assert np.abs(kept.velocity_m_s[kept.still]).max() == 0.0
+    assert np.abs(printed.velocity_m_s[-1]).max() > 0.01
+    assert np.allclose(kept.position_m[-4:], kept.position_m[-1], atol=1e-12)
+    steps = np.diff(printed.position_m[-4:], axis=0)
+    assert np.allclose(steps, steps[0], atol=1e-3)
+    assert np.abs(steps[0]).max() > 2e-3
+
+
+def test_as_printed_bias_is_that_of_the_first_second_even_if_the_foot_moves():
+    walk = cubic_steps("drift")
+    rates = walk.angular_velocity_rad_s.copy()
+    rates[25:50, 1] += 3.0  # within the first second
+    found = {
+        source: follow_key_points(
+            walk.specific_force_mps2, rates, RATE_HZ, KeyPointSettings(bias_from=source)
+        ).position_m
+        for source in ("rest", "start")
+    }
+    assert np.abs(found["rest"] - found["start"]).max() > 0.1
+    still = as_printed()
+    assert (still.bias_from, still.zero_velocity, still.weights) == ("start", False, NOISY_WEIGHTS)
+    assert np.allclose(path_of(walk, bias_from="start").position_m, path_of(walk).position_m)
+
+
+def test_another_measure_of_stability_chooses_the_key_points():
+    walk = cubic_steps()
+    found = follow_key_points(
+        walk.specific_force_mps2,
+        walk.angular_velocity_rad_s,
+        RATE_HZ,
+        KeyPointSettings(),
+        measure=lambda force, rates, weights: np.where(np.arange(len(force)) == 3, 0.0, 2.0),
+    )
+    assert np.flatnonzero(found.still).tolist() == [3]
 
 
 def test_sample_by_sample_beats_windows_on_the_clean_walk():
@@ -139,11 +189,24 @@ def test_without_a_stable_window_there_is_no_answer():
 
 
 @pytest.mark.parametrize(
-    "bad", [{"window": 1}, {"first": -1}, {"threshold": 0.0}, {"loss": 1.0}, {"low_pass_hz": 30.0}]
+    "bad",
+    [
+        {"window": 1},
+        {"first": -1},
+        {"threshold": 0.0},
+        {"loss": 1.0},
+        {"low_pass_hz": 30.0},
+        {"middle": 1.0},
+    ],
 )
 def test_bad_settings_are_refused(bad):
     with pytest.raises(InvalidInput):
         KeyPointSettings(**bad)
+
+
+def test_an_unknown_source_of_the_bias_is_refused():
+    with pytest.raises(UnknownName, match="known are rest, start"):
+        KeyPointSettings(bias_from="end")
 
 
 def test_readings_too_slow_for_the_low_pass_are_refused():
