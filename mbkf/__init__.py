@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from mbkf.trial.scale import scale
     from mbkf.trial.synth import synthesise
     from mbkf.trial.tracker import Estimate, Tracker, standard_blocks
+    from mbkf.viz.meshcat.playing import play
+    from mbkf.viz.meshcat.visualiser import show
 
 _HOMES = {
     "Block": "mbkf.sensors.block",
@@ -75,6 +77,7 @@ _HOMES = {
     "orient": "mbkf.trial.inertial.orient",
     "overwriting": "mbkf.io.written",
     "plate_wrenches": "mbkf.sensors.contact.plates",
+    "play": "mbkf.viz.meshcat.playing",
     "read_capture": "mbkf.io.capture",
     "read_imu": "mbkf.io.imu.files",
     "read_reconstruction": "mbkf.io.results_folder",
@@ -84,6 +87,7 @@ _HOMES = {
     "register_imu_reader": "mbkf.io.imu.files",
     "register_reader": "mbkf.io.capture",
     "scale": "mbkf.trial.scale",
+    "show": "mbkf.viz.meshcat.visualiser",
     "standard_blocks": "mbkf.trial.tracker",
     "summarise": "mbkf.trial.results.summary",
     "synthesise": "mbkf.trial.synth",
@@ -125,6 +129,7 @@ __all__ = [
     "orient",
     "overwriting",
     "plate_wrenches",
+    "play",
     "read_capture",
     "read_imu",
     "read_reconstruction",
@@ -134,6 +139,7 @@ __all__ = [
     "register_imu_reader",
     "register_reader",
     "scale",
+    "show",
     "standard_blocks",
     "summarise",
     "synthesise",

@@ -261,6 +261,7 @@ DOORS = {
     "mbkf/cli/main.py": "opens the null device",
     "mbkf/cli/closed_streams.py": "opens the null device",
     "mbkf/study/batch/worker.py": "opens the null device",
+    "mbkf/viz/meshcat/visualiser.py": "opens a browser",
 }
 """Files that open others by themselves, each with its reason."""
 

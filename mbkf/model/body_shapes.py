@@ -17,6 +17,9 @@ from mbkf.model.body import Body
 PLAIN_RADII_M = (0.045, 0.035)
 """Radii of a limb of the reference body without a shape in the body file."""
 
+COLOURS = {"": (0.725, 0.769, 0.812), "right": (0.508, 0.672, 0.777), "left": (0.758, 0.648, 0.568)}
+"""The viewer's colours (mbkf/viz/assets/scene.js) by side: grey, towards blue or vermillion; sRGB, 0 to 1."""
+
 
 @dataclass(frozen=True)
 class Shape:
@@ -36,6 +39,12 @@ class Shape:
 def segment_shapes(model: Body) -> dict[str, tuple[Shape, ...]]:
     """Shapes of every segment of a person, m, by segment name in the model's order."""
     return {name: _shapes(model, name) for name in model.joints}
+
+
+def side_of(segment: str) -> str:
+    """A segment's key in :data:`COLOURS`: "right", "left", or "" on the midline."""
+    side = segment.split("_", maxsplit=1)[0]
+    return side if side in COLOURS else ""
 
 
 def as_plain(shapes: dict[str, tuple[Shape, ...]]) -> list[dict[str, object]]:

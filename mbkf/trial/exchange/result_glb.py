@@ -11,18 +11,12 @@ from mbkf.conventions import Array
 from mbkf.io.atomic import replacing
 from mbkf.io.glb import GlbMaterial, GlbMesh, GlbMotion, GlbNode, glb_bytes
 from mbkf.io.results import Reconstruction
-from mbkf.model.body_shapes import segment_shapes
+from mbkf.model.body_shapes import COLOURS, segment_shapes, side_of
 from mbkf.model.shape_meshes import joined, shape_mesh
 from mbkf.trial.exchange.animation import TO_ANIMATION, AnimatedBody, animated_body, held_rows
 
-MATERIALS = (
-    GlbMaterial("middle", (0.725, 0.769, 0.812), 0.75),
-    GlbMaterial("right", (0.508, 0.672, 0.777), 0.75),
-    GlbMaterial("left", (0.758, 0.648, 0.568), 0.75),
-)
-"""The viewer's colours (mbkf/viz/assets/scene.js): grey, towards blue on the right and vermillion on the left."""
-
-_SIDES = {"right": 1, "left": 2}
+MATERIALS = tuple(GlbMaterial(side or "middle", colour, 0.75) for side, colour in COLOURS.items())
+"""A surface for each side."""
 
 
 def write_result_glb(r: Reconstruction, path: str | Path) -> None:
@@ -53,7 +47,7 @@ def glb_nodes(body: AnimatedBody) -> tuple[GlbNode, ...]:
     nodes = []
     for k, name in enumerate(body.names):
         mesh = joined(shape_mesh(shape) for shape in shapes[name])
-        material = _SIDES.get(name.split("_")[0], 0)
+        material = list(COLOURS).index(side_of(name))
         surface = GlbMesh(
             mesh.vertices_m @ TO_ANIMATION.T, mesh.normals @ TO_ANIMATION.T, mesh.triangles, material
         )
