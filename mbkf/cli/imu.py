@@ -68,6 +68,11 @@ def add_standing_options(parser: argparse.ArgumentParser) -> None:
 def add_person_options(parser: argparse.ArgumentParser) -> None:
     """Adds the options that name the wearer of the sensors."""
     parser.add_argument("--subject", metavar="SUBJECT.toml", help="the scaled person")
+    add_stature_options(parser)
+
+
+def add_stature_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options of a person who is not scaled."""
     parser.add_argument(
         "--mass", metavar="KG", type=body_mass, help="body mass of a person who is not scaled"
     )

@@ -1,11 +1,14 @@
-"""Readings of virtual sensors on a reconstructed or synthetic motion.
+"""Readings of virtual sensors on a reconstructed, synthetic or AMASS motion.
 
-Computes the readings from the motion's own velocities and accelerations.
+Computes the readings from the motion's own velocities and accelerations. A motion of AMASS (SMPL, SMPL-H or SMPL-X
+parameters, .npz) moves the segments of the person of --subject, or of --mass and --height, by its joint rotations; its
+betas are not used, since they need a licensed model.
 
 Examples:
   mbkf imu synth result/motion.h5 --out imus.csv
   mbkf imu synth walk7/truth.h5 --segments right_thigh,right_foot --rate 60 --seed 3 --out imus.csv
   mbkf imu synth walk7/truth.h5 --mounts mounts.toml --perfect --out imus.csv
+  mbkf imu synth S1_Walking_poses.npz --mass 72 --height 1.78 --rate 60 --out imus.csv
 
 Writes angular velocity, specific force and magnetic field of every sensor with the true orientation (NWU, x of the
 motion's world as north), and FILE.toml with the sensors' places.
@@ -16,8 +19,13 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from mbkf.cli.imu import add_stature_options, person_of
 from mbkf.cli.options import add_out, comma_separated, natural
+
+if TYPE_CHECKING:
+    from mbkf.trial.inertial.synth import BodyMotion
 
 DEGREES, SI = math.pi / 180.0, 1.0
 ERRORS = {
@@ -34,10 +42,14 @@ ERRORS = {
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument(
-        "motion", metavar="MOTION.h5", help="motion.h5 of 'reconstruct' or truth.h5 of 'synth'"
+        "motion", metavar="MOTION", help="motion.h5 of 'reconstruct', truth.h5 of 'synth', or .npz of AMASS"
     )
     parser.add_argument(
-        "--subject", metavar="SUBJECT.toml", help="of a truth.h5 (default: subject.toml beside it)"
+        "--subject", metavar="SUBJECT.toml", help="of a truth.h5 (default: subject.toml beside it) or an .npz"
+    )
+    add_stature_options(parser)
+    parser.add_argument(
+        "--up", choices=("z", "y"), help="upward axis of an .npz (default: z, as AMASS has it)"
     )
     parser.add_argument("--segments", metavar="A,B", help="segments with a sensor (default: the usual eight)")
     parser.add_argument(
@@ -67,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic_folder import replacing_beside
     from mbkf.io.imu.mount import read_mounts, write_mounts
     from mbkf.io.imu.write import write_imu_csv
-    from mbkf.trial.inertial.synth import read_motion, synthesise_imus
+    from mbkf.trial.inertial.synth import synthesise_imus
 
     out = Path(args.out)
     if out.suffix.lower() != ".csv":
@@ -79,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
         **{ERRORS[name][0]: ERRORS[name][1] * sd for name, sd in given.items() if sd is not None},
     )
     mounts, readings = synthesise_imus(
-        read_motion(args.motion, args.subject),
+        motion_of(args),
         segments=EIGHT if args.segments is None else comma_separated(args.segments),
         mounts=() if args.mounts is None else read_mounts(args.mounts),
         errors=errors,
@@ -94,3 +106,23 @@ def run(args: argparse.Namespace) -> int:
     print(f"{out}: {readings[0].samples} samples at {readings[0].rate_hz:g} Hz of {names}")
     print(out.with_suffix(".toml"))
     return 0
+
+
+def motion_of(args: argparse.Namespace) -> BodyMotion:
+    """The motion that the command names.
+
+    Raises:
+        InvalidInput: An option belongs to another kind of file, or an .npz has no person.
+        FileFormatError: The file is missing or of another kind.
+    """
+    from mbkf.errors import InvalidInput
+    from mbkf.trial.inertial.synth import read_amass_motion, read_motion
+
+    if Path(args.motion).suffix.lower() == ".npz":
+        return read_amass_motion(args.motion, person_of(args), args.up or "z")
+    for name in ("mass", "height", "up"):
+        if getattr(args, name) is not None:
+            raise InvalidInput(
+                f"--{name} is for an .npz of AMASS; {args.motion} states its own, leave --{name} out"
+            )
+    return read_motion(args.motion, args.subject)

@@ -13,6 +13,8 @@ from mbkf.io.imu.mount import read_mounts
 from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.storage import read_storage
 from tests.imu.turning import turning
+from tests.smpl_files import marching as marching_skeleton
+from tests.smpl_files import write_amass
 from tests.trial.inertial.test_angles import SAGITTAL, marching
 
 
@@ -111,6 +113,46 @@ def test_synth_writes_readings_and_mounts(tmp_path):
     code = main([*words[:-2], "--causal", "--out", str(tmp_path / "r")])
     assert code == 0
     assert json.loads((tmp_path / "r" / "summary.json").read_text())["marker_rms_mm"] < 10.0
+
+
+@pytest.mark.slow
+def test_amass_to_virtual_sensors_to_madgwick_to_angles(tmp_path, capsys):
+    """Joint angles come back as the file has them, through sensors and Madgwick's filter."""
+    made = marching_skeleton()
+    file, sensors = write_amass(tmp_path / "walk_poses.npz", made), tmp_path / "imus.csv"
+    person = ["--mass", "70", "--height", "1.75"]
+    words = ["imu", "synth", str(file), *person, "--perfect", "--neat"]
+    assert main([*words, "--out", str(sensors)]) == 0
+    assert "500 samples at 100 Hz of pelvis" in capsys.readouterr().out
+    words = ["imu", "orient", str(sensors), "--filter", "madgwick", "--frame", "NWU"]
+    assert main([*words, "--out", str(tmp_path / "o")]) == 0
+    rows = json.loads((tmp_path / "o" / "orientation.json").read_text())["sensors"]
+    assert len(rows) == 8
+    assert max(row["error_deg"]["total"] for row in rows) < 6.0
+    words = ["imu", "angles", str(sensors), "--filter", "madgwick", "--standing", "0:1.5"]
+    assert main([*words, "--out", str(tmp_path / "a")]) == 0
+    table = read_storage(tmp_path / "a" / "angles.mot")
+    for name, joint, sign in (("hip_flexion_l", 1, -1.0), ("knee_angle_r", 5, 1.0), ("knee_angle_l", 4, 1.0)):
+        wanted = sign * np.degrees(made[:, joint, 0])
+        found = np.abs(table.column(name)) * np.sign(wanted.mean())
+        assert np.sqrt(((found - wanted) ** 2).mean()) < 6.0, name
+
+
+def test_an_amass_file_needs_motion_and_a_wearer(tmp_path, capsys):
+    def refused(*words):
+        out = tmp_path / "x.csv"
+        assert main(["imu", "synth", *map(str, words), "--out", str(out)]) == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1
+        assert not out.exists()
+        return told
+
+    made = marching_skeleton(0.2)
+    shape = write_amass(tmp_path / "shape.npz", made, poses=None)
+    assert "holds no 'poses'" in refused(shape, "--mass", 70, "--height", 1.75)
+    motion = write_amass(tmp_path / "a.npz", made)
+    assert "--mass KG and --height M" in refused(motion)
+    assert "leave --up out" in refused("motion.h5", "--up", "y")
 
 
 @pytest.mark.parametrize(

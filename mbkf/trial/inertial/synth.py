@@ -1,4 +1,4 @@
-"""Virtual sensors on a motion that was reconstructed (``motion.h5``) or made (``truth.h5``)."""
+"""Virtual sensors on a motion that was reconstructed (``motion.h5``), made (``truth.h5``) or is of AMASS (``.npz``)."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.placement import EIGHT, typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
+from mbkf.io.amass import read_amass
 from mbkf.io.imu.mount import ImuMount
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.results_h5 import read_h5
 from mbkf.io.subject import Subject, read_subject
 from mbkf.io.truth import read_truth
 from mbkf.model.human import HumanModel
+from mbkf.synthesis.smpl import motion_of_smpl
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,24 @@ def read_motion(path: str | Path, subject: str | Path | None = None) -> BodyMoti
         raise InvalidInput(f"{path}: frames in the middle were not tracked; virtual sensors need them all")
     part = slice(first, last)
     return BodyMotion(_body(made.subject), made.times_s[part], made.q[part], made.v[part], made.a[part])
+
+
+def read_amass_motion(path: str | Path, person: Subject, up: str = "z") -> BodyMotion:
+    """Reads a motion of AMASS onto the body of a person (:func:`mbkf.synthesis.smpl.motion_of_smpl`).
+
+    Args:
+        path: The file, ``.npz``.
+        person: The person, whose segments have lengths of their own.
+        up: Axis of the file's world that points up, "z" (AMASS) or "y".
+
+    Raises:
+        FileFormatError: The file is missing, damaged or holds no motion.
+        InvalidInput: Fewer than six frames.
+        UnknownName: Another axis.
+    """
+    model = _body(person)
+    moved = motion_of_smpl(model, read_amass(path), up)
+    return BodyMotion(model, moved.times_s, moved.q, moved.v, moved.a)
 
 
 def _body(person: Subject) -> HumanModel:
