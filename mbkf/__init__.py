@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from mbkf.io.subject import read_subject, write_subject
     from mbkf.io.written import overwriting
     from mbkf.model.body_file import load_body
+    from mbkf.model.casadi_dynamics import CasadiDynamics, casadi_dynamics
     from mbkf.model.clinical import ClinicalAngles
     from mbkf.model.human import HumanModel
     from mbkf.model.layout import ExtraState, Layout
@@ -49,6 +50,7 @@ _HOMES = {
     "Block": "mbkf.sensors.block",
     "Capture": "mbkf.io.records",
     "CaptureOptions": "mbkf.io.capture_options",
+    "CasadiDynamics": "mbkf.model.casadi_dynamics",
     "ClinicalAngles": "mbkf.model.clinical",
     "Estimate": "mbkf.trial.tracker",
     "ExtraState": "mbkf.model.layout",
@@ -69,6 +71,7 @@ _HOMES = {
     "Rows": "mbkf.sensors.block",
     "Tracker": "mbkf.trial.tracker",
     "batch": "mbkf.study.batch.run",
+    "casadi_dynamics": "mbkf.model.casadi_dynamics",
     "estimate_inertia": "mbkf.trial.inertia.estimate",
     "export_result": "mbkf.trial.export",
     "label": "mbkf.trial.label",
@@ -99,6 +102,7 @@ __all__ = [
     "Block",
     "Capture",
     "CaptureOptions",
+    "CasadiDynamics",
     "ClinicalAngles",
     "Estimate",
     "ExtraState",
@@ -121,6 +125,7 @@ __all__ = [
     "Tracker",
     "__version__",
     "batch",
+    "casadi_dynamics",
     "estimate_inertia",
     "export_result",
     "label",

@@ -97,6 +97,8 @@ ELSEWHERE = {
     "model.trunk_sections.TrunkSections.state": "model/test_trunk_sections.py",
     "scaling.records.ShownMarkers.by_factors": "scaling/test_problem.py test_gradient_by_poses_factors_and_offsets",
     "scaling.records.ShownMarkers.by_pose": "scaling/test_problem.py test_gradient_by_poses_factors_and_offsets",
+    "model.casadi_dynamics.casadi_dynamics": "model/test_casadi_dynamics.py",
+    "model.symbolic.recursions.world_jacobian": "model/symbolic/test_recursions.py",
     "sensors.pose_fit.joint_by_joint": "sensors/test_pose_fit.py",
 }
 """What holds no derivative of its own or is algebra: the test file that checks each, and the name it has

@@ -42,7 +42,8 @@ class CompiledTree:
         joints, places, inertias = model.joints[1:], model.jointPlacements, model.inertias
         kinds = [KINDS[joint.shortname()] for joint in joints]
         axes = [
-            _axis(joint) if kind == HINGE else np.zeros(3) for joint, kind in zip(joints, kinds, strict=True)
+            hinge_axis(joint) if kind == HINGE else np.zeros(3)
+            for joint, kind in zip(joints, kinds, strict=True)
         ]
         self.handle = kernel.make_tree(
             model.nq,
@@ -130,7 +131,7 @@ def _read(values: Array) -> Array:
     return np.ascontiguousarray(values, dtype=float)
 
 
-def _axis(joint: pin.JointModel) -> Array:
+def hinge_axis(joint: pin.JointModel) -> Array:
     """(3,) unit axis of a hinge, in its own frame."""
     data = joint.createData()
     joint.calc(data, np.zeros(joint.idx_q + joint.nq))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from mbkf.model.layout import Layout
+from mbkf.model.soles import sole_locals
 from mbkf.sensors.block import Notes, OperatingPoint
 from mbkf.sensors.contact.records import Planted
 from mbkf.sensors.contact.rules import STANDING
-from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.planted import PlantedDecision, PlantedFeet, PlantedSettings, lying_level, standing_still
 from tests.motions import central_difference, moderate_pose, reference_model

@@ -20,10 +20,10 @@ from mbkf.kernel.contact import (
 )
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
+from mbkf.model.soles import sole_locals
 from mbkf.sensors.contact.floor import fall_frames, frames_of
 from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact, PackedMemory
 from mbkf.sensors.contact.rules import BELT_WINDOW_S, LIMITS, STILL_FLOOR_S
-from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.contact.stances import free_stance, shared_between
 
 _CONTACTS = tuple((Contact((bits & 3) - 1), Contact((bits >> 2) - 1)) for bits in range(KINDS + 1))

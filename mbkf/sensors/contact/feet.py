@@ -10,8 +10,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.soles import sole_locals
 from mbkf.sensors.contact.rules import FACES_DOWN
-from mbkf.sensors.contact.soles import Sole, sole_locals
+from mbkf.sensors.contact.soles import Sole
 
 Vector = tuple[float, float, float]
 """A vector in the world."""

@@ -9,21 +9,11 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.soles import sole_locals
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 Sole = Sequence[Sequence[float]]
 """World positions of heel, ball and toe end of one sole, m."""
-
-
-def sole_locals(model: Body) -> tuple[tuple[str, ...], Array]:
-    """Heel, ball and toe end of right and left sole: their segments (6) and places (6, 3) in those, m."""
-    segments, places = [], []
-    for sole in model.roles.soles:
-        scale = model.axis_scale(model.description.segment(sole.segment))
-        for x in (sole.heel_x_m, sole.ball_x_m, sole.toe_x_m):
-            segments.append(sole.segment)
-            places.append(np.array([x, 0.5 * (sole.inner_y_m + sole.outer_y_m), sole.height_m]) * scale)
-    return tuple(segments), np.array(places)
 
 
 def sole_points(model: Body, q: Array) -> Array:

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from mbkf.model.soles import sole_locals
 from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.rules import FACES_DOWN
-from mbkf.sensors.contact.soles import sole_locals, sole_points
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import moderate_pose, reference_model
 
