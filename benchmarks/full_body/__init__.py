@@ -12,6 +12,7 @@ from benchmarks.full_body.accuracy import accuracy_findings, lost_by_fdmc, trial
 from benchmarks.full_body.claims import survey_claims
 from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
 from benchmarks.full_body.filters import FCDI
+from benchmarks.full_body.observability import observability_findings
 from benchmarks.full_body.occlusion import measured, occlusion_findings
 from benchmarks.full_body.occlusion_drawings import occlusion_drawings
 from benchmarks.full_body.real import real_findings, real_scores
@@ -41,6 +42,7 @@ def run(context: Context) -> list[Check]:
         occlusion_findings(hidden),
         real_findings(real),
         single_marker_findings(sliding),
+        observability_findings(),
         speed_findings(speed),
     ]
     bands = [band for part in parts for band in part.bands]

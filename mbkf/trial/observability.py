@@ -54,13 +54,8 @@ def check_protocol(protocol: Protocol, lost: Collection[str] = ()) -> ProtocolOb
         UnknownName: A lost marker is not one of the protocol's.
         NotObservable: No marker is left.
     """
-    followed = [marker for marker in protocol.markers if marker.kind != "computed"]
-    gone = _resolve(protocol, followed, lost)
+    followed, gone = followed_markers(protocol), lost_markers(protocol, lost)
     left = [marker for marker in followed if marker.name not in gone]
-    if not left:
-        raise NotObservable(
-            f"protocol {protocol.name} has no marker left without the {len(gone)} lost ones; give fewer"
-        )
     model = HumanModel.scaled(body=protocol.body)
     before = _analyse(model, followed)
     return ProtocolObservability(
@@ -72,14 +67,35 @@ def check_protocol(protocol: Protocol, lost: Collection[str] = ()) -> ProtocolOb
     )
 
 
-def _resolve(protocol: Protocol, followed: list[ProtocolMarker], lost: Collection[str]) -> tuple[str, ...]:
+def followed_markers(protocol: Protocol) -> list[ProtocolMarker]:
+    """The markers that are tracked: all but computed points."""
+    return [marker for marker in protocol.markers if marker.kind != "computed"]
+
+
+def lost_markers(protocol: Protocol, lost: Collection[str]) -> tuple[str, ...]:
+    """Names of lost markers, each once.
+
+    Args:
+        protocol: The protocol.
+        lost: Their names or aliases.
+
+    Raises:
+        UnknownName: A lost marker is not one of the protocol's.
+        NotObservable: No marker is left.
+    """
+    followed = followed_markers(protocol)
     known = {marker.name: marker.name for marker in followed}
     aliases = {alias: marker.name for marker in followed for alias in marker.aliases}
     names = aliases | known
     for name in lost:
         if name not in names:
             raise UnknownName("marker", name, known, f"protocol {protocol.name}")
-    return tuple(dict.fromkeys(names[name] for name in lost))
+    gone = tuple(dict.fromkeys(names[name] for name in lost))
+    if len(gone) == len(followed):
+        raise NotObservable(
+            f"protocol {protocol.name} has no marker left without the {len(gone)} lost ones; give fewer"
+        )
+    return gone
 
 
 def _analyse(model: HumanModel, markers: list[ProtocolMarker]) -> Observability:

@@ -47,9 +47,52 @@ def test_without_a_protocol_all_are_listed(capsys):
     assert "hand (r, l)" in shown
 
 
+def test_torques_and_reactions_of_a_filter_without_a_plate(capsys):
+    words = ["--preset", "FDMC-literal", "--without-plate", "left", "--without-plate", "1"]
+    assert main(["observability", "reference36", *words]) == 0
+    shown = capsys.readouterr().out
+    assert "no plate under the right foot, no plate under the left foot" in shown
+    assert "state of 166" in shown
+    (row,) = (line for line in shown.splitlines() if "simplified F" in line)
+    assert row.count("154 of 166") == 2
+    assert "12 directions of the state do not show" in shown
+    assert any("torque" in line and "right_foot x, y, z" in line for line in shown.splitlines())
+
+
+def test_a_determined_state_is_called_so(capsys):
+    assert main(["observability", "reference36", "--filter", "dynamic"]) == 0
+    shown = capsys.readouterr().out
+    assert "a plate under each foot" in shown
+    assert "All 174 components of the state are determined." in shown
+
+
+def test_a_plate_option_without_a_name_takes_both(capsys):
+    assert main(["observability", "reference36", "--filter", "dynamic", "--without-plate"]) == 0
+    assert "162 of 174" in capsys.readouterr().out
+
+
+def test_a_rank_that_hangs_on_the_bound_is_called_doubtful(capsys):
+    """Newton's law shows the markerless hands of this set a little, and their turns hardly at all."""
+    assert main(["observability", "plug_in_gait", "--filter", "dynamic"]) == 0
+    assert "hardly observed either way" in capsys.readouterr().out
+
+
+def test_all_protocols_are_listed_for_a_filter(capsys, monkeypatch):
+    monkeypatch.setattr("mbkf.model.protocol.protocol_names", lambda: ("reference36", "plug_in_gait"))
+    assert main(["observability", "--filter", "torque", "--without-plate", "both"]) == 0
+    shown = capsys.readouterr().out
+    assert "154 of 166" in shown
+    assert "load on right foot" in shown
+    assert "toes (r, l)" in shown
+
+
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
+        (["reference36", "--filter", "torque", "--without-plate", "rigth"], "did you mean right"),
+        (["reference36", "--filter", "torque", "--lost", "RKNEE"], "did you mean RKNE"),
+        (["reference36", "--without-plate", "right"], "the kinematic filter reads no plate"),
+        (["reference36", "--filter", "dynamic", "--preset", "FDMC"], "FDMC"),
         (["plug_in_gate"], "did you mean plug_in_gait"),
         (["reference36", "--lost", "XYZ"], "unknown marker 'XYZ'"),
         (["missing.toml"], "missing.toml"),
