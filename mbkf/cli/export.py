@@ -3,7 +3,7 @@
 A subject:
   urdf  has no spherical joint: each becomes three hinges, named after the clinical angles (hip_flexion_r, …), whose
         positions in rad are those angles. The pelvis is the root link and floats; the reading program adds the free
-        joint. Masses, inertias and markers are the subject's.
+        joint. Masses, inertias and markers are the subject's; boxes, cylinders and spheres draw the body.
   mjcf  keeps ball joints and a free joint; otherwise the same.
 
 A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):

@@ -20,6 +20,9 @@ PLAIN_RADII_M = (0.045, 0.035)
 COLOURS = {"": (0.725, 0.769, 0.812), "right": (0.508, 0.672, 0.777), "left": (0.758, 0.648, 0.568)}
 """The viewer's colours (mbkf/viz/assets/scene.js) by side: grey, towards blue or vermillion; sRGB, 0 to 1."""
 
+MARKER_RADIUS_M, MARKER_COLOUR = 0.0105, (0.114, 0.153, 0.200)
+"""The viewer's size and colour of a measured marker."""
+
 
 @dataclass(frozen=True)
 class Shape:

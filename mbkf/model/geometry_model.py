@@ -11,12 +11,8 @@ import pinocchio as pin
 from mbkf.conventions import Array
 from mbkf.io.subject import SubjectMarker
 from mbkf.model.body import Body
-from mbkf.model.body_shapes import COLOURS, segment_shapes, side_of
+from mbkf.model.body_shapes import COLOURS, MARKER_COLOUR, MARKER_RADIUS_M, segment_shapes, side_of
 from mbkf.model.shape_meshes import Mesh, joined, shape_mesh
-
-MARKER_RADIUS_M = 0.0105
-MARKER_COLOUR = (0.114, 0.153, 0.200)
-"""The viewer's size and colour of a marker (mbkf/viz/assets)."""
 
 MARKER_PREFIX = "marker_"
 """Names of markers' geometries: this prefix and the marker's name."""

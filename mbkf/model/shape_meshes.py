@@ -64,7 +64,7 @@ def _limb(n: Array) -> Mesh:
     side = r0 + (r1 - r0) * s + SWELL * r0 * np.sin(np.pi * np.sqrt(s))
     radius = np.concatenate([r0 * np.sin(quarter[1:]), side, r1 * np.cos(quarter[:-1])])
     along = np.concatenate([-r0 * np.cos(quarter[1:]), length * s, length + r1 * np.sin(quarter[:-1])])
-    axes = _axes_along(end - start)
+    axes = axes_along(end - start)
     ring = _circle(LIMB_CORNERS) @ axes[:, :2].T
     rings = start + radius[:, None, None] * ring + along[:, None, None] * axes[:, 2]
     return _smooth(*_closed(rings, start - r0 * axes[:, 2], end + r1 * axes[:, 2]))
@@ -106,7 +106,7 @@ def _circle(corners: int) -> Array:
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _axes_along(direction: Array) -> Array:
+def axes_along(direction: Array) -> Array:
     """(3, 3) axes whose z has this direction; the world's where it has none."""
     if not direction.any():
         return np.eye(3)

@@ -1,14 +1,18 @@
 """URDF and MJCF against the native body: same points, mass matrix, gravity and energy elsewhere."""
 
+from xml.etree import ElementTree as ET
+
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from mbkf.errors import UnknownName
 from mbkf.io.subject import SubjectMarker
+from mbkf.model.body_shapes import COLOURS, segment_shapes, side_of
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.model.mjcf import to_mjcf
+from mbkf.model.primitive_shapes import primitives
 from mbkf.model.urdf import MARKER_PREFIX, to_urdf
 
 POSES = 8
@@ -91,6 +95,33 @@ class TestUrdf:
             assert relative_error(S.T @ g, model.gravity_torques(q)) < 1e-12
             energy = pin.computeKineticEnergy(other, data, q_other, S @ v)
             assert energy == pytest.approx(0.5 * v @ model.mass_matrix(q) @ v, rel=1e-12)
+
+    def test_pinocchio_draws_it_with_the_sides_in_colour(self, path, model):
+        body, _, visuals = pin.buildModelsFromUrdf(str(path), str(path.parent), pin.JointModelFreeFlyer())
+        drawn = {}
+        for one in visuals.geometryObjects:
+            drawn.setdefault(body.frames[one.parentFrame].name, []).append(one)
+        assert set(drawn) == {*model.joints, *(MARKER_PREFIX + marker.name for marker in MARKERS)}
+        for name, shapes in segment_shapes(model).items():
+            assert len(drawn[name]) == sum(len(primitives(shape)) for shape in shapes)
+            np.testing.assert_allclose(drawn[name][0].meshColor, [*COLOURS[side_of(name)], 1.0])
+
+    def test_every_link_has_a_mass_and_their_sum_is_the_persons(self, path, model):
+        """PyBullet counts 1 kg for a link without a mass."""
+        root = ET.parse(path).getroot()
+        masses = [float(link.find("inertial/mass").get("value")) for link in root.findall("link")]
+        assert sum(masses) == pytest.approx(model.mass_kg, abs=1e-9)
+
+    def test_mujoco_draws_it_and_sets_its_root_free(self, path, model):
+        import mujoco
+
+        spec = mujoco.MjSpec.from_file(str(path))
+        spec.body("pelvis").add_freejoint()
+        other = spec.compile()
+        assert other.nv == model.nv
+        assert other.body_mass.sum() == pytest.approx(model.mass_kg, abs=1e-9)
+        assert other.ngeom == sum(len(link.findall("visual")) for link in ET.parse(path).getroot())
+        assert not other.geom_contype.any()
 
     @staticmethod
     def mapped(other, model, clinical, q):

@@ -15,8 +15,8 @@ from scipy.spatial.transform import Rotation
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.io.results import Reconstruction
-from mbkf.model.body_shapes import side_of
-from mbkf.model.geometry_model import MARKER_COLOUR, MARKER_PREFIX, MARKER_RADIUS_M, geometry_model
+from mbkf.model.body_shapes import MARKER_COLOUR, MARKER_RADIUS_M, side_of
+from mbkf.model.geometry_model import MARKER_PREFIX, geometry_model
 from mbkf.model.human import HumanModel
 from mbkf.model.segment_poses import segment_poses
 from mbkf.viz.meshcat.visualiser import BodyVisualiser, body_visualiser, opened
