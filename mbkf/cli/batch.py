@@ -37,12 +37,14 @@ from mbkf.cli.options import (
     EXIT_DO_NOT_USE,
     add_lag_option,
     add_out,
+    add_preset_options,
     add_spreads_option,
     add_static_only,
     add_strict,
     asked_spreads,
     count,
     lag_seconds,
+    with_chosen,
 )
 
 if TYPE_CHECKING:
@@ -70,7 +72,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="only every N-th trial, beginning with the I-th; a last run without it makes the tables of all",
     )
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="default: dynamic")
-    parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
+    add_preset_options(parser)
     later = parser.add_mutually_exclusive_group()
     later.add_argument("--causal", action="store_true", help="use no later frames")
     add_lag_option(later)
@@ -84,7 +86,6 @@ def run(args: argparse.Namespace) -> int:
     """Runs the batch and prints the trials that failed."""
     from mbkf.cli.progress import stages
     from mbkf.study.batch.run import batch
-    from mbkf.trial.preparation.presets import with_preset
     from mbkf.trial.preparation.settings import ReconstructSettings
 
     settings = ReconstructSettings(
@@ -93,8 +94,7 @@ def run(args: argparse.Namespace) -> int:
         lag_s=lag_seconds(args),
         spreads=asked_spreads(args),
     )
-    if args.preset is not None:
-        settings = with_preset(settings, args.preset, args.filter)
+    settings = with_chosen(settings, args)
     with stages() as report:
         table = batch(
             args.source,

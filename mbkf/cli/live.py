@@ -37,7 +37,17 @@ from mbkf.cli.following import (
     report_outcome,
     say,
 )
-from mbkf.cli.options import add_out, add_strict, asked_spreads, body_mass, lag_seconds, port, strict_exit
+from mbkf.cli.options import (
+    add_out,
+    add_preset_options,
+    add_strict,
+    asked_spreads,
+    body_mass,
+    lag_seconds,
+    port,
+    strict_exit,
+    with_chosen,
+)
 
 if TYPE_CHECKING:
     from mbkf.io.subject import Subject
@@ -69,7 +79,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="without --subject: the marker set (default: found from the stream's names)",
     )
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="default: dynamic")
-    parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
+    add_preset_options(parser)
     add_strict(parser)
     add_out(parser, "DIR", "folder to write")
     parser.add_argument(
@@ -105,7 +115,6 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.stream.run.report import LIVE_FILE
     from mbkf.stream.run.session import LiveSession
     from mbkf.stream.run.standing import SUBJECT_FILE, StandingStart
-    from mbkf.trial.preparation.presets import with_preset
     from mbkf.trial.preparation.settings import ReconstructSettings
 
     if args.recover is not None:
@@ -121,8 +130,7 @@ def run(args: argparse.Namespace) -> int:
         correct_markers=False,
         spreads=asked_spreads(args),
     )
-    if args.preset is not None:
-        settings = with_preset(settings, args.preset, args.filter)
+    settings = with_chosen(settings, args)
     source, name = _source(args), args.source.partition(":")[0]
 
     def begin(stop: threading.Event, patience_s: float | None) -> LiveSession:

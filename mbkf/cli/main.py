@@ -28,7 +28,7 @@ from mbkf.version import __version__
 
 COMMANDS = (
     "demo", "synth", "info", "scale", "label", "reconstruct", "batch", "replay", "live", "view", "report", "norms",
-    "app", "tune", "observability", "protocol", "imu", "export",
+    "app", "tune", "presets", "observability", "protocol", "imu", "export",
 )  # fmt: skip
 """Names of the subcommands, in the order of the help; each is the module ``mbkf.cli.<name>``."""
 

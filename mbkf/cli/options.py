@@ -13,6 +13,7 @@ from mbkf.io.readers import either
 
 if TYPE_CHECKING:
     from mbkf.io.verdict import VerdictTold
+    from mbkf.trial.preparation.settings import ReconstructSettings
 
 CAPTURE_FILES = either((*CAPTURES.suffixes_so_far, "that of an installed reader"))
 """Suffixes of captures that can be read, for help texts, which import no other package."""
@@ -134,6 +135,43 @@ def add_spreads_option(parser: argparse._ActionsContainer) -> None:
         help="standard deviations besides those of configuration, velocity and reactions: torques, angles, both with "
         "a comma (all, the default), or none, which saves time in every frame",
     )
+
+
+def add_preset_options(parser: argparse._ActionsContainer) -> None:
+    """Adds ``--preset`` and ``--set``, for commands that run a filter."""
+    parser.add_argument(
+        "--preset",
+        metavar="NAME|FILE",
+        help="settings of a filter: one of 'mbkf presets', or a file that 'mbkf tune' or you wrote",
+    )
+    parser.add_argument(
+        "--set",
+        dest="given",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="a single setting of the filter, such as integrator=HE or plate_force_n=10; may be repeated "
+        "('mbkf presets --settings' lists all)",
+    )
+
+
+def with_chosen(settings: ReconstructSettings, args: argparse.Namespace) -> ReconstructSettings:
+    """The settings with the values of :func:`add_preset_options`.
+
+    Args:
+        settings: All else.
+        args: Options of the command, ``--filter`` among them.
+
+    Raises:
+        UnknownName: The preset or a setting does not exist.
+        FileFormatError: The preset's file cannot be read.
+        InvalidInput: A value is not possible.
+    """
+    from mbkf.trial.preparation.presets import with_preset, with_set
+
+    if args.preset is not None:
+        settings = with_preset(settings, args.preset, args.filter)
+    return with_set(settings, args.given)
 
 
 def add_static_only(parser: argparse._ActionsContainer) -> None:

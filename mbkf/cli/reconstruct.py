@@ -4,7 +4,7 @@ Follows a scaled subject through a trial and solves for joint torques.
 
 Examples:
   mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
-  mbkf reconstruct walk.c3d --subject subject.toml --filter torque --preset FDMC --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --preset FDMC --set integrator=HE --out result
   mbkf reconstruct walk.c3d --subject subject.toml --imu imus.csv --imu-mounts imus.toml --out result
   mbkf reconstruct walk.c3d --subject subject.toml --causal --out as_live
   mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,6 +32,7 @@ from mbkf.cli.options import (
     add_axes_options,
     add_lag_option,
     add_out,
+    add_preset_options,
     add_spreads_option,
     add_strict,
     asked_spreads,
@@ -38,6 +40,7 @@ from mbkf.cli.options import (
     comma_separated,
     lag_seconds,
     strict_exit,
+    with_chosen,
 )
 
 if TYPE_CHECKING:
@@ -62,11 +65,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         choices=("kinematic", "torque", "dynamic"),
         help="the filter (default: that of the preset, or dynamic)",
     )
-    parser.add_argument(
-        "--preset",
-        metavar="NAME|FILE",
-        help="settings found by 'mbkf tune', or FD, FDMC, FD-literal, FDMC-literal for the torque filter",
-    )
+    add_preset_options(parser)
     later = parser.add_mutually_exclusive_group()
     later.add_argument(
         "--smooth", action="store_true", help="let later frames correct earlier ones (default)"
@@ -139,7 +138,6 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
-    from mbkf.trial.preparation.presets import with_preset
     from mbkf.trial.preparation.settings import ReconstructSettings
     from mbkf.trial.reconstruct import reconstruct
     from mbkf.trial.results.summary import summarise
@@ -164,8 +162,7 @@ def run(args: argparse.Namespace) -> int:
         spreads=asked_spreads(args),
         keep_covariance=truth is not None,
     )
-    if args.preset is not None:
-        settings = with_preset(settings, args.preset, args.filter)
+    settings = with_chosen(settings, args)
     with stages() as report:
         result = reconstruct(capture, subject, settings=settings, imus=imus, progress=report)
     summary = summarise(result, truth)
@@ -222,6 +219,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
     unsmoothed = ", smoothing not counted" if summary["smoothed"] else ""
     realtime = summary["realtime_factor"]
     rows = [
+        ("settings", settings_line(summary["settings"])),
         ("later frames", summary["later_frames"]),
         ("frames", f"{summary['frames']} at {summary['rate_hz']:g} Hz"),
         ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
@@ -252,7 +250,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
     table.add_column()
     table.add_column(justify="right")
     for name, text in rows:
-        if text or name not in ("markers ignored", "unexplained loads", "checks"):
+        if text or name not in ("settings", "markers ignored", "unexplained loads", "checks"):
             table.add_row(name, text)
     console = terminal()
     for line in verdict_lines(summary["trial"], summary["verdict"]):
@@ -261,6 +259,18 @@ def print_summary(summary: Summary, folder: Path) -> None:
     for warning in summary["warnings"]:
         console.print(f"note: {warning}", soft_wrap=True)
     console.print(str(folder), soft_wrap=True)
+
+
+def settings_line(settings: Mapping[str, object]) -> str:
+    """The preset and the single settings that a result was made with; empty for the defaults.
+
+    Args:
+        settings: Settings of the run, as summaries have them.
+    """
+    preset, given = settings.get("preset"), settings.get("given")
+    parts = [f"preset {preset}"] if preset else []
+    parts += [f"{name} = {value}" for name, value in given.items()] if isinstance(given, Mapping) else []
+    return ", ".join(parts)
 
 
 def verdict_lines(trial: str, told: VerdictTold | None) -> list[str]:

@@ -10,6 +10,8 @@ Examples:
   mbkf tune walk.trc --subject subject.toml --forces grf.mot --name walk --out walk.toml
   mbkf reconstruct walk4.c3d --subject subject.toml --preset lab --out result
 
+With --preset or --set the search begins there, and the preset that is saved holds these settings, too.
+
 The likelihood assumes that readings err independently from frame to frame. Skin does not, so the most probable settings
 need not be the best for torques. On synthetic trials with 5 mm of moving skin tuning about halved the torque error of
 the kinematic filter; that of the dynamic filter fell by 10 to 30 % on squats and mostly rose on walks and jumps, by 10
@@ -32,7 +34,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options, comma_separated, count
+from mbkf.cli.options import (
+    CAPTURE_FILES,
+    add_axes_options,
+    add_out,
+    add_preset_options,
+    axes_options,
+    comma_separated,
+    count,
+    with_chosen,
+)
 
 if TYPE_CHECKING:
     from mbkf.io.preset import Preset
@@ -51,8 +62,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="ground reactions of the trials other than C3D, in their order",
     )
     parser.add_argument(
-        "--filter", choices=("dynamic", "kinematic"), default="dynamic", help="the filter (dynamic)"
+        "--filter",
+        choices=("dynamic", "kinematic"),
+        help="the filter (default: that of the preset, or dynamic)",
     )
+    add_preset_options(parser)
     parser.add_argument("--name", required=True, metavar="NAME", help="name of the preset")
     add_out(parser, "PRESET.toml", "file to write, instead of one among the named presets")
     parser.add_argument(
@@ -82,12 +96,15 @@ def run(args: argparse.Namespace) -> int:
     out = place_of(check_name(args.name), args.out)
     check_file(out)
     held_out, forces = positions(args.trials, args.hold_out), forces_of(args.trials, args.forces)
+    start = with_chosen(
+        ReconstructSettings(filter=args.filter or "dynamic", correct_markers=not args.keep_markers), args
+    )
     settings = TuneSettings(
-        filter=args.filter,
+        filter=start.filter,
         parameters=None if args.parameters is None else comma_separated(args.parameters),
         hold_out=held_out,
         calls=args.runs,
-        reconstruct=ReconstructSettings(filter=args.filter, correct_markers=not args.keep_markers),
+        reconstruct=start,
     )
     subject = read_subject(args.subject)
     captures = [

@@ -5,7 +5,7 @@ A preset file, ``mbkf tune`` and ``summary.json`` name a setting by its leaf alo
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import Field, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from mbkf.errors import UnknownName
@@ -19,6 +19,15 @@ def flat(settings: object) -> dict[str, object]:
     for one in fields(settings):  # type: ignore[arg-type]
         value = getattr(settings, one.name)
         found |= flat(value) if is_dataclass(value) else {one.name: value}
+    return found
+
+
+def leaf_fields(settings: object) -> dict[str, Field[object]]:
+    """The field of every leaf of a record of settings by its name."""
+    found: dict[str, Field[object]] = {}
+    for one in fields(settings):  # type: ignore[arg-type]
+        value = getattr(settings, one.name)
+        found |= leaf_fields(value) if is_dataclass(value) else {one.name: one}
     return found
 
 

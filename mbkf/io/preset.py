@@ -1,12 +1,16 @@
-"""Preset files: settings of a filter under a name, with their origin (TOML, written by ``mbkf tune``)."""
+"""Preset files: settings of a filter under a name, with their origin (TOML, shipped or written by ``mbkf tune``)."""
 
 from __future__ import annotations
 
+import math
 import os
+import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from mbkf.conventions import data_folder
 from mbkf.io import fields
 from mbkf.io.toml import Entries, write_toml
 
@@ -22,40 +26,85 @@ _VERSION = fields.text("version", "version of mbkf that found it", empty=True)
 _NOTE = fields.text("note", "remark", empty=True)
 _TUNED_ON = fields.texts("tuned_on", "trials of the search")
 _HELD_OUT = fields.texts("held_out", "trials of its validation")
+_SOURCE = fields.text("source", "where the settings are printed", empty=True)
 _FOUND = fields.part("found", "result of a search that did no better", "[found]")
 _LIKELIHOOD = fields.part("likelihood", "log-likelihoods per reading, nats", "[likelihood]")
 PRESET = fields.record(
-    "preset", _NAME, _FILTER, _VALUES, _VERSION, _NOTE, _TUNED_ON, _HELD_OUT, _FOUND, _LIKELIHOOD
+    "preset",
+    _NAME,
+    _FILTER,
+    _VALUES,
+    _VERSION,
+    _NOTE,
+    _SOURCE,
+    _TUNED_ON,
+    _HELD_OUT,
+    _FOUND,
+    _LIKELIHOOD,
 )
 """Entries of a preset file."""
 
-_VALUE = fields.number("value", "a setting")
+Value = float | str | bool | tuple[float, ...]
+"""A setting as a file holds it."""
+
+
+def setting_value(value: object) -> Value | None:
+    """A setting of plain data: a number (inf is one), a word, true or false, numbers; None for anything else."""
+    if isinstance(value, bool) or (isinstance(value, str) and value):
+        return value
+    if isinstance(value, int | float):
+        return None if math.isnan(value) else float(value)
+    if isinstance(value, list) and value:
+        numbers = [setting_value(one) for one in value]
+        return tuple(one for one in numbers if isinstance(one, float)) if _all_numbers(numbers) else None
+    return None
+
+
+def value_of(text: str) -> Value | None:
+    """A setting as a command gives it: as TOML writes it, or a bare word; None for anything else."""
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text if re.fullmatch(r"[A-Za-z]\w*", text) else None
+    return setting_value(found["value"]) if len(found) == 1 else None
+
+
+def _all_numbers(values: list[Value | None]) -> bool:
+    return all(isinstance(one, float) for one in values)
+
+
+_VALUE: fields.Field[Value] = fields.Field(
+    "value", "a setting", "a number, a word, true or false, or a list of numbers", setting_value
+)
+_NUMBER = fields.number("value", "a result of a search")
 
 
 @dataclass(frozen=True)
 class Preset:
-    """Tuned settings of a filter.
+    """Settings of a filter under a name.
 
     Attributes:
         name: Its name.
         filter: The filter they are for.
-        values: Settings by name, those that differ from the defaults or were tried.
+        values: Settings by name: numbers, words, true or false; those that differ from the defaults or were tried.
         version: Of mbkf when they were found.
         note: Remark for the user.
         tuned_on, held_out: Trials of the search, and of its validation.
         found: Result of the search, where it did no better on the held-out trials and ``values`` stayed.
         likelihood: Log-likelihoods per reading by name, in nats.
+        source: Where the settings are printed; empty for those of a search.
     """
 
     name: str
     filter: str
-    values: Mapping[str, float]
+    values: Mapping[str, Value]
     version: str = ""
     note: str = ""
     tuned_on: tuple[str, ...] = ()
     held_out: tuple[str, ...] = ()
     found: Mapping[str, float] = field(default_factory=dict)
     likelihood: Mapping[str, float] = field(default_factory=dict)
+    source: str = ""
 
 
 def preset_folder() -> Path:
@@ -64,6 +113,12 @@ def preset_folder() -> Path:
     if named:
         return Path(named)
     return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "mbkf" / "presets"
+
+
+def shipped_presets() -> dict[str, Path]:
+    """Files of the presets that come with mbkf by name."""
+    files = data_folder("presets").glob(f"*{SUFFIX}")
+    return {path.stem: path for path in sorted(files, key=lambda path: path.stem)}
 
 
 def saved_presets() -> dict[str, Path]:
@@ -93,11 +148,12 @@ def read_preset(path: str | Path) -> Preset:
     return Preset(
         name=read.get(_NAME) or Path(path).stem,
         filter=read.need(_FILTER),
-        values=read.numbers_by_name(_VALUES, _VALUE),
+        values=read.by_name(_VALUES, _VALUE),
         version=read.get(_VERSION) or "",
         note=read.get(_NOTE) or "",
         tuned_on=read.get(_TUNED_ON) or (),
         held_out=read.get(_HELD_OUT) or (),
-        found=read.numbers_by_name(_FOUND, _VALUE),
-        likelihood=read.numbers_by_name(_LIKELIHOOD, _VALUE),
+        found=read.by_name(_FOUND, _NUMBER),
+        likelihood=read.by_name(_LIKELIHOOD, _NUMBER),
+        source=read.get(_SOURCE) or "",
     )

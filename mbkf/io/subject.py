@@ -311,7 +311,7 @@ def read_subject(path: str | Path) -> Subject:
         subject = Subject(
             body=read.need(_BODY),
             mass_kg=read.need(_MASS),
-            scale_factors=read.numbers_by_name(_SCALE_FACTORS, _FACTOR),
+            scale_factors=read.by_name(_SCALE_FACTORS, _FACTOR),
             markers=_markers(read),
             protocol=read.need(_PROTOCOL),
             height_m=read.get(_HEIGHT),
@@ -319,9 +319,9 @@ def read_subject(path: str | Path) -> Subject:
             body_text=read.get(_BODY_TEXT) or "",
             inertia=_inertia(read),
             covariance=_covariance(read),
-            joint_centres_m=read.numbers_by_name(_CENTRES, _CENTRE),
-            angle_zeros_deg=read.numbers_by_name(_ZEROS, _ZERO),
-            habit_deg=read.numbers_by_name(_HABITS, _HABIT),
+            joint_centres_m=read.by_name(_CENTRES, _CENTRE),
+            angle_zeros_deg=read.by_name(_ZEROS, _ZERO),
+            habit_deg=read.by_name(_HABITS, _HABIT),
         )
     _check_report(subject, read)
     return subject
@@ -377,7 +377,7 @@ def _covariance(read: Entries) -> BodyCovariance | None:
     if found is None:
         return None
     covariance = read_covariance(found)
-    factors = read.numbers_by_name(_SCALE_FACTORS, _FACTOR)
+    factors = read.by_name(_SCALE_FACTORS, _FACTOR)
     lacking = [name for name in covariance.factors if name not in factors]
     if lacking:
         reason = f"scale_factors: {lacking[0]} is missing, which [covariance] names; restore its line"

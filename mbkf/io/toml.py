@@ -260,18 +260,18 @@ class Entries:
                 found.append(error)
         return found
 
-    def numbers_by_name(self, field: Field[object], value: Field[float]) -> dict[str, float]:
-        """A table of numbers under names that people choose; empty without such an entry.
+    def by_name(self, field: Field[object], value: Field[T]) -> dict[str, T]:
+        """A table of values under names that people choose; empty without such an entry.
 
         Args:
             field: The table.
-            value: Declaration of each number; its key does not count.
+            value: Declaration of each value; its key does not count.
         """
         found = self.table.get(field.key, {})
         if not isinstance(found, dict):
             raise self.fault(f"{field.key} must be a table, [{field.key}]", field.key)
         fields = {name: replace(value, key=name) for name in found}
-        record = Record("number", tuple(fields.values()))
+        record = Record("value", tuple(fields.values()))
         entries = Entries(record, found, self._inner(field.key), f"{field.key}: ")
         return {name: entries.need(one) for name, one in fields.items()}
 

@@ -41,12 +41,14 @@ class FootPlateSettings:
     Attributes:
         plate_force_n, plate_moment_nm: Of a plate's reading.
         air_force_n, air_moment_nm: Spread of the zero wrench of a foot in the air.
+        plate_vertical_force_n: Of a plate's vertical force; None: as of its horizontal ones, ``plate_force_n``.
     """
 
     plate_force_n: float = 5.0
     plate_moment_nm: float = 2.0
     air_force_n: float = 0.1
     air_moment_nm: float = 0.02
+    plate_vertical_force_n: float | None = None
 
 
 class FootReading(NamedTuple):
@@ -124,6 +126,8 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         self.sensor = FootWrenchSensor(dynamics)
         self._dt_s = dt_s
         self._plate = np.repeat([settings.plate_force_n, settings.plate_moment_nm], 3)
+        if settings.plate_vertical_force_n is not None:
+            self._plate[2] = settings.plate_vertical_force_n
         self._air = np.repeat([settings.air_force_n, settings.air_moment_nm], 3)
 
     def bind(self, layout: Layout, body: Body) -> None:

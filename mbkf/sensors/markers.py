@@ -18,7 +18,7 @@ predicted, its joint's spread is inflated.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -59,12 +59,12 @@ class MarkerSettings:
     """
 
     marker_noise_scale: float = 1.0
-    innovation_share: float = 0.12
+    innovation_share: float = field(default=0.12, metadata={"zero": True})
     noise_memory_s: float = 1.0
     noise_range: tuple[float, float] = (0.5, 4.0)
     gate: float = 60.0
     gate_radius_m: float = 0.03
-    skin_memory_s: float = 0.0
+    skin_memory_s: float = field(default=0.0, metadata={"zero": True})
     camera_noise_m: float = 0.001
     min_markers: int = 6
 

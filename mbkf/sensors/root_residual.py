@@ -12,7 +12,7 @@ zero, too: over a whole trial the process has the variance σ²/2 and the correl
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class RootResidualSettings:
             plate reads: the feet's forces take up every load, and the mean force has to change the momentum.
     """
 
-    residual_share: float = 0.05
+    residual_share: float = field(default=0.05, metadata={"zero": True})
     residual_lever_m: float = 0.03
     residual_memory_s: float = 0.2
     unread_residual_scale: float = 3.0

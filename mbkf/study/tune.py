@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from mbkf.conventions import Array, StageCallback
+from mbkf.filters.given_settings import own_values
 from mbkf.filters.settings import flat
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
@@ -122,6 +123,7 @@ def tune(
         objective.runs,
         found.settled,
         time.perf_counter() - begin,
+        {key: value for key, value in own_values(base).items() if key not in values},
     )
 
 

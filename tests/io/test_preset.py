@@ -1,22 +1,30 @@
 """Preset files: written and read alike, in the folder the user names, and refused in one line when broken."""
 
+import math
 from pathlib import Path
 
 import pytest
 
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.io.preset import Preset, preset_folder, read_preset, saved_presets, write_preset
+from mbkf.io.preset import Preset, preset_folder, read_preset, saved_presets, value_of, write_preset
 
 PRESET = Preset(
     "lab",
     "dynamic",
-    {"acceleration_scale": 0.4, "wrench_force": 310.0},
+    {
+        "acceleration_scale": 0.4,
+        "noise": "independent",
+        "per_frame": True,
+        "spread": math.inf,
+        "pair": (1.0, 2.5),
+    },
     "0.1.0",
     'a "note" \x7f with ü',
     ("walk 1", "walk 2"),
     ("run",),
     {"acceleration_scale": 0.3},
     {"held_out_before": 2.9, "held_out_after": -3.1},
+    "thesis Table 4.3",
 )
 SMALL = 'filter = "dynamic"\n[values]\n'
 
@@ -57,9 +65,11 @@ def test_the_folder_is_the_users(monkeypatch, tmp_path):
         ("[values]\n", "filter"),
         ('filter = "dynamic"\n', "values"),
         ("filter = 3\n[values]\n", "filter must be a text"),
-        (SMALL + 'gate = "wide"\n', "gate"),
-        (SMALL + "gate = true\n", "gate"),
-        (SMALL + "gate = nan\n", "gate"),
+        (SMALL + "gate = nan\n", "gate must be a number, a word, true or false, or a list of numbers"),
+        (SMALL + 'gate = ""\n', "gate"),
+        (SMALL + 'gate = [1, "2"]\n', "gate"),
+        (SMALL + "gate = {a = 1}\n", "gate"),
+        (SMALL + 'gate = 1\n[found]\ngate = "wide"\n', "gate"),
     ],
 )
 def test_broken_files_are_refused(content, fragment, tmp_path):
@@ -80,3 +90,23 @@ def test_an_unknown_entry_is_named(tmp_path):
     path.write_text('fliter = "dynamic"\n')
     with pytest.raises(UnknownName, match=r"'fliter'.*filter"):
         read_preset(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("FE", "FE"),
+        ("'FE'", "FE"),
+        ("true", True),
+        ("inf", math.inf),
+        ("2", 2.0),
+        ("[2, 8.5]", (2.0, 8.5)),
+        ("nan", None),
+        ("", None),
+        ("2 mm", None),
+        ("1\nx = 2", None),
+        ("[" * 5000, None),
+    ],
+)
+def test_values_of_commands(text, value):
+    assert value_of(text) == value

@@ -76,12 +76,12 @@ def test_entries_are_as_declared_or_missing(tmp_path):
     )
     assert (read.need(NAME), read.get(SIZE), read.get(KIND)) == ("x", 2.0, "a")
     np.testing.assert_array_equal(read.get(PLACE), [1.0, 2.5])
-    assert read.numbers_by_name(FREE, SIZE) == {"n": 1.0}
+    assert read.by_name(FREE, SIZE) == {"n": 1.0}
     assert read.tables(PARTS, INNER)["b"].get(SIZE) == 1.0
     assert [one.get(SIZE) for one in read.list_of_tables(LISTED, INNER)] == [2.0, None]
     empty = of_text(tmp_path, "")
     assert (empty.get(SIZE), empty.get(KIND), empty.list_of_tables(LISTED, INNER)) == (None, None, None)
-    assert empty.tables(PARTS, INNER) == empty.numbers_by_name(FREE, SIZE) == {}
+    assert empty.tables(PARTS, INNER) == empty.by_name(FREE, SIZE) == {}
     with pytest.raises(FileFormatError, match=r"a\.toml: name is missing; it must be a text"):
         empty.get(NAME)
     with pytest.raises(FileFormatError, match="size_m is missing; it must be a number between 0 and 3 m"):
@@ -91,7 +91,7 @@ def test_entries_are_as_declared_or_missing(tmp_path):
 def every(read: Entries) -> None:
     for field in (SIZE, PLACE, KIND):
         read.get(field)
-    read.numbers_by_name(FREE, SIZE)
+    read.by_name(FREE, SIZE)
     for one in (*read.tables(PARTS, INNER).values(), *(read.list_of_tables(LISTED, INNER) or ())):
         one.get(SIZE)
 

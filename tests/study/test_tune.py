@@ -84,7 +84,8 @@ def test_the_noise_of_a_simulation_is_found(subject, trial):
     assert (found.tuned_on, found.held_out) == (("trial1, first half",), ("trial1, second half",))
     assert stages[-1][0] == stages[-1][1] == found.calls
     saved = found.preset("lab")
-    assert (saved.values, saved.found, saved.filter) == (found.values, {}, "kinematic")
+    assert (saved.values, saved.found, saved.filter) == ({**found.start, **found.values}, {}, "kinematic")
+    assert found.start == {"gate": 1e9, "gate_radius_m": 10.0, "posture_scale": 1e6, "velocity_sd": 1e6}
 
 
 def test_trials_are_held_out_by_position(subject, model):

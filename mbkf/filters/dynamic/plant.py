@@ -50,7 +50,7 @@ class SingerSettings:
 
     acceleration_scale: float = 1.0
     quiet_share: float = 0.1
-    activity_gain: float = 6.0
+    activity_gain: float = field(default=6.0, metadata={"zero": True})
     activity_rate: float = 5.0
     activity_memory_s: float = 0.05
     busy_shares: tuple[float, float] = (2.0, 8.0)

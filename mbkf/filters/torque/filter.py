@@ -66,6 +66,7 @@ def torque_blocks(
         s.plate_moment_nm * scale,
         s.unloaded_force_n * scale,
         s.unloaded_moment_nm * scale,
+        None if s.plate_vertical_force_n is None else s.plate_vertical_force_n * scale,
     )
     return [
         # The literal presets amplify roundings: the Jacobian's own keep the figures that were measured with them.

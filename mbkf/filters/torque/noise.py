@@ -17,7 +17,7 @@ from mbkf.conventions import Array
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.model.layout import Layout
+from mbkf.model.layout import FEET, FOOT, Layout
 from mbkf.numerics.discretisation import symmetric
 
 
@@ -35,28 +35,34 @@ def condition(covariance: Array, rows: Array, variance: Array, missing: Array) -
     Args:
         covariance: (n, n) C.
         rows: (m, n) A.
-        variance: (m,) of r.
+        variance: (m,) of r, or (m, m) its covariance.
         missing: (m,) innovation y − A x̄.
     """
     carried = covariance @ rows.T
-    S = rows @ carried + np.diag(variance)
+    S = rows @ carried + (np.diag(variance) if variance.ndim == 1 else variance)
     factor = scipy.linalg.cho_factor(S, check_finite=False)
     gain = scipy.linalg.cho_solve(factor, carried.T, check_finite=False).T
     return Conditioned(gain @ missing, symmetric(covariance - gain @ carried.T))
 
 
 def residual_variance(settings: TorqueSettings, mass_kg: float) -> Array:
-    """(6,) variance per second of the residual."""
-    scale = mass_kg / MASS_OF_TABLE_KG
-    force, moment = settings.residual_force_n * scale, settings.residual_moment_nm * scale
-    return np.repeat([force**2, moment**2], 3)
+    """(6,) variance per second of the residual, world axes."""
+    s = settings
+    return _variance(s.residual_force_n, s.residual_vertical_force_n, s.residual_moment_nm, mass_kg)
 
 
 def load_variance(settings: TorqueSettings, mass_kg: float) -> Array:
-    """(12,) variance per second of the foot wrenches."""
+    """(12,) variance per second of the foot wrenches, forces in world axes."""
+    s = settings
+    return np.tile(_variance(s.load_force_n, s.load_vertical_force_n, s.load_moment_nm, mass_kg), 2)
+
+
+def _variance(force_n: float, vertical_n: float | None, moment_nm: float, mass_kg: float) -> Array:
+    """(6,) of horizontal forces, the vertical force (None: as they) and moments (thesis eq. 4.18)."""
     scale = mass_kg / MASS_OF_TABLE_KG
-    force, moment = settings.load_force_n * scale, settings.load_moment_nm * scale
-    return np.tile(np.repeat([force**2, moment**2], 3), 2)
+    force, moment = force_n * scale, moment_nm * scale
+    vertical = force if vertical_n is None else vertical_n * scale
+    return np.array([force**2, force**2, vertical**2, moment**2, moment**2, moment**2])
 
 
 class ForceNoise:
@@ -82,6 +88,11 @@ class ForceNoise:
         jerk = settings.jerk_scale * body.model.acceleration_sd
         self._jerk = np.where(body.kinematic, 0.0, jerk**2)
         self._residual, self._load = residual_variance(settings, mass), load_variance(settings, mass)
+        roles, ids = body.model.roles, {name: j.joint_id for name, j in body.model.joints.items()}
+        # Segments in whose axes a force of unequal variances stands in the state.
+        self._root = None if settings.residual_vertical_force_n is None else ids[roles.root]
+        apart = settings.load_vertical_force_n is not None and body.wrench_frame == "foot"
+        self._feet = tuple(ids[name] for name in roles.feet) if apart else ()
         self._independent = self._own() * (1.0 / dt_s if settings.per_frame else 1.0)
 
     def __call__(self, state: ForcedState) -> Array:
@@ -89,17 +100,38 @@ class ForceNoise:
         layout, u = self._layout, self._layout["u"]
         density = np.zeros((layout.size, layout.size))
         density[layout.v, layout.v] = np.diag(self._toes)
-        density[u, u] = (
-            np.diag(self._independent) if self.settings.noise == "independent" else self._together(state)
-        )
+        density[u, u] = self._apart(state) if self.settings.noise == "independent" else self._together(state)
         return density
+
+    def _apart(self, state: ForcedState) -> Array:
+        own = np.diag(self._independent)
+        if self._root is not None:
+            own[:3, :3] = self._turned(state.q, self._root, self._independent[:3])
+        self._turn_loads(state.q, own[-FEET:, -FEET:], self._independent[-FEET:])
+        return own
 
     def _together(self, state: ForcedState) -> Array:
         rows = self.body.force_rows(state.q)
         free = np.diag(np.concatenate([self._jerk, self._load]))
+        self._turn_loads(state.q, free[-FEET:, -FEET:], self._load)
         if self.body.force_state == "torque":
-            free = condition(free, rows[:6], self._residual, np.zeros(6)).covariance
+            residual = self._residual
+            if self._root is not None:
+                residual = np.diag(residual)
+                residual[:3, :3] = self._turned(state.q, self._root, self._residual[:3])
+            free = condition(free, rows[:6], residual, np.zeros(6)).covariance
         return symmetric(rows @ free @ rows.T)
+
+    def _turn_loads(self, q: Array, loads: Array, variance: Array) -> None:
+        """Turns the forces' part of (12, 12) ``loads`` in place into the feet's axes, where they stand in these."""
+        for side, foot in enumerate(self._feet):
+            force = slice(FOOT * side, FOOT * side + 3)
+            loads[force, force] = self._turned(q, foot, variance[force])
+
+    def _turned(self, q: Array, joint: int, variance: Array) -> Array:
+        """(3, 3) covariance in the axes of a segment, of variances (3,) in world axes."""
+        axes = self.body.model.placements(q)[0][joint]
+        return symmetric(axes.T @ (variance[:, None] * axes))
 
     def _own(self) -> Array:
         """(nu,) the thesis's variances (Table 4.3)."""

@@ -8,7 +8,7 @@ n = 2 nv + nu.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import cast
 
 import numpy as np
@@ -16,12 +16,12 @@ import scipy.linalg
 
 from mbkf.conventions import Array
 from mbkf.filters.plant import Plant
-from mbkf.filters.torque.integrators import Motion, integrator
+from mbkf.filters.torque.integrators import INTEGRATORS, Motion, integrator
 from mbkf.model.body import Body
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.layout import Layout, parted
-from mbkf.numerics.discretisation import Discrete, discretise, symmetric
+from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS, Discrete, discretise, symmetric
 from mbkf.numerics.transition import DenseTransition
 
 
@@ -70,9 +70,9 @@ class Scheme:
         substeps: Equal parts a frame is cut into.
     """
 
-    integrator: str = "TN"
-    propagation: str = "exponential"
-    covariance: str = "van_loan"
+    integrator: str = field(default="TN", metadata={"words": tuple(INTEGRATORS)})
+    propagation: str = field(default="exponential", metadata={"words": tuple(PROPAGATIONS)})
+    covariance: str = field(default="van_loan", metadata={"words": COVARIANCES})
     complete: bool = True
     mean_slope: bool = False
     substeps: int = 1

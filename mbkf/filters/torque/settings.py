@@ -24,14 +24,20 @@ is pulled to zero instead of walking away.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.filters.given_settings import with_given
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.plant import Scheme
+from mbkf.io.preset import read_preset, shipped_presets
+from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES
 
 MASS_OF_TABLE_KG = 100.0
 """Covariances of forces scale with the subject's mass over this (thesis eq. 4.18)."""
+
+NOISES = ("consistent", "independent")
+"""Process noise of the forces, see :mod:`mbkf.filters.torque.noise`."""
 
 
 @dataclass(frozen=True)
@@ -50,9 +56,12 @@ class TorqueSettings:
         jerk_scale: Noise of accelerations per √s as a multiple of the body's table of accelerations; "consistent".
         toe_acceleration: Acceleration noise of the toes, rad/s²; None for the body's table.
         load_force_n, load_moment_nm: Noise of the foot wrenches, N/√s and N m/√s.
+        load_vertical_force_n: That of vertical forces; None: as of horizontal ones, ``load_force_n``.
         plate_force_n, plate_moment_nm: Standard deviation of a plate's reading, moments about the ankle.
+        plate_vertical_force_n: That of vertical forces; None: as of horizontal ones, ``plate_force_n``.
         unloaded_force_n, unloaded_moment_nm: The same for a foot that certainly carries nothing.
         residual_force_n, residual_moment_nm: Residual noise σᴿ, N/√s and N m/√s; with ``force_state`` "torque".
+        residual_vertical_force_n: That of the vertical force; None: as of horizontal ones, ``residual_force_n``.
         residual_spread_force_n, residual_spread_moment_nm: Spread of the residual about 0, per frame; infinite
             where it is a random walk alone.
         upper_torque_nm, lower_torque_nm: Torque noise of upper and lower body, N m/√s; "independent" only.
@@ -61,31 +70,45 @@ class TorqueSettings:
 
     scheme: Scheme = field(default_factory=Scheme)
     tracking: KinematicSettings = field(default_factory=KinematicSettings)
-    force_state: str = "inertial"
-    wrench_frame: str = "ankle"
-    noise: str = "consistent"
-    jerk_scale: float = 3.0
-    toe_acceleration: float | None = None
+    force_state: str = field(default="inertial", metadata={"words": FORCE_STATES})
+    wrench_frame: str = field(default="ankle", metadata={"words": WRENCH_FRAMES})
+    noise: str = field(default="consistent", metadata={"words": NOISES})
+    jerk_scale: float = field(default=3.0, metadata={"only_with": ("noise", "consistent")})
+    toe_acceleration: float | None = field(default=None, metadata={"absent": "table"})
     load_force_n: float = 1000.0
+    load_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
     load_moment_nm: float = 100.0
     plate_force_n: float = 5.0
+    plate_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
     plate_moment_nm: float = 2.0
     unloaded_force_n: float = 0.1
     unloaded_moment_nm: float = 0.02
     residual_force_n: float = 10.0
+    residual_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
     residual_moment_nm: float = 5.0
-    residual_spread_force_n: float = 10.0
-    residual_spread_moment_nm: float = 5.0
-    upper_torque_nm: float = 5.0
-    lower_torque_nm: float = 20.0
+    residual_spread_force_n: float = field(default=10.0, metadata={"infinite": True})
+    residual_spread_moment_nm: float = field(default=5.0, metadata={"infinite": True})
+    upper_torque_nm: float = field(default=5.0, metadata={"only_with": ("noise", "independent")})
+    lower_torque_nm: float = field(default=20.0, metadata={"only_with": ("noise", "independent")})
     per_frame: bool = False
 
     def __post_init__(self) -> None:
+        """Refuses settings that contradict each other.
+
+        Raises:
+            InvalidInput: They do.
+        """
+        if self.per_frame and self.noise != "independent":
+            raise InvalidInput(
+                f'per_frame reads the standard deviations of "independent" noise as those of a frame, and noise is '
+                f'"{self.noise}"; give noise = "independent", or per_frame = false'
+            )
         spread = (self.residual_spread_force_n, self.residual_spread_moment_nm)
         if self.force_state == "inertial" and not all(map(math.isfinite, spread)):
             raise InvalidInput(
-                "a torque filter whose state is inertial needs a finite residual spread, "
-                "which is all that ties the plates to the motion"
+                'force_state "inertial" needs a finite residual_spread_force_n and residual_spread_moment_nm, '
+                "which alone tie the plates to the motion; "
+                'give finite ones, or force_state = "torque"'
             )
 
 
@@ -97,7 +120,7 @@ SCHEMES = {
 
 
 def preset(name: str, *, literal: bool = False) -> TorqueSettings:
-    """Settings of the thesis's FD or FDMC.
+    """Settings of the thesis's FD or FDMC, from the preset files that come with mbkf.
 
     Args:
         name: "FD" or "FDMC".
@@ -108,21 +131,5 @@ def preset(name: str, *, literal: bool = False) -> TorqueSettings:
     """
     if name not in SCHEMES:
         raise UnknownName("torque filter", name, SCHEMES)
-    stable = TorqueSettings(scheme=SCHEMES[name])
-    if not literal:
-        return stable
-    return replace(
-        stable,
-        force_state="torque",
-        wrench_frame="thesis",
-        noise="independent",
-        toe_acceleration=10.0,
-        load_force_n=20.0,
-        load_moment_nm=20.0,
-        plate_force_n=20.0,
-        plate_moment_nm=20.0,
-        unloaded_force_n=20.0,
-        unloaded_moment_nm=20.0,
-        residual_spread_force_n=math.inf,
-        residual_spread_moment_nm=math.inf,
-    )
+    file = shipped_presets()[f"{name}-literal" if literal else name]
+    return with_given(TorqueSettings(), read_preset(file).values, str(file))

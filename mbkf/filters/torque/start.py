@@ -40,6 +40,7 @@ class TorqueStart:
         """
         self.body, self.plant, self.settings = body, plant, settings
         mass = body.model.mass_kg
+        # A vertical force of its own variance counts as one along the pelvis's axis here: people begin upright.
         walk = residual_variance(settings, mass)
         self._residual = np.where(np.isfinite(residual_sd), residual_sd**2, walk)
         self._unmeasured = np.sqrt(load_variance(settings, mass))

@@ -9,7 +9,7 @@ regression's error on blocks of time left out, weighted by its correlation time.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +41,7 @@ class CoordinationSettings:
         coordination_errs_s: Correlation time of the prediction's error.
     """
 
-    coordination_memory_s: float = 5.0
+    coordination_memory_s: float = field(default=5.0, metadata={"zero": True})
     coordination_ridge_rad: float = 0.1
     coordination_errs_s: float = 0.25
 

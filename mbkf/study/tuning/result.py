@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from mbkf.io.preset import Preset
+from mbkf.io.preset import Preset, Value
 from mbkf.version import __version__
 
 FLAT_NATS = 2.0
@@ -50,6 +50,7 @@ class Tuned:
         calls: Runs over the trials.
         settled: Whether the search converged.
         seconds: Time it took.
+        start: Other settings with which the search began and which are not the filter's defaults.
     """
 
     filter: str
@@ -62,6 +63,7 @@ class Tuned:
     calls: int
     settled: bool
     seconds: float
+    start: Mapping[str, Value] = field(default_factory=dict)
 
     @property
     def better(self) -> bool:
@@ -90,7 +92,7 @@ class Tuned:
         return Preset(
             name,
             self.filter,
-            self.values if self.better else self.defaults,
+            {**self.start, **(self.values if self.better else self.defaults)},
             __version__,
             "; ".join(self.warnings),
             self.tuned_on,

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
-from mbkf.filters.settings import changed, flat
-from mbkf.filters.torque.settings import SCHEMES, preset
-from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
+from mbkf.filters.given_settings import with_given
+from mbkf.filters.settings import flat
+from mbkf.io.preset import (
+    SUFFIX,
+    Value,
+    preset_folder,
+    read_preset,
+    saved_presets,
+    shipped_presets,
+    value_of,
+)
 from mbkf.trial.preparation.filters import FILTERS
 from mbkf.trial.preparation.settings import ReconstructSettings
-
-SettingsT = TypeVar("SettingsT")
-
-LITERAL = "-literal"
-BUILT_IN = tuple(name + end for name in SCHEMES for end in ("", LITERAL))
-"""Presets that come with mbkf: the thesis's two torque filters, with stable noise and with the thesis's own."""
 
 
 def with_preset(
@@ -37,42 +40,52 @@ def with_preset(
         FileFormatError: The file does not hold a preset.
         InvalidInput: The preset is for another filter than the one chosen, or a value is not possible.
     """
-    if name in BUILT_IN:
-        _check_filter(name, "torque", wanted_filter)
-        scheme = name.removesuffix(LITERAL)
-        return replace(settings, filter="torque", torque=preset(scheme, literal=name != scheme))
     path = preset_path(name)
     found = read_preset(path)
     if found.filter not in FILTERS:
         raise UnknownName("filter", found.filter, FILTERS, str(path))
-    _check_filter(name, found.filter, wanted_filter)
-    own = with_values(getattr(settings, found.filter), found, str(path))
-    changes: dict[str, Any] = {"filter": found.filter, found.filter: own}
+    if wanted_filter not in (None, found.filter):
+        raise InvalidInput(
+            f"preset '{name}' is for the {found.filter} filter, not the {wanted_filter} one; leave --filter away"
+        )
+    own = with_given(getattr(settings, found.filter), found.values, str(path))
+    changes: dict[str, Any] = {"filter": found.filter, found.filter: own, "preset": name}
     return replace(settings, **changes)
 
 
-def with_values(settings: SettingsT, found: Preset, where: str) -> SettingsT:
-    """A filter's settings with the preset's values.
+def with_set(settings: ReconstructSettings, given: Sequence[str]) -> ReconstructSettings:
+    """Settings with single ones of the chosen filter changed.
 
     Args:
-        settings: Settings of a filter.
-        found: The preset.
-        where: Name of the preset, for error messages.
+        settings: All else.
+        given: Texts ``NAME=VALUE``, as ``--set`` takes them.
 
     Raises:
-        UnknownName: The setting does not exist, or its value has another type.
-        InvalidInput: A value is not positive.
+        UnknownName: The setting does not exist.
+        InvalidInput: A text has another form, names a setting twice or one of another filter, or a value is not
+            possible.
     """
-    kinds = {key: type(value) for key, value in flat(settings).items() if isinstance(value, int | float)}
-    known = [key for key, kind in kinds.items() if kind is not bool]
-    values: dict[str, float] = {}
-    for key, value in found.values.items():
-        if key not in known:
-            raise UnknownName("setting", key, known, where)
-        if value <= 0.0 and not (value == 0.0 and key == "innovation_share"):
-            raise InvalidInput(f"{where}: {key} must be positive, got {value:g}")
-        values[key] = kinds[key](value)
-    return changed(settings, **values)
+    if not given:
+        return settings
+    values: dict[str, Value] = {}
+    for text in given:
+        name, equals, written = (part.strip() for part in text.partition("="))
+        value = value_of(written)
+        if not (name and equals) or value is None:
+            raise InvalidInput(f"--set '{text}': write NAME=VALUE, such as integrator=HE or plate_force_n=10")
+        if name in values:
+            raise InvalidInput(f"--set {name} is given twice; give it once")
+        values[name] = value
+    own = getattr(settings, settings.filter)
+    for name in values:
+        others = [one for one in FILTERS if name in flat(getattr(settings, one))]
+        if name not in flat(own) and others:
+            raise InvalidInput(
+                f"--set {name}: this is a setting of the {' and the '.join(others)} filter, and the "
+                f"{settings.filter} filter was chosen; give --filter {others[0]}"
+            )
+    changes: dict[str, Any] = {settings.filter: with_given(own, values, "--set")}
+    return replace(settings, **changes, given=tuple(values.items()))
 
 
 def preset_path(name: str) -> Path:
@@ -81,12 +94,15 @@ def preset_path(name: str) -> Path:
     Raises:
         UnknownName: No preset has this name.
     """
+    shipped = shipped_presets()
+    if name in shipped:
+        return shipped[name]
     if name.endswith(SUFFIX) or os.sep in name or "/" in name:
         return Path(name)
     saved = saved_presets()
     if name not in saved:
         where = f"--preset (saved ones lie in {preset_folder()}; a file ends in {SUFFIX})"
-        raise UnknownName("preset", name, (*saved, *BUILT_IN), where)
+        raise UnknownName("preset", name, (*saved, *shipped), where)
     return saved[name]
 
 
@@ -98,7 +114,7 @@ def check_name(name: str) -> str:
     """
     if not re.fullmatch(r"\w[\w.-]*", name) or name.endswith(SUFFIX):
         raise InvalidInput(f"--name '{name}': use letters, digits, dashes, underscores and no '{SUFFIX}'")
-    if name in BUILT_IN:
+    if name in shipped_presets():
         raise InvalidInput(f"--name '{name}' is a preset of mbkf itself; choose another name")
     return name
 
@@ -113,10 +129,3 @@ def place_of(name: str, out: str | Path | None) -> Path:
     if path.is_dir():
         raise FileFormatError(path, "is a folder; name a file for --out")
     return path
-
-
-def _check_filter(name: str, its_filter: str, wanted: str | None) -> None:
-    if wanted not in (None, its_filter):
-        raise InvalidInput(
-            f"preset '{name}' is for the {its_filter} filter, not the {wanted} one; leave --filter away"
-        )

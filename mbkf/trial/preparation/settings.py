@@ -13,6 +13,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.settings import flat
 from mbkf.filters.spread import ASKED
 from mbkf.filters.torque.settings import TorqueSettings
+from mbkf.io.preset import Value
 from mbkf.io.results import LAG_KEY
 from mbkf.kernel.loading import kernel_name
 
@@ -51,6 +52,8 @@ class ReconstructSettings:
         checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.trial.checks`).
         spreads: Standard deviations given besides those of configuration, velocity and wrenches: "torques" and
             "angles". Frames with an estimated load do not count as valid without those of the torques.
+        preset: Name or file of the preset that the filter's settings are of; empty without one. For the record.
+        given: Single settings of the filter that a command gave besides, by name. For the record.
     """
 
     filter: str = "dynamic"
@@ -70,6 +73,8 @@ class ReconstructSettings:
     other_contacts: bool = True
     checks: bool = True
     spreads: tuple[str, ...] = ASKED
+    preset: str = ""
+    given: tuple[tuple[str, Value], ...] = ()
 
     def __post_init__(self) -> None:
         """Refuses a negative or infinite lag, a lag beside smoothing, and unknown standard deviations.
@@ -96,7 +101,11 @@ class ReconstructSettings:
 
 def recorded(settings: ReconstructSettings) -> dict[str, object]:
     """The settings as files hold them: the dynamic filter's by their leaves' names, the lag in ms, the kernel."""
-    found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
+    found: dict[str, object] = {
+        **asdict(settings),
+        "dynamic": flat(settings.dynamic),
+        "given": dict(settings.given),
+    }
     del found["lag_s"]
     lag_ms = round(1e3 * settings.lag_s, 6)
     return {**found, "smooth": settings.smooths, LAG_KEY: lag_ms, "kernel": kernel_name()}

@@ -139,7 +139,7 @@ CASES = [
     ("protocol", 'name = "P"', 'name = "P"\nbody = "../nowhere.toml"', "nowhere.toml"),
     ("protocol", 'name = "P"', 'name = "P"\nbody = "' + "x" * 200 + '"', "unknown body"),
     ("preset", "gate = 5.0", "gate = nan", "gate"),
-    ("preset", "gate = 5.0", 'gate = "5"', "gate"),
+    ("preset", "gate = 5.0", 'gate = [5.0, "5"]', "gate"),
     ("preset", 'name = "own"', "name = 1", "name must be a text"),
     ("preset", 'filter = "dynamic"', 'fliter = "dynamic"', "fliter"),
     ("list", "mass_kg = 70.0", "mass_kg = 1e300", "mass_kg"),
