@@ -3,23 +3,34 @@
 Orientation of every sensor by Madgwick's filter or an error-state Kalman filter. Files: CSV tables with units in their
 column names, Xsens text exports (or a folder of them), MATLAB files of the BROAD and qmt sets.
 
+--compare sets a second filter beside the first, or the sensor's own quaternions: those in the same file (--compare
+file) or in another one, such as a maker's export of quaternions. --initial gives the first orientation, as a maker's
+calibration knows it; without it the filter takes that of the first readings.
+
 Examples:
   mbkf imu orient thigh.csv --frame ENU --out result
   mbkf imu orient left_foot.csv right_foot.csv --units acc=g,gyr=deg/s --rate 204.8 --frame NWU --out result
   mbkf imu orient trial.mat --frame ENU --filter madgwick --beta 0.1 --compare ekf --out result
+  mbkf imu orient physical.csv --units acc=m/s2,gyr=rad/s,mag=uT --rate 60 --frame NWU --filter madgwick --beta 0.35 \
+      --compare quaternions.csv --initial compared --out result
 
 Writes orientation.json, and for each sensor NAME.csv (quaternion sensor -> world as x, y, z, w; unwrapped roll, pitch,
-yaw) and with --compare NAME_compare.png (needs matplotlib, the extra 'figures').
+yaw) and with --compare NAME_compare.csv (the differences over time) and NAME_compare.png (needs matplotlib, the extra
+'figures').
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from mbkf.cli.imu import add_reading_options, read
 from mbkf.cli.options import add_out
+
+if TYPE_CHECKING:
+    from mbkf.imu.orientation import Orientation
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +44,17 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--filter", default="ekf", choices=filters, help="smooth: ekf with later readings (ekf)"
     )
-    parser.add_argument("--compare", choices=filters, help="a second filter, drawn beside it")
+    parser.add_argument(
+        "--compare",
+        metavar="FILTER|file|FILE",
+        help="a second filter, 'file' for the orientations in the file, or another file with quaternions",
+    )
+    parser.add_argument(
+        "--initial",
+        metavar="W,X,Y,Z|compared",
+        type=initial,
+        help="first orientation in --frame: a unit quaternion, or the first one of the file compared with",
+    )
     parser.add_argument("--beta", type=float, default=0.1, help="Madgwick's gain, rad/s (%(default)s)")
     parser.add_argument("--zeta", type=float, default=0.0, help="Madgwick's gain of the gyroscope's bias (0)")
     parser.add_argument("--no-mag", action="store_true", help="ignore magnetometers")
@@ -44,6 +65,25 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="read the gyroscope's bias while a sensor lies still (ekf, smooth; default: yes)",
     )
     add_out(parser, "DIR", "folder to write", required=True)
+
+
+def initial(text: str) -> list[float] | str:
+    """Reads ``w,x,y,z`` as x, y, z, w; the word ``compared`` as it is.
+
+    Raises:
+        ArgumentTypeError: The text is neither.
+    """
+    from mbkf.trial.inertial.orient import COMPARED
+
+    if text == COMPARED:
+        return text
+    try:
+        w, x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"'{text}': write four numbers as 1,0,0,0 (w first), or '{COMPARED}'"
+        ) from None
+    return [x, y, z, w]
 
 
 def run(args: argparse.Namespace) -> int:
@@ -72,6 +112,7 @@ def run(args: argparse.Namespace) -> int:
             frame=args.frame,
             settings=settings,
             compare=args.compare,
+            start=args.initial,
             only=args.sensor,
             progress=report,
         )
@@ -85,11 +126,24 @@ def run(args: argparse.Namespace) -> int:
                 course.sd_rad, note,
             )  # fmt: skip
             if result.compared:
+                _write_difference(course, result.compared[k], partial / f"{stem}_compare.csv")
                 write_comparison(course, result.compared[k], partial / f"{stem}_compare.png")
         write_text(partial / "orientation.json", json.dumps(summary, indent=2) + "\n")
     _print(summary)
     print(folder)
     return 0
+
+
+def _write_difference(course: Orientation, compared: Orientation, path: Path) -> None:
+    import numpy as np
+
+    from mbkf.imu.orientation_difference import orientation_difference
+    from mbkf.io.imu.write import write_difference_csv
+
+    apart = orientation_difference(course.quaternion, compared.quaternion)
+    turns = np.column_stack([apart.euler_rad, apart.angle_rad, apart.heading_rad, apart.inclination_rad])
+    note = f"orientation: sensor -> {course.frame} by {compared.method}; differences from {course.method}"
+    write_difference_csv(path, course.time_s, apart.quaternion, apart.components, turns, note)
 
 
 def _print(summary: dict[str, Any]) -> None:

@@ -12,7 +12,7 @@ from mbkf.io.imu.files import read_imu
 from mbkf.io.imu.mount import read_mounts
 from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.storage import read_storage
-from tests.imu.turning import turning
+from tests.imu.turning import apart_deg, turning
 from tests.smpl_files import marching as marching_skeleton
 from tests.smpl_files import write_amass
 from tests.trial.inertial.test_angles import SAGITTAL, marching
@@ -53,6 +53,48 @@ def test_orient_writes_tables_pictures_and_numbers(files, tmp_path, capsys):
     assert (tmp_path / "thigh_compare.png").is_file()
     summary = json.loads((tmp_path / "orientation.json").read_text())
     assert summary["sensors"][0]["error_deg"]["total"] < 6.0
+
+
+@pytest.mark.slow
+def test_madgwick_beside_a_sensors_own_quaternions(tmp_path, capsys):
+    """As the source did with its Technaid sensors: names with blanks, no times, units and rate by option."""
+    made = turning(3.0, still_s=1.0)
+    columns = {" Acc": made.force, "Gyr": made.gyro, "Mag": made.field}
+    names = ",".join(f"{kind} {axis} " for kind in columns for axis in "XYZ")
+    table = np.hstack(list(columns.values()))
+    np.savetxt(tmp_path / "walk_capp.csv", table, "%.6f", ",", header=names, comments="")
+    own = made.truth[:, [3, 0, 1, 2]]
+    np.savetxt(tmp_path / "walk_capq.csv", own, "%.7f", ",", header=" qW , qX, qY, qZ ", comments="")
+    words = ["imu", "orient", str(tmp_path / "walk_capp.csv"), "--frame", "NWU", "--filter", "madgwick"]
+    stated = ["--units", "acc=m/s2,gyr=rad/s,mag=uT", "--rate", "100"]
+    compared = ["--compare", str(tmp_path / "walk_capq.csv"), "--initial", "compared"]
+    assert main([*words, *stated, *compared, "--beta", "0.35", "--out", str(tmp_path / "o")]) == 0
+    told = capsys.readouterr().out
+    assert "walk_capq.csv differs by" in told
+    assert "those of NWU" in told
+    table = np.genfromtxt(tmp_path / "o" / "walk_capp_compare.csv", delimiter=",", skip_header=2)
+    assert table.shape == (300, 15)
+    assert apart_deg(table[:, 1:5], made.truth).max() < 1e-4
+    np.testing.assert_allclose(table[0, 5:], 0.0, atol=1e-5)
+    assert 0.1 < table[:, 12].max() < 30.0
+    assert (tmp_path / "o" / "walk_capp_compare.png").is_file()
+    assert main([*words, "--rate", "100", "--out", str(tmp_path / "p")]) == 2
+    assert "--units acc=m/s2,gyr=rad/s,mag=" in capsys.readouterr().err
+
+
+def test_a_first_orientation_is_four_numbers_or_a_word(files, tmp_path, capsys):
+    words = ["imu", "orient", str(files / "thigh.csv"), "--frame", "NWU", "--out", str(tmp_path / "o")]
+    assert main([*words, "--initial", "1,0,0,0"]) == 0
+    first = json.loads((tmp_path / "o" / "orientation.json").read_text())["initial"]["thigh"]
+    assert first == pytest.approx([0.0, 0.0, 0.0, 1.0])
+    for bad, told in (("1,0,0", "four numbers"), ("a", "four numbers")):
+        with pytest.raises(SystemExit) as end:
+            main([*words, "--initial", bad])
+        assert end.value.code == 2
+        assert told in capsys.readouterr().err
+    assert main([*words, "--initial", "5,0,0,0"]) == 2
+    assert main([*words, "--compare", "kalman"]) == 2
+    assert "madgwick" in capsys.readouterr().err.splitlines()[-1]
 
 
 def test_tune_at_rest_and_by_search(files, tmp_path, capsys):

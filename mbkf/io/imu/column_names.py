@@ -14,11 +14,13 @@ from dataclasses import dataclass
 from mbkf.io.imu.units import plain_unit
 
 _KIND = (
-    r"(?P<acc>acc|accl|accel|accelero|acceleration|accelerations|accelerometer|accelerometers|specificforce)"
+    r"(?P<acc>acc|accl|accel|accelero|acceleration|accelerations|accelerometer|accelerometers|specificforce"
+    r"|acelerometro|aceleracion)"
     r"|(?P<gyr>gyr|gyro|gyros|gyroscope|gyroscopes|angularvelocity|angularvelocities|angularrate|angvel|rotationrate"
-    r"|turnrate|omega)"
-    r"|(?P<mag>mag|magn|magnet|magneto|magnetic|magnetometer|magnetometers|magneticfield|magfield)"
-    r"|(?P<quat>q|quat|quaternion|quaternions|orientation)"
+    r"|turnrate|omega|giro|giroscopio|giroscopo)"
+    r"|(?P<mag>mag|magn|magnet|magneto|magnetic|magnetometer|magnetometers|magneticfield|magfield"
+    r"|magnetometro)"
+    r"|(?P<quat>q|quat|quaternion|quaternions|orientation|cuaternion)"
 )
 _WORD_OF_KIND = re.compile(rf"(?:{_KIND})(?P<axis>[wxyz])?", re.IGNORECASE)
 _SHORT = re.compile(r"(?P<kind>[agmqw])(?P<axis>[wxyz])", re.IGNORECASE)

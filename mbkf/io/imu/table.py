@@ -44,6 +44,12 @@ class TableDefaults:
 
 NO_DEFAULTS = TableDefaults({})
 
+_NEEDED = {
+    "acc": "accelerometer column (such as 'acc_x [m/s^2]')",
+    "quat": "columns of quaternions (such as qw, qx, qy, qz)",
+}
+"""By quantity the columns without which a table is refused."""
+
 
 @dataclass(frozen=True)
 class _Column:
@@ -92,12 +98,31 @@ def read_imu_csv(
     return readings_of(path, signals, rate_hz if rate_hz else None, frame)
 
 
+def read_orientation_csv(path: str | Path, rate_hz: float | None = None) -> tuple[tuple[Signal, ...], str]:
+    """Reads the quaternions of a table, which may hold nothing else.
+
+    Args:
+        path: The file, as for :func:`read_imu_csv`.
+        rate_hz: Sample rate of a table that states no times.
+
+    Returns:
+        The signal of each sensor, and the world of the orientations as the file states it.
+
+    Raises:
+        FileFormatError: The file is missing, has no columns of quaternions, or a cell is not a number.
+        InvalidInput: The rate is not stated anywhere.
+    """
+    text = read_table_text(Path(path))
+    return tuple(table_signals(text, rate_hz=rate_hz, needed="quat")), _note(text)
+
+
 def table_signals(
     text: TableText,
     *,
     units: Mapping[str, str] | None = None,
     rate_hz: float | None = None,
     defaults: TableDefaults = NO_DEFAULTS,
+    needed: str = "acc",
 ) -> list[Signal]:
     """The signals of a table.
 
@@ -106,20 +131,24 @@ def table_signals(
         units: Units that the caller states; they overrule the file's.
         rate_hz: Sample rate that the caller states; it overrules times without a unit.
         defaults: What the maker states.
+        needed: Quantity without which the table is refused: "acc", or "quat", which is then the only one read.
 
     Raises:
-        FileFormatError: There are no accelerometer columns, or a cell is not a number.
+        FileFormatError: There are no columns of that quantity, or a cell is not a number.
         InvalidInput: A unit or the rate is not stated anywhere.
         UnknownName: Unknown unit.
     """
     given = {kind: unit_name(kind, unit, "--units") for kind, unit in (units or {}).items()}
-    head, first = _head(text, defaults.kind)
+    head, first = _head(text, defaults.kind, needed)
     titles = text.rows[head][1]
     below = [text.rows[k][1] for k in range(head + 1, first)]
     columns = _columns(titles, _sensors_above(text, head), below, defaults.kind)
-    if not any(column.name.kind in ("acc", "free", defaults.kind) for column in columns):
-        found = ", ".join(title for title in titles[:8] if title)
-        raise FileFormatError(text.path, f"no accelerometer column (such as 'acc_x [m/s^2]') among {found}")
+    if needed == "quat":
+        columns = [column for column in columns if column.name.kind == "quat"]
+    elif not any(column.name.kind in ("acc", "free", defaults.kind) for column in columns):
+        columns = []
+    if not columns:
+        raise _lacking(text.path, titles, needed)
     times = _time_columns(text.path, titles, below, given, rate_hz)
     used = [column.index for column in columns] + [time.index for time in times]
     numbers = _numbers(text, first, len(titles), used)
@@ -132,7 +161,12 @@ def table_signals(
     )
 
 
-def _head(text: TableText, kind: str) -> tuple[int, int]:
+def _lacking(path: Path, titles: Sequence[str], needed: str) -> FileFormatError:
+    found = ", ".join(title for title in titles[:8] if title)
+    return FileFormatError(path, f"no {_NEEDED[needed]} among {found}")
+
+
+def _head(text: TableText, kind: str, needed: str) -> tuple[int, int]:
     """Index of the row of names and of the first row of numbers."""
     counts = [
         sum(parse_column_name(cell, kind) is not None for cell in cells) for _, cells in text.rows[:400]
@@ -144,8 +178,7 @@ def _head(text: TableText, kind: str) -> tuple[int, int]:
             raise FileFormatError(
                 text.path, "the first row names no columns; write names such as 'acc_x [m/s^2]'", number
             )
-        found = ", ".join(cell for cell in cells[:8] if cell)
-        raise FileFormatError(text.path, f"no accelerometer column (such as 'acc_x [m/s^2]') among {found}")
+        raise _lacking(text.path, cells, needed)
     first = head + 1
     while (
         first < len(text.rows) and first <= head + _UNIT_ROWS and not any(map(is_number, text.rows[first][1]))

@@ -85,6 +85,34 @@ def write_orientation_csv(
     _write(path, [f"# {MARK}; {note}"], names, np.hstack(parts))
 
 
+def write_difference_csv(
+    path: str | Path, time_s: Array, quaternion: Array, components: Array, angles_rad: Array, note: str
+) -> None:
+    """Writes how an orientation of one sensor differs from another one, sample by sample.
+
+    Args:
+        path: The file.
+        time_s: (T,) sample times, s.
+        quaternion: (T, 4) the orientation compared with, sensor → world (x, y, z, w).
+        components: (T, 4) differences of the quaternions' components.
+        angles_rad: (T, 6) differences of roll, pitch and yaw; turn between the two, its heading and its inclination.
+        note: First line of the file.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    names = ["time [s]", "qx", "qy", "qz", "qw", *(f"difference_{axis}" for axis in ("qx", "qy", "qz", "qw"))]
+    names += [
+        f"difference_{name} [deg]" for name in ("roll", "pitch", "yaw", "total", "heading", "inclination")
+    ]
+    _write(
+        path,
+        [f"# {MARK}; {note}"],
+        names,
+        np.hstack([time_s[:, None], quaternion, components, _DEGREES * angles_rad]),
+    )
+
+
 def _write(path: str | Path, notes: Sequence[str], names: Sequence[str], table: Array) -> None:
     with replacing_text(path) as file:
         for line in (*notes, ",".join(names)):

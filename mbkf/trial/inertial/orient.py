@@ -4,18 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
-from mbkf.conventions import StageCallback
+from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.checks import problems, refuse_fatal
 from mbkf.imu.field_disturbance import field_remarks
 from mbkf.imu.frames import FRAMES, change_frame
-from mbkf.imu.orientation import Orientation, OrientSettings, orientations
-from mbkf.imu.orientation_error import OrientationError, error_angles, orientation_error
+from mbkf.imu.orientation import METHODS, Orientation, OrientSettings, orientations
+from mbkf.imu.orientation_difference import orientation_difference
+from mbkf.imu.orientation_error import OrientationError, orientation_error
 from mbkf.io.imu.readings import ImuReadings, on_regular_grid
 from mbkf.numerics.threads import single_threaded
+from mbkf.trial.inertial.stated_orientation import OWN, stated_orientations
+
+COMPARED = "compared"
+"""Word for a start with the first orientation of the file that is compared with."""
+
+UNIT_WITHIN = 0.01
+"""Deviation of a start's length from 1 that is rounding; more is a mistake."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +33,7 @@ class OrientResult:
 
     Attributes:
         courses: One per sensor.
-        compared: The same by the second filter, empty without one.
+        compared: Those of the second filter, or of the file that they are compared with; empty without one.
         errors: Per sensor that brings a reference with a known world, its name and error.
         moving_errors: The same over the movement phases that its file marks.
         warnings: Problems of the readings, each with its likely remedy.
@@ -62,30 +71,40 @@ def orient(
     *,
     frame: str,
     settings: OrientSettings | None = None,
-    compare: str | None = None,
+    compare: str | Path | None = None,
+    start: Sequence[float] | str | None = None,
     only: Sequence[str] = (),
     progress: StageCallback | None = None,
 ) -> OrientResult:
-    """Orientation of every sensor, by one filter or two.
+    """Orientation of every sensor, by one filter or two, or beside those of a file.
 
     Args:
         readings: As read.
         frame: World frame of the result: ENU, NED or NWU.
         settings: Filter and its parameters.
-        compare: Name of a second filter.
+        compare: Name of a second filter, "file" for the orientations in the sensors' own file, or another file with
+            quaternions (:func:`mbkf.trial.inertial.stated_orientation.stated_orientations`).
+        start: (4,) orientation x, y, z, w of one sensor at its first sample in ``frame``, or :data:`COMPARED`: the
+            first that the file states; by default that of a sensor at rest.
         only: Names of the sensors wanted, all when empty.
         progress: Called as samples are done.
 
     Raises:
-        InvalidInput: The readings are not plausible; the message gives the remedy.
+        FileFormatError: The file of orientations is missing or holds none.
+        InvalidInput: The readings are not plausible, or a start is not known; the message gives the remedy.
         UnknownName: Unknown sensor, frame or filter.
     """
     chosen = settings or OrientSettings()
     sensors, warnings = prepared(readings, only)
+    by_filter = compare in METHODS
+    stated, notes = _stated(sensors, frame, None if by_filter else compare)
+    begins = _starts(sensors, start, stated)
     with single_threaded():
-        courses = orientations(sensors, frame=frame, settings=chosen, progress=progress)
-        second = None if compare is None else replace(chosen, method=compare)
-        compared = () if second is None else orientations(sensors, frame=frame, settings=second)
+        courses = orientations(sensors, frame=frame, settings=chosen, start=begins, progress=progress)
+        second = replace(chosen, method=str(compare)) if by_filter else None
+        compared = (
+            stated if second is None else orientations(sensors, frame=frame, settings=second, start=begins)
+        )
     errors, moving = [], []
     for one, course in zip(sensors, courses, strict=True):
         world = [name for name in FRAMES if name in one.frame]
@@ -100,7 +119,50 @@ def orient(
         if chosen.magnetometer
         for remark in field_remarks(one, change_frame(course.quaternion, frame, "NWU"))
     ]
-    return OrientResult(courses, compared, tuple(errors), tuple(moving), (*warnings, *disturbances))
+    return OrientResult(courses, compared, tuple(errors), tuple(moving), (*warnings, *notes, *disturbances))
+
+
+def _stated(
+    sensors: Sequence[ImuReadings], frame: str, source: str | Path | None
+) -> tuple[tuple[Orientation, ...], tuple[str, ...]]:
+    """The orientations of a file, and notes; neither without a file."""
+    if source is None:
+        return (), ()
+    if source != OWN and not Path(source).exists():
+        raise UnknownName("filter or file", str(source), (*METHODS, OWN), "--compare")
+    return stated_orientations(sensors, frame, source)
+
+
+def _starts(
+    sensors: Sequence[ImuReadings], start: Sequence[float] | str | None, stated: Sequence[Orientation]
+) -> Array | None:
+    """(N, 4) unit quaternions of the sensors' first samples; None where they follow from the readings."""
+    if start is None:
+        return None
+    if isinstance(start, str):
+        if start != COMPARED or not stated:
+            raise InvalidInput(
+                f"a start '{start}' needs orientations of a file; give --compare file or --compare FILE with it"
+            )
+        return np.array([_first(one) for one in stated])
+    turn = np.asarray(start, dtype=float)
+    if len(sensors) > 1:
+        names = ", ".join(one.name for one in sensors)
+        raise InvalidInput(f"one start for {len(sensors)} sensors ({names}); choose one with --sensor")
+    size = float(np.linalg.norm(turn))
+    if turn.shape != (4,) or not abs(size - 1.0) < UNIT_WITHIN:
+        raise InvalidInput(f"a start is a unit quaternion of four numbers; these have the length {size:.3g}")
+    begin: Array = turn[None] / size
+    return begin
+
+
+def _first(stated: Orientation) -> Array:
+    first: Array = stated.quaternion[0]
+    if not np.isfinite(first).all():
+        raise InvalidInput(
+            f"sensor {stated.name}: {stated.method} states no orientation at its first sample; give --initial W,X,Y,Z"
+        )
+    return first
 
 
 def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[str, object]:
@@ -119,17 +181,22 @@ def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[
             "error_moving_deg": _degrees(moving[course.name]) if course.name in moving else None,
         }
         if result.compared:
-            total, heading, inclination = error_angles(result.compared[k].quaternion, course.quaternion)
+            apart = orientation_difference(course.quaternion, result.compared[k].quaternion)
+            parts = {
+                "total": apart.angle_rad, "heading": apart.heading_rad, "inclination": apart.inclination_rad
+            }  # fmt: skip
             row["difference_rms_deg"] = {
-                name: float(np.degrees(np.sqrt(np.nanmean(one**2))))
-                for name, one in (("total", total), ("heading", heading), ("inclination", inclination))
+                name: float(np.degrees(np.sqrt(np.nanmean(one**2)))) for name, one in parts.items()
             }
+            mean = np.nanmean(np.abs(apart.components), axis=0).tolist()
+            row["difference_mean_quaternion"] = dict(zip(("x", "y", "z", "w"), mean, strict=True))
         sensors.append(row)
     first = result.courses[0]
     return {
         "method": first.method,
         "compared_with": result.compared[0].method if result.compared else None,
         "frame": first.frame,
+        "initial": {one.name: one.quaternion[0].tolist() for one in result.courses},
         "sensors": sensors,
         "warnings": list(result.warnings),
         "settings": asdict(settings),

@@ -1,4 +1,4 @@
-"""Two orientation filters on one sensor: both estimates and their difference, as quaternions and as angles."""
+"""Two orientations of one sensor, of filters or of a file, and their difference, as quaternions and as angles."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mbkf.conventions import Array
-from mbkf.imu.frames import conjugate, multiply
 from mbkf.imu.orientation import Orientation
+from mbkf.imu.orientation_difference import orientation_difference
 from mbkf.viz.imu.figure_file import write_figure
 
 FIRST, SECOND, DIFFERENCE = "#1f6fb4", "#e06c10", "#444444"
@@ -19,14 +19,14 @@ _ANGLES = ("roll", "pitch", "yaw")
 
 
 def write_comparison(first: Orientation, second: Orientation, path: str | Path) -> None:
-    """Draws two orientation estimates over time, and their difference, into a PNG or SVG file.
+    """Draws two orientations over time, and their difference, into a PNG or SVG file.
 
-    Left the quaternion's components, right the unwrapped Euler angles; the upper rows hold both filters, the lowest
+    Left the quaternion's components, right the unwrapped Euler angles; the upper rows hold both, the lowest
     row second minus first.
 
     Args:
-        first: Orientations of one filter.
-        second: Orientations of another filter at the same times.
+        first: Orientations of a filter.
+        second: Those of another filter, or of a file, at the same times.
         path: The file; its suffix chooses the format.
 
     Raises:
@@ -34,19 +34,17 @@ def write_comparison(first: Orientation, second: Orientation, path: str | Path) 
     """
     figure = Figure(figsize=(11.0, 10.0), layout="constrained")
     axes = figure.subplots(5, 2, sharex=True)
-    q1, q2 = first.quaternion, _same_sign(second.quaternion, first.quaternion)
+    apart = orientation_difference(first.quaternion, second.quaternion)
+    q1, q2 = first.quaternion, apart.quaternion
     for row, name in enumerate("wxyz"):
         k = "xyzw".index(name)
         _both(axes[row, 0], first, second, q1[:, k], q2[:, k], f"q{name}")
-        axes[4, 0].plot(first.time_s, q2[:, k] - q1[:, k], label=f"q{name}", linewidth=0.9)
-    e1, e2 = _DEGREES * first.euler_rad, _DEGREES * second.euler_rad
-    apart = _near_zero(e2 - e1)
+        axes[4, 0].plot(first.time_s, apart.components[:, k], label=f"q{name}", linewidth=0.9)
+    e1, between = _DEGREES * first.euler_rad, _DEGREES * apart.euler_rad
     for row, name in enumerate(_ANGLES):
-        _both(axes[row, 1], first, second, e1[:, row], e1[:, row] + apart[:, row], f"{name} (deg)")
-        axes[4, 1].plot(first.time_s, apart[:, row], label=name, linewidth=0.9)
-    between = multiply(second.quaternion, conjugate(first.quaternion))
-    angle = 2.0 * np.arctan2(np.linalg.norm(between[:, :3], axis=1), np.abs(between[:, 3]))
-    axes[3, 1].plot(first.time_s, _DEGREES * angle, color=DIFFERENCE, linewidth=0.9)
+        _both(axes[row, 1], first, second, e1[:, row], e1[:, row] + between[:, row], f"{name} (deg)")
+        axes[4, 1].plot(first.time_s, between[:, row], label=name, linewidth=0.9)
+    axes[3, 1].plot(first.time_s, _DEGREES * apart.angle_rad, color=DIFFERENCE, linewidth=0.9)
     axes[3, 1].set_ylabel("angle between (deg)")
     for column, unit in enumerate(("", " (deg)")):
         axes[4, column].set_ylabel(f"{second.method} − {first.method}{unit}")
@@ -64,13 +62,3 @@ def _both(axes: Axes, first: Orientation, second: Orientation, a: Array, b: Arra
     axes.plot(first.time_s, a, color=FIRST, linewidth=0.9, label=first.method)
     axes.plot(second.time_s, b, color=SECOND, linewidth=0.9, label=second.method)
     axes.set_ylabel(name)
-
-
-def _same_sign(q: Array, like: Array) -> Array:
-    """Of q and −q, which are the same rotation, the nearer one."""
-    return np.where((q * like).sum(axis=1, keepdims=True) < 0.0, -q, q)
-
-
-def _near_zero(degrees: Array) -> Array:
-    """Differences of angles without whole turns."""
-    return degrees - 360.0 * np.round(degrees / 360.0)

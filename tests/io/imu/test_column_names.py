@@ -32,6 +32,9 @@ from mbkf.io.imu.column_names import parse_column_name, time_unit
         ("Magnetic field x (µT)", "", "mag", 0, "ut"),
         ("FreeAcc_X", "", "free", 0, ""),
         ("Linear Acceleration x (m/s^2)", "", "free", 0, "m/s2"),
+        ("Acelerometro X", "", "acc", 0, ""),
+        ("Giroscopio_Y", "", "gyr", 1, ""),
+        ("Magnetometro Z (uT)", "", "mag", 2, "ut"),
         ("acc_z [furlong]", "", "acc", 2, "furlong"),
     ],
 )
