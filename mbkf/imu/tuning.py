@@ -6,8 +6,8 @@ too small, since scale and alignment errors grow with the motion; the search mea
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -130,6 +130,7 @@ def searched_gains(
     frame: str,
     counted: BoolArray | None = None,
     magnetometer: bool = True,
+    start: Array | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> SearchedGains:
     """β (by Brent's method on its logarithm), then ζ, of least total error against a reference.
@@ -140,6 +141,7 @@ def searched_gains(
         frame: Its world: ENU, NED or NWU.
         counted: (T,) samples that count.
         magnetometer: Whether the field is used; without it headings are compared after one common turn.
+        start: (4,) orientation at the first sample in ``frame``; by default that of a sensor at rest.
         progress: Called with runs done and expected.
 
     Raises:
@@ -147,36 +149,96 @@ def searched_gains(
     """
     from scipy.optimize import minimize_scalar
 
-    trials: list[tuple[float, float, float]] = []
-    errors: dict[tuple[float, float], OrientationError] = {}
-    expected = 20 + len(ZETAS)
-
-    def tried(beta: float, zeta: float) -> float:
-        settings = OrientSettings("madgwick", magnetometer, MadgwickSettings(beta, zeta))
-        (course,) = orientations([one], frame=frame, settings=settings)
-        q = course.quaternion if magnetometer else _turned(course.quaternion, reference)
-        error = orientation_error(q, reference, counted)
-        if not error.samples:
-            raise InvalidInput(f"sensor {one.name}: the reference has no sample to compare with")
-        errors[beta, zeta] = error
-        trials.append((beta, zeta, error.total))
-        if progress is not None:
-            progress(min(len(trials), expected), expected)
-        return error.total
-
+    runs = _Runs(one, reference, frame, counted, magnetometer, progress, 20 + len(ZETAS), start)
     low, high = np.log(BETA_RANGE)
     grid = np.exp(np.linspace(low, high, 8))
-    best = int(np.argmin([tried(float(beta), 0.0) for beta in grid]))
+    best = int(np.argmin([runs.error(float(beta), 0.0) for beta in grid]))
     step = (high - low) / 7.0
     bounds = (max(low, np.log(grid[best]) - step), min(high, np.log(grid[best]) + step))
     minimize_scalar(
-        lambda x: tried(float(np.exp(x)), 0.0), bounds=bounds, method="bounded", options={"maxiter": 12}
+        lambda x: runs.error(float(np.exp(x)), 0.0), bounds=bounds, method="bounded", options={"maxiter": 12}
     )
-    beta = min(errors, key=lambda gains: errors[gains].total)[0]
+    beta = runs.best()[0]
     for zeta in ZETAS[1:]:
-        tried(beta, zeta)
-    gains = min(errors, key=lambda pair: errors[pair].total)
-    return SearchedGains(MadgwickSettings(*gains), errors[gains], tuple(trials))
+        runs.error(beta, zeta)
+    return runs.found()
+
+
+def swept_gains(
+    one: ImuReadings,
+    reference: Array,
+    betas: Sequence[float],
+    zetas: Sequence[float],
+    *,
+    frame: str,
+    counted: BoolArray | None = None,
+    magnetometer: bool = True,
+    start: Array | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> SearchedGains:
+    """The gains of least total error among all pairs of given ones, as the source swept them.
+
+    Args:
+        one: Sensor.
+        reference: (T, 4) orientations, NaN where unknown.
+        betas: Gains β.
+        zetas: Gains ζ.
+        frame: Its world: ENU, NED or NWU.
+        counted: (T,) samples that count.
+        magnetometer: Whether the field is used; without it headings are compared after one common turn.
+        start: (4,) orientation at the first sample in ``frame``; by default that of a sensor at rest.
+        progress: Called with runs done and expected.
+
+    Raises:
+        InvalidInput: Nothing to compare with, no gains, or a negative one.
+    """
+    if not len(betas) or not len(zetas):
+        raise InvalidInput("a sweep needs one beta and one zeta at least")
+    expected = len(betas) * len(zetas)
+    runs = _Runs(one, reference, frame, counted, magnetometer, progress, expected, start)
+    for beta in betas:
+        for zeta in zetas:
+            runs.error(float(beta), float(zeta))
+    return runs.found()
+
+
+@dataclass
+class _Runs:
+    """Runs of the filter with different gains, against one reference."""
+
+    one: ImuReadings
+    reference: Array
+    frame: str
+    counted: BoolArray | None
+    magnetometer: bool
+    progress: Callable[[int, int], None] | None
+    expected: int
+    start: Array | None = None
+    trials: dict[tuple[float, float], OrientationError] = field(default_factory=dict)
+
+    def error(self, beta: float, zeta: float) -> float:
+        """Total error with these gains, rad."""
+        settings = OrientSettings("madgwick", self.magnetometer, MadgwickSettings(beta, zeta))
+        start = None if self.start is None else self.start[None]
+        (course,) = orientations([self.one], frame=self.frame, settings=settings, start=start)
+        q = course.quaternion if self.magnetometer else _turned(course.quaternion, self.reference)
+        error = orientation_error(q, self.reference, self.counted)
+        if not error.samples:
+            raise InvalidInput(f"sensor {self.one.name}: the reference has no sample to compare with")
+        self.trials[beta, zeta] = error
+        if self.progress is not None:
+            self.progress(min(len(self.trials), self.expected), self.expected)
+        return error.total
+
+    def best(self) -> tuple[float, float]:
+        """The gains of least error."""
+        return min(self.trials, key=lambda gains: self.trials[gains].total)
+
+    def found(self) -> SearchedGains:
+        """The best gains and all that were tried."""
+        best = self.best()
+        trials = tuple((*gains, error.total) for gains, error in self.trials.items())
+        return SearchedGains(MadgwickSettings(*best), self.trials[best], trials)
 
 
 def _turned(q: Array, reference: Array) -> Array:

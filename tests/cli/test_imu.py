@@ -109,6 +109,30 @@ def test_tune_at_rest_and_by_search(files, tmp_path, capsys):
 
 
 @pytest.mark.slow
+def test_a_sweep_tries_all_pairs_and_is_drawn(files, tmp_path, capsys):
+    words = ["imu", "tune", str(files / "thigh.csv"), "--frame", "NWU", "--betas", "0.1:0.5:3"]
+    sweep = [*words, "--search", "--zetas", "0:0.01:2", "--initial", "compared"]
+    assert main([*sweep, "--out", str(tmp_path / "g.json"), "--figure", str(tmp_path / "s.png")]) == 0
+    row = json.loads((tmp_path / "g.json").read_text())["sensors"][0]
+    assert [(one["beta"], one["zeta"]) for one in row["trials"]] == [
+        (pytest.approx(beta), zeta) for beta in (0.1, 0.3, 0.5) for zeta in (0.0, 0.01)
+    ]
+    assert row["error_deg"] == min(one["error_deg"] for one in row["trials"])
+    assert (tmp_path / "s.png").read_bytes()[:4] == b"\x89PNG"
+    capsys.readouterr()
+    assert main(words) == 2
+    assert "--betas belongs to --search" in capsys.readouterr().err
+    assert main([*words, "--search", "--against", str(files / "none.csv")]) == 2
+    for bad in ("1:0.5:3", "0:1", "0:1:0", "-1:1:2"):
+        with pytest.raises(SystemExit) as end:
+            main(["imu", "tune", "x.csv", "--search", f"--zetas={bad}"])
+        assert end.value.code == 2
+    several = ["imu", "tune", str(files / "legs.csv"), "--search", "--figure", str(tmp_path / "t.png")]
+    assert main(several) == 2
+    assert "choose one with --sensor" in capsys.readouterr().err
+
+
+@pytest.mark.slow
 def test_angles_writes_what_opensim_opens(files, tmp_path):
     words = ["imu", "angles", str(files / "legs.csv"), "--standing", "0:1.8", "--out", str(tmp_path / "a")]
     assert main(words) == 0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
-from mbkf.imu.tuning import reference_of, searched_gains, static_gains, still_stretch
+from mbkf.imu.tuning import reference_of, searched_gains, static_gains, still_stretch, swept_gains
 from mbkf.io.imu.readings import ImuReadings
 from tests.imu.turning import RATE_HZ, turning
 
@@ -50,6 +50,18 @@ def test_the_search_beats_its_neighbours():
     assert found.error.total == best
     assert 0.02 < found.settings.beta < 0.6
     assert best < min(error for beta, _, error in found.trials if beta < 0.01)
+
+
+def test_a_sweep_tries_every_pair_from_the_start_it_is_given():
+    made = turning(3.0, shake_mps2=2.0)
+    one, askew = made.readings(), np.array([0.0, 1.0, 0.0, 0.0])
+    found = swept_gains(one, made.truth, (0.05, 0.4), (0.0, 0.02), frame="NWU")
+    assert [trial[:2] for trial in found.trials] == [(0.05, 0.0), (0.05, 0.02), (0.4, 0.0), (0.4, 0.02)]
+    assert found.error.total == min(error for _, _, error in found.trials)
+    lost = swept_gains(one, made.truth, (0.05,), (0.0,), frame="NWU", start=askew)
+    assert lost.error.total > 5.0 * found.trials[0][2]
+    with pytest.raises(InvalidInput, match="one beta"):
+        swept_gains(one, made.truth, (), (0.0,), frame="NWU")
 
 
 def test_a_reference_without_samples_is_refused():
