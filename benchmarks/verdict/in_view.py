@@ -35,7 +35,7 @@ def second_person_rows(data: Path, quick: bool = False) -> Iterator[Check]:
         data: Folder of the reference captures.
         quick: Three pairs.
     """
-    names = [name for name in sorted(PUBLIC) if name in MORE and name != "landing"]
+    names = [name for name in sorted(PUBLIC) if name in MORE]
     names = names[:3] if quick else names
     captures = {name: _middle(capture_of(name, data).markers) for name in names}
     own = {

@@ -9,6 +9,7 @@ from pathlib import Path
 from benchmarks.checks import Check, information
 from benchmarks.loads.faults import Clock, Fault, Mass
 from benchmarks.loads.trials import ALL_SOURCES
+from benchmarks.verdict.persons import MORE
 from benchmarks.verdict.recorded import Base, Recorded, load, real
 from mbkf.io.contacts import FEET
 from mbkf.numerics.threads import single_threaded
@@ -30,6 +31,7 @@ PUBLIC = (
     "cgm24",
     "judgement walk",
     "gaitalytics",
+    "landing",
 )
 MADE = (
     ("foreign", "run", "adult"),
@@ -64,7 +66,7 @@ class Moved:
     def recorded(self) -> Recorded:
         """The trial."""
         if self.name:
-            return real(ALL_SOURCES[self.name], self.data)
+            return real({**ALL_SOURCES, **MORE}[self.name], self.data)
         kind, motion, who = self.made
         return load(Base(kind, motion, self.data, who))[0]
 

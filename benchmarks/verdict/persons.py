@@ -41,13 +41,14 @@ MORE: Mapping[str, Source] = {
     "functional": Source("functional_walk", "FunctionalWalk.c3d", 60.0, "FunctionalStatic.c3d"),
     "gaitalytics": Source("gaitalytics_walk", "overground_fullbody_4plates.c3d", 70.0),
     "jam": Source("jam_walk", "static1.trc", 70.0, "static1.trc"),
-    "landing": Source("landings", "doubleLegLanding.c3d", 70.0, "aStaticTrial.c3d"),
+    "landing": Source("landings", "doubleLegLanding.c3d", 39.0),
     "stoop lift": Source("stoop_lift_box", "stoop1_t169_f620f800.c3d", 80.0, "neu_t169_f250f350.c3d"),
     "unipd": Source("unipd_walk", "Walking1.c3d", 70.0, "Static1.c3d"),
     "opensim gappy": Source("opensim_gappy_walk", "walking2.c3d", 70.0),
     "c3d Eb015": Source("c3d_encodings", "Eb015pr.c3d", 60.0),
 }
-"""Persons besides those of :data:`benchmarks.loads.trials.ALL_SOURCES`; masses of 70 kg are not known."""
+"""Persons besides those of :data:`benchmarks.loads.trials.ALL_SOURCES`; masses of 70 kg are not known, that of
+the landing is its impulse."""
 
 PUBLIC: Mapping[str, tuple[str, ...]] = {
     "HC032A": ("HC044A", "cgm24", "flywheel", "gaitalytics", "stoop lift"),
@@ -174,10 +175,8 @@ def pairs(data: Path, quick: bool = False) -> list[Pair]:
         data: Folder of the reference captures.
         quick: Every tenth of them.
     """
-    names = sorted({*PUBLIC, *(name for files in PUBLIC.values() for name in files)} - {"jam", "landing"})
-    found = [
-        Pair(name, name, data) for name in names
-    ]  # of these two, static and trial have different marker sets
+    names = sorted({*PUBLIC, *(name for files in PUBLIC.values() for name in files)} - {"jam"})
+    found = [Pair(name, name, data) for name in names]  # jam's static and walk have different marker sets
     found += [
         Pair(trial, file, data, plates)
         for plates in (True, False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.model.description import Bearing
 from mbkf.model.sides import mirrored
@@ -36,9 +36,16 @@ class BearingParts:
         levers_m: (B,) largest distance of a part's centre of pressure from its middle.
         grips: True for a part at the end of a limb, which may hold something: a hand.
         seat: Place among them of the part on the root, which may sit; -1 without one.
+        placed: (B,) True for a part whose place markers show: a hand is not where they show no forearm.
     """
 
-    def __init__(self, model: Body) -> None:
+    def __init__(self, model: Body, unobservable: BoolArray | None = None) -> None:
+        """Finds the parts of a body.
+
+        Args:
+            model: The body.
+            unobservable: (nv,) dofs that move no marker; None: markers show every dof.
+        """
         self.model = model
         self.parts: tuple[Bearing, ...] = tuple(model.description.bearings.values())
         scales = [model.axis_scale(model.description.segment(one.segment)) for one in self.parts]
@@ -52,6 +59,11 @@ class BearingParts:
         self.grips = [one.segment not in parents for one in self.parts]
         sits = [k for k, one in enumerate(self.parts) if one.segment == model.roles.root]
         self.seat = sits[0] if sits else -1
+        self.placed = np.ones(len(self.parts), dtype=bool)
+        if unobservable is not None:
+            for k in np.flatnonzero(self.grips):
+                before = model.description.segment(self.parts[k].segment).parent
+                self.placed[k] = not unobservable[model.joint(before).v].all()
 
     def __len__(self) -> int:
         return len(self.parts)

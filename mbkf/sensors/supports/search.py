@@ -21,7 +21,7 @@ from mbkf.numerics.windows import bridged, dilated
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.momentum import WholeBody
-from mbkf.sensors.supports.seat import sits
+from mbkf.sensors.supports.seat import STILL_M_S, sits
 
 WINDOW_S, EDGE_WINDOW_S = 0.25, 0.1
 """Durations over which a missing wrench is averaged: to detect it, and to time its begin and end."""
@@ -102,6 +102,7 @@ def other_contacts(
     loads: FeetLoads,
     read: BoolArray,
     doubted: BoolArray | None = None,
+    unobservable: BoolArray | None = None,
 ) -> OtherContacts:
     """Parts that carry load in a trial.
 
@@ -114,14 +115,15 @@ def other_contacts(
         read: (T,) frames in which all plates were recorded; all False without plates.
         doubted: (T,) frames in which something else than a contact is known to explain a missing wrench; they are not
             searched. None for none of them.
+        unobservable: (nv,) dofs that move no marker; None: markers show every dof.
     """
-    bearings = BearingParts(model)
+    bearings = BearingParts(model, unobservable)
     points, speeds = _moving(bearings, q, v)
     judged = read & loads.valid & ~np.isnan(q).any(axis=1)
     body, soles = WholeBody.of(model, q, v), sole_points(model, q)
     reached = np.concatenate([points, soles.mean(axis=2)], axis=1)
     searched = judged if doubted is None else judged & ~doubted
-    found = _missing(bearings, reached, body, rate_hz, loads, searched)
+    found = _missing(bearings, reached, speeds, body, rate_hz, loads, searched)
     flags = found.flags
     lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
     # Beside a part that carries load on the floor, others that lie there do so as well.
@@ -146,6 +148,7 @@ def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
 def _missing(
     bearings: BearingParts,
     points: Array,
+    speeds: Array,
     body: WholeBody,
     rate_hz: float,
     loads: FeetLoads,
@@ -156,6 +159,7 @@ def _missing(
     Args:
         bearings: The parts.
         points: (T, B + 2, 3) their middles, and those of the soles of right and left foot.
+        speeds: (T, B) speeds of their middles.
         body: The body's momentum.
         rate_hz: Frame rate.
         loads: Loads of the feet by the plates.
@@ -186,7 +190,9 @@ def _missing(
         force = slow[run, :3].mean(axis=0)
         if lacks[run].sum() < LASTING_S * rate_hz or np.linalg.norm(force) < LASTING_SHARE * weight_n:
             continue
-        parts = _fitting(bearings, points[run] - body.centre_m[run, None], slow[run], weight_n)
+        # A hand may hold something that moves; what a pelvis or a knee rests on does not.
+        rests = bearings.placed & (bearings.grips | (np.median(speeds[run], axis=0) < STILL_M_S))
+        parts = _fitting(bearings, rests, points[run] - body.centre_m[run, None], slow[run], weight_n)
         frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)
         if parts is not None and parts[0] >= len(bearings):
             continue
@@ -260,20 +266,23 @@ def _edges(
     return np.arange(start, max(stop, start) + 1)
 
 
-def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: float) -> tuple[int, ...] | None:
+def _fitting(
+    bearings: BearingParts, rests: BoolArray, arms: Array, missing: Array, weight_n: float
+) -> tuple[int, ...] | None:
     """Parts through which a stretch's missing wrench leads best; None if it misses every part.
 
     B is the right foot, B + 1 the left one, which may stand where no plate reads.
 
     Args:
         bearings: The parts.
+        rests: (B,) those that are slow enough to carry load, and hands.
         arms: (n, B + 2, 3) from the centre of mass to their middles and those of the soles.
         missing: (n, 6) wrench about the centre of mass.
         weight_n: The body's weight.
     """
     best, least = None, FITS**2
     levers = np.append(bearings.levers_m, [SOLE_LEVER_M, SOLE_LEVER_M])
-    for parts in _groups(bearings, missing[:, :3].mean(axis=0)):
+    for parts in _groups(bearings, rests, missing[:, :3].mean(axis=0)):
         lever = float(levers[list(parts)].mean())
         off = _off(arms[:, list(parts)], missing, lever, weight_n) + PAIR_PENALTY * (len(parts) - 1)
         if off < least:
@@ -281,13 +290,20 @@ def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: floa
     return best
 
 
-def _groups(bearings: BearingParts, force: Array) -> Iterator[tuple[int, ...]]:
-    """Parts, and right and left ones together, that could carry a force (3,): hands alone if it does not push up."""
+def _groups(bearings: BearingParts, rests: BoolArray, force: Array) -> Iterator[tuple[int, ...]]:
+    """Parts, feet, and right and left ones together, that could carry a force (3,): hands alone if it does not push up.
+
+    Args:
+        bearings: The parts.
+        rests: (B,) those that are slow enough to carry load, and hands.
+        force: (3,) the force.
+    """
     pushes = float(force[2]) > 0.5 * float(np.linalg.norm(force))
-    usable = [k for k in range(len(bearings)) if pushes or bearings.grips[k]]
+    usable = [k for k in map(int, np.flatnonzero(rests)) if pushes or bearings.grips[k]]
     yield from ((k,) for k in usable)
     if pushes:
-        yield from ((len(bearings),), (len(bearings) + 1,))
+        right, left = len(bearings), len(bearings) + 1
+        yield from ((right,), (left,), (right, left))
     yield from (pair for pair in bearings.pairs if pair[0] in usable and pair[1] in usable)
 
 
@@ -312,7 +328,7 @@ def _off(arms: Array, missing: Array, lever_m: float, weight_n: float) -> float:
 
 def _lying(bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float) -> BoolArray:
     """(T, B) parts with middles (T, B, 3) and speeds (T, B) that lie on the floor."""
-    low = (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S)
+    low = (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S) & bearings.placed
     found = np.zeros_like(low)
     for k in range(len(bearings)):
         for run in stretches(low[:, k]):

@@ -79,15 +79,18 @@ class ContactOpener:
         began: Number of latest frames in which the contact that has opened acts already.
     """
 
-    def __init__(self, model: Body, rate_hz: float, floor_m: float) -> None:
+    def __init__(
+        self, model: Body, rate_hz: float, floor_m: float, unobservable: BoolArray | None = None
+    ) -> None:
         """Makes it.
 
         Args:
             model: The body.
             rate_hz: Frame rate.
             floor_m: Height of the floor, that of the lowest plate.
+            unobservable: (nv,) dofs that move no marker; None: markers show every dof.
         """
-        self._model, self._rate_hz, self._floor_m = model, rate_hz, floor_m
+        self._model, self._rate_hz, self._floor_m, self._unobservable = model, rate_hz, floor_m, unobservable
         self._weight_n, self._centre = model.mass_kg * GRAVITY_M_S2, CentreOfMass(model)
         self._every = max(1, round(rate_hz / SEARCHED_HZ))
         self._kept: deque[_Kept] = deque(maxlen=self._frames(CAUSES_S))
@@ -189,7 +192,7 @@ class ContactOpener:
         rate_hz, judged = self._rate_hz / self._every, np.array([one.judged for one in kept])
         q, v = (np.array([getattr(one, name) for one in kept]) for name in ("q", "v"))
         feet = _OfFeet(np.array([one.wrench for one in kept]), judged, self._floor_m)
-        found = other_contacts(self._model, q, v, rate_hz, feet, judged)
+        found = other_contacts(self._model, q, v, rate_hz, feet, judged, unobservable=self._unobservable)
         flags = found.flags[-max(1, round(NOW_S * rate_hz)) :].any(axis=0)
         free = np.flatnonzero(~found.flags[:, flags].any(axis=1))
         now = max(1, round(NOW_S * rate_hz))

@@ -49,7 +49,7 @@ def with_other_contacts(
     read = np.full(len(plates), plates.shape[1] > 0) & ~np.isnan(plates).any(axis=(1, 2))
     judged = contradictions(model, q, times_s, rate_hz, loads, read)
     doubted = _doubted(judged, times_s) if missing else np.ones(len(q), dtype=bool)
-    found = other_contacts(model, q, v, rate_hz, loads, read, doubted)
+    found = other_contacts(model, q, v, rate_hz, loads, read, doubted, inputs.unobservable)
     inputs = replace(inputs, remarks=(*inputs.remarks, *found.remarks), contradictions=judged)
     if not found.flags.any():
         return inputs, recording
@@ -71,7 +71,7 @@ def contact_opener(inputs: FilterInputs, settings: ReconstructSettings) -> Conta
     if not settings.other_contacts or settings.filter != "dynamic" or not inputs.plates or not bearings:
         return None
     floor_m = min(surface_height(plate) for plate in inputs.plates)
-    return ContactOpener(inputs.sensor.model, 1.0 / inputs.dt_s, floor_m)
+    return ContactOpener(inputs.sensor.model, 1.0 / inputs.dt_s, floor_m, inputs.unobservable)
 
 
 def contradictions(

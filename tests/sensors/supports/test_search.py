@@ -26,8 +26,9 @@ HELD = slice(60, 150)
 def found(made, wrench, model=None, q=None, **changes):
     """What the search finds in a trial whose plates give wrenches (T, 2, 6) to the feet."""
     m, read = made.motion, np.broadcast_to(changes.pop("read", True), len(wrench))
-    q = m.q if q is None else q
-    return other_contacts(model or made.model, q, m.v, m.rate_hz, foot_loads(wrench, **changes), read)
+    q, hidden = m.q if q is None else q, changes.pop("unobservable", None)
+    loads = foot_loads(wrench, **changes)
+    return other_contacts(model or made.model, q, m.v, m.rate_hz, loads, read, unobservable=hidden)
 
 
 def bearing(flags):
@@ -44,13 +45,13 @@ def points(name):
     return middles(trial(name).model, trial(name).motion)
 
 
-def pressed(share, at, direction=(0.0, 0.0, -1.0)):
+def pressed(share, at, direction=(0.0, 0.0, -1.0), name="squat", **changes):
     """A squat in which a force of this share of body weight acts at points (T, 3) while something is held."""
-    made = trial("squat")
+    made = trial(name)
     frames = len(made.motion.q)
     held = np.convolve(np.isin(np.arange(frames), np.arange(frames)[HELD]), np.ones(5) / 5, "same")
     force = share * weight_n(made) * held[:, None] * np.array(direction)
-    return found(made, carried(made.motion, at, force))
+    return found(made, carried(made.motion, at, force), **changes)
 
 
 def test_a_seat_is_found_when_it_bears():
@@ -110,6 +111,22 @@ def test_a_load_on_a_hand_is_on_that_hand(hand):
     (run,) = stretches(result.flags[:, k])
     assert abs(run[0] - HELD.start) <= 10
     assert abs(run[-1] - HELD.stop) <= 10
+
+
+def test_a_hand_that_no_marker_shows_holds_nothing():
+    """Its place is that of a usual posture: the force stays unexplained."""
+    made, hidden = trial("squat"), np.zeros(trial("squat").model.nv, dtype=bool)
+    hidden[made.model.joint("right_forearm").v] = True
+    at = points("squat")[:, part(made.model, "right_hand")]
+    assert part(made.model, "right_hand") not in bearing(pressed(0.15, at, unobservable=hidden).flags)
+    hidden[made.model.joint("right_forearm").v.start] = False
+    assert bearing(pressed(0.15, at, unobservable=hidden).flags) == [part(made.model, "right_hand")]
+
+
+def test_no_seat_moves_with_a_walking_pelvis():
+    """Whoever walks or lands is not carried by a seat."""
+    assert not pressed(0.2, points("walk")[:, SEAT], (0.0, 0.0, 1.0), "walk").flags.any()
+    assert bearing(pressed(0.2, points("squat")[:, SEAT], (0.0, 0.0, 1.0)).flags) == [SEAT]
 
 
 def test_a_load_between_the_hands_is_on_both():
