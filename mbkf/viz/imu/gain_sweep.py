@@ -47,7 +47,12 @@ def write_sweep(
 
 
 def draw_errors(axes: Axes, found: SearchedGains) -> None:
-    """Draws the error over β, a line for each ζ, and marks the best pair."""
+    """Draws the error over β, a line for each ζ, and marks the best pair.
+
+    Args:
+        axes: The axes.
+        found: The gains that were tried.
+    """
     zetas = sorted({zeta for _, zeta, _ in found.trials})
     shown = [zetas[k] for k in sorted({round(x) for x in np.linspace(0, len(zetas) - 1, len(COLOURS))})]
     for zeta, colour in zip(shown, COLOURS, strict=False):
@@ -65,7 +70,13 @@ def draw_errors(axes: Axes, found: SearchedGains) -> None:
 
 
 def draw_courses(axes: Axes, reference: Array, courses: Sequence[tuple[str, Orientation]]) -> None:
-    """Draws q_w of the reference and of some gains over the first ten seconds."""
+    """Draws q_w of the reference and of some gains over the first ten seconds.
+
+    Args:
+        axes: The axes.
+        reference: (T, 4) the orientations that the gains were to follow.
+        courses: Label and course of each of the gains.
+    """
     time_s = courses[0][1].time_s - courses[0][1].time_s[0]
     part = time_s <= SHOWN_S
     axes.plot(time_s[part], reference[part, 3], color=REFERENCE, lw=1.6, label="reference")
