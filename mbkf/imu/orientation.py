@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
 
 import numpy as np
 
 from mbkf.conventions import Array, StageCallback, read_only
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.frames import FRAMES, change_frame, exponential, multiply, rotate
-from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings, MadgwickState
+from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings
+from mbkf.imu.madgwick_course import madgwick_course
 from mbkf.imu.orientation_course import orientation_course
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
 from mbkf.io.imu.readings import ImuReadings
@@ -28,11 +28,6 @@ REST_S = 0.25
 
 GIVEN_SD_RAD = 0.03
 """Standard deviation of a given start."""
-
-_SIDE_BY_SIDE = 20
-"""From so many sensors on arrays over sensors beat floats."""
-
-Item = TypeVar("Item")
 
 MOST_SMOOTHED = 120_000
 """A smoother keeps about 3 kB per sample; it takes so many at a time."""
@@ -221,7 +216,8 @@ def _run(
     if settings.method == "madgwick":
         filter_ = MadgwickFilter(dt, settings.madgwick)
         begins = filter_.begin(first, first_field) if start is None else filter_.begin_at(start)
-        return [(q, bias, None) for q, bias in _run_madgwick(filter_, begins, gyro, force, field, count_one)]
+        course = madgwick_course(filter_, begins, gyro, force, field, count_one=count_one)
+        return [(course.quaternion[:, n], course.gyro_bias[:, n], None) for n in range(len(group))]
     kalman = OrientationFilter(dt, settings.ekf)
     begin = kalman.begin(first, first_field, np.array([_resting_rate(one) for one in group]))
     if start is not None:
@@ -236,34 +232,3 @@ def _run(
     if magnetic:
         sd[:, :, 2] = np.hypot(sd[:, :, 2], settings.ekf.field_direction_sd_rad)
     return [(q[:, n], bias[:, n], sd[:, n]) for n in range(len(group))]
-
-
-def _run_madgwick(
-    filter_: MadgwickFilter,
-    begin: MadgwickState,
-    gyro: Array,
-    force: Array,
-    field: Array | None,
-    count_one: Callable[[], None],
-) -> list[tuple[Array, Array]]:
-    """Quaternions (T, 4) and biases (T, 3) per sensor: few sensors one by one in floats, many side by side."""
-    count = gyro.shape[1]
-    if count >= _SIDE_BY_SIDE:
-        states = list(_counted(filter_.run(gyro, force, field, begin), count_one))
-        w, x, y, z = (np.array([state.q[k] for state in states]) for k in range(4))
-        bias = np.array([np.stack(state.bias, axis=-1) for state in states])
-        return [(np.stack([x, y, z, w], axis=-1)[:, n], bias[:, n]) for n in range(count)]
-    found = []
-    for n in range(count):
-        mine = filter_.begin_at(begin.quaternion[n])
-        run = filter_.run(gyro[:, n], force[:, n], None if field is None else field[:, n], mine)
-        states = list(_counted(run, count_one) if n == 0 else run)
-        q = np.array([state.q for state in states])
-        found.append((q[:, [1, 2, 3, 0]], np.array([state.bias for state in states])))
-    return found
-
-
-def _counted(items: Iterable[Item], count_one: Callable[[], None]) -> Iterator[Item]:
-    for item in items:
-        count_one()
-        yield item

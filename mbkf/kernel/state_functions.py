@@ -301,6 +301,30 @@ class StateFunctions(Protocol):
             smooth: Later samples correct earlier ones.
         """
 
+    @requires("T >= 1")
+    @unlocked
+    def madgwick_course(
+        self,
+        quaternion: In[Array, "N 4"],
+        gyro: In[Array, "T N 3"],
+        specific_force: In[Array, "T N 3"],
+        magnetic_field: In[Array, "T N 3"] | None,
+        dt_s: float,
+        beta: float,
+        zeta: float,
+        /,
+    ) -> tuple[Made[Array, "quaternions: T N 4"], Made[Array, "biases: T N 3"]]:
+        """Courses of N sensors over T samples by Madgwick's filter (:mod:`mbkf.imu.madgwick`).
+
+        Args:
+            quaternion: At the first sample, (x, y, z, w).
+            gyro: rad/s, NaN where missing.
+            specific_force: Any unit, NaN where missing.
+            magnetic_field: Any unit, NaN where missing; None without magnetometers.
+            dt_s: Time between samples.
+            beta, zeta: Gains.
+        """
+
     def third_differences(
         self,
         first: In[Array, "*count"],
