@@ -59,7 +59,7 @@ class TorqueStart:
         a = np.where(self.body.kinematic, 0.0, acceleration)
         u = self.body.forces(motion.q, motion.v, a, feet.wrench)
         if self.settings.noise == "independent":
-            return ForcedState(motion.q, motion.v, u, self._plain_covariance(motion.P))
+            return ForcedState(motion.q, motion.v, u, self._plain_covariance(motion, u))
         load_sd = np.where(np.isfinite(plate_sd), plate_sd, self._unmeasured)
         return self._agreed(ForcedState(motion.q, motion.v, u, motion.P), load_sd)
 
@@ -81,8 +81,7 @@ class TorqueStart:
         whole = np.vstack([np.eye(motion_part.stop, layout.size), rows])
         return self.plant.retract(motion, whole @ bound.shift, whole @ bound.covariance @ whole.T)
 
-    def _plain_covariance(self, P: Array) -> Array:
+    def _plain_covariance(self, motion: KinematicState, u: Array) -> Array:
         """Forces known as well as a second of their own noise leaves them."""
-        nothing = np.zeros(0)
-        own = np.diag(self.plant.density(ForcedState(nothing, nothing, nothing, P)))
-        return scipy.linalg.block_diag(P, np.diag(own[self.plant.layout["u"]]))
+        own = self.plant.density(ForcedState(motion.q, motion.v, u, motion.P))
+        return scipy.linalg.block_diag(motion.P, own[self.plant.layout["u"], self.plant.layout["u"]])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import re
 from collections.abc import Sequence
@@ -78,14 +79,24 @@ def with_set(settings: ReconstructSettings, given: Sequence[str]) -> Reconstruct
         values[name] = value
     own = getattr(settings, settings.filter)
     for name in values:
-        others = [one for one in FILTERS if name in flat(getattr(settings, one))]
-        if name not in flat(own) and others:
-            raise InvalidInput(
-                f"--set {name}: this is a setting of the {' and the '.join(others)} filter, and the "
-                f"{settings.filter} filter was chosen; give --filter {others[0]}"
-            )
+        if name not in flat(own):
+            _refuse_other_filters(settings, name)
     changes: dict[str, Any] = {settings.filter: with_given(own, values, "--set")}
     return replace(settings, **changes, given=tuple(values.items()))
+
+
+def _refuse_other_filters(settings: ReconstructSettings, name: str) -> None:
+    """Refuses a name that is, or is nearest to, a setting of another filter than the chosen one."""
+    known = {one: flat(getattr(settings, one)) for one in (settings.filter, *FILTERS)}
+    near = difflib.get_close_matches(name, dict.fromkeys(key for keys in known.values() for key in keys), 1)
+    if not near or near[0] in known[settings.filter]:
+        return
+    others = [one for one in FILTERS if near[0] in known[one]]
+    meant = "this" if near[0] == name else f"there is no such setting; {near[0]}"
+    raise InvalidInput(
+        f"--set {name}: {meant} is a setting of the {' and the '.join(others)} filter, and the {settings.filter} "
+        f"filter was chosen; give --filter {others[0]}"
+    )
 
 
 def preset_path(name: str) -> Path:
