@@ -55,7 +55,7 @@ class DampedPendulum(PlainBody):
 
 def torque_plant(body):
     """The torque filter's plant of a whole body, without noise."""
-    return TorquePlant(body, DT, lambda x: np.zeros_like(x.P), SCHEMES["FDMC"], wrenches=True)
+    return TorquePlant(body, DT, lambda x: np.zeros_like(x.P), SCHEMES["FDMC"], wrenches=not body.loads_given)
 
 
 def forced_state(body, motion, P):

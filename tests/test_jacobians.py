@@ -45,6 +45,7 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
     "sensors.gating.gated": "sensors/test_gating.py",
+    "sensors.given_plates.GivenPlates.linearise": "sensors/test_given_plates.py",
     "filters.plant.Plant.step_transition": "filters/test_plant.py step_transition",
     "filters.dynamic.plant.SingerPlant.step_transition": "filters/test_plant.py step_transition",
     "filters.kinematic.plant.WhiteAccelerationPlant.step_transition": "filters/test_plant.py step_transition",

@@ -30,6 +30,10 @@ WRENCH_FRAMES = ("ankle", "foot", "thesis")
 foot.
 """
 
+GIVEN_FRAME = "world"
+"""Coordinates of wrenches that are known inputs: force and moment about the world's origin, world axes, as plates read.
+"""
+
 
 FORCE_STATES = ("inertial", "torque")
 """Coordinates of residual and joint torques T_d in u, which stay constant between frames.
@@ -62,7 +66,11 @@ class HumanDynamics(ForcedBody):
         torque_dofs: The dofs that u's first entries act on: the root's six, then the joints but for the toes.
         wrench_frame: Coordinates of u's wrenches, see :data:`WRENCH_FRAMES`.
         force_state: Coordinates of its first entries, see :data:`FORCE_STATES`.
-        nv, nu: Degrees of freedom, forces (62 for the reference body).
+        loads_given: The feet's wrenches are known inputs (thesis 3.2.3), not forces of the body.
+        nv, nu: Degrees of freedom, forces (62 for the reference body, 50 with given loads).
+
+    With given loads, arguments u of the methods are the forces followed by these, (nu + 12,), and derivatives by u are
+    those by the forces alone.
     """
 
     def __init__(
@@ -71,6 +79,7 @@ class HumanDynamics(ForcedBody):
         fixed: BoolArray | None = None,
         wrench_frame: str = "ankle",
         force_state: str = "inertial",
+        loads_given: bool = False,
     ) -> None:
         """A scaled body with the forces that move it.
 
@@ -79,6 +88,7 @@ class HumanDynamics(ForcedBody):
             fixed: (nv,) dofs that do not move; none when None.
             wrench_frame: Coordinates of u's wrenches, one of :data:`WRENCH_FRAMES`.
             force_state: Coordinates of u's first entries, one of :data:`FORCE_STATES`.
+            loads_given: The feet's wrenches are known inputs, in :data:`GIVEN_FRAME`.
 
         Raises:
             UnknownName: The wrench frame or force state does not exist.
@@ -87,7 +97,8 @@ class HumanDynamics(ForcedBody):
             raise UnknownName("wrench frame", wrench_frame, WRENCH_FRAMES)
         if force_state not in FORCE_STATES:
             raise UnknownName("force state", force_state, FORCE_STATES)
-        self.model, self.wrench_frame, self.force_state = model, wrench_frame, force_state
+        self.model, self.force_state, self.loads_given = model, force_state, loads_given
+        self.wrench_frame = GIVEN_FRAME if loads_given else wrench_frame
         self.nv = model.nv
         toes = np.zeros(model.nv, dtype=bool)
         for name in model.roles.toes:
@@ -95,7 +106,7 @@ class HumanDynamics(ForcedBody):
         self.fixed = np.zeros(model.nv, dtype=bool) if fixed is None else fixed
         self.kinematic = toes | self.fixed
         self.torque_dofs = np.flatnonzero(~toes)
-        self.nu = len(self.torque_dofs) + FEET
+        self.nu = len(self.torque_dofs) + (0 if loads_given else FEET)
         self._columns = Layout.forced(self.nv, self.nu)
         self._free = np.flatnonzero(~self.kinematic)
         self._foot_ids = [model.joint(name).joint_id for name in model.roles.feet]
@@ -155,16 +166,15 @@ class HumanDynamics(ForcedBody):
         nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
         given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)
         a, factor = self._accelerate(q, self._selector @ u[:dofs] + given.force)
-        right = np.concatenate(
-            [given.by_q - self._inertia_slope(q, a), given.by_v, self._selector, given.by_state], axis=1
-        )
+        by_forces = [self._selector] if self.loads_given else [self._selector, given.by_state]
+        right = np.concatenate([given.by_q - self._inertia_slope(q, a), given.by_v, *by_forces], axis=1)
         slope = np.zeros((nv, right.shape[1]))
         slope[rows] = scipy.linalg.cho_solve(factor, right[rows], check_finite=False)
         columns = self._columns
         return LinearAcceleration(a, slope[:, columns.q], slope[:, columns.v], slope[:, columns["u"]])
 
     def forces(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
-        """(nu,) forces u that cause a motion under given reactions, by inverse dynamics.
+        """(nu,) forces u that cause a motion under these reactions, by inverse dynamics.
 
         Args:
             q: Configuration.
@@ -176,7 +186,7 @@ class HumanDynamics(ForcedBody):
         u = self.model.mass_matrix(q) @ a
         if self._acting:
             u -= self._given(q, v, state).force
-        return np.concatenate([u[self.torque_dofs], state])
+        return u[self.torque_dofs] if self.loads_given else np.concatenate([u[self.torque_dofs], state])
 
     def generalised(self, q: Array, v: Array, a: Array, u: Array) -> Array:
         """(nv,) generalised forces M a − Q_g − Jᵀ w of all dofs, kinematic ones too, under u's wrenches.
@@ -205,7 +215,8 @@ class HumanDynamics(ForcedBody):
             return JointForces(u[:dofs].copy(), none, none, np.eye(dofs, self.nu))
         given = self._given(q, v, u[dofs:])
         by_u = np.eye(dofs, self.nu)
-        by_u[:, dofs:] = -given.by_state[self.torque_dofs]
+        if not self.loads_given:
+            by_u[:, dofs:] = -given.by_state[self.torque_dofs]
         rows = self.torque_dofs
         return JointForces(u[:dofs] - given.force[rows], -given.by_q[rows], -given.by_v[rows], by_u)
 
@@ -217,13 +228,16 @@ class HumanDynamics(ForcedBody):
         if self._acting:
             _, by_state, _ = self.local_wrench(q, np.zeros(FEET))
             rows[:dofs, self.nv :] = -(self._pull() @ by_state)[self.torque_dofs]
-        rows[dofs:, self.nv :] = np.eye(FEET)
+        if not self.loads_given:
+            rows[dofs:, self.nv :] = np.eye(FEET)
         return rows
 
     # Wrenches.
 
     def wrench_state(self, q: Array, foot_wrench: Array) -> Array:
         """(12,) u's wrenches from those (2, 6) about the world's origin in world axes."""
+        if self.loads_given:
+            return foot_wrench.reshape(FEET)
         pin.forwardKinematics(self.model.pin_model, self._data, q)
         state = np.empty(FEET)
         for side, (joint, point) in enumerate(zip(self._foot_ids, self._points, strict=True)):
@@ -246,11 +260,21 @@ class HumanDynamics(ForcedBody):
         if self.wrench_frame == "foot":
             return state, np.eye(FEET), np.zeros((FEET, self.nv))
         local, by_state, by_q = np.empty(FEET), np.zeros((FEET, FEET)), np.zeros((FEET, self.nv))
-        turns = [jacobian[3:] for jacobian in self._foot_jacobians()]
+        jacobians = self._foot_jacobians()
+        turns = [jacobian[3:] for jacobian in jacobians]
         for side, (joint, point) in enumerate(zip(self._foot_ids, self._points, strict=True)):
             at, force, moment = 6 * side, slice(6 * side, 6 * side + 3), slice(6 * side + 3, 6 * side + 6)
             back = self._data.oMi[joint].rotation.T
             turned = back @ state[force]
+            if self.loads_given:
+                arm = pin.skew(self._data.oMi[joint].translation)
+                local[force], local[moment] = turned, back @ (state[moment] - arm @ state[force])
+                by_state[force, force] = by_state[moment, moment] = back
+                by_state[moment, force] = -back @ arm
+                shifted = pin.skew(turned) @ jacobians[side][:3]
+                swing = [pin.skew(local[part]) @ turns[side] for part in (force, moment)]
+                by_q[at : at + 6] = np.concatenate([swing[0], swing[1] + shifted])
+                continue
             local[force], local[moment] = turned, state[moment] + np.cross(point, turned)
             by_state[force, force], by_state[moment, moment] = back, np.eye(3)
             by_state[moment, force] = pin.skew(point) @ back

@@ -147,11 +147,11 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         state = at.state
         where = memory.ahead
         if where is None:
-            where = Ahead(state.q, state.v, self.dynamics.acceleration(state.q, state.v, state.u))
+            where = Ahead(state.q, state.v, self.dynamics.acceleration(state.q, state.v, state.forces))
         notes.contact = self.detector.decide(memory.contact, *where, frame.plates)
         return PlateDecision(notes.contact, FootReading.of(notes.contact))
 
-    def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> Information:
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> Information | None:
         """Information on the whole state, of which positions and wrenches are read."""
         state, feet = at.state, decision.reading
         _, ankles = self.body.placements(state.q)
@@ -184,7 +184,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
     def next_memory(self, posterior: ForceState, decision: PlateDecision) -> PlateMemory:
         """Memory after a frame with this posterior."""
         q, v, dt = posterior.q, posterior.v, self._dt_s
-        a = self.dynamics.acceleration(q, v, posterior.u)
+        a = self.dynamics.acceleration(q, v, posterior.forces)
         return PlateMemory(decision.contact.memory, Ahead(self.dynamics.integrate(q, dt * v), v + dt * a, a))
 
     def _whitening(self, shared: SharedLoad, points_m: Array) -> Array:

@@ -3,7 +3,8 @@
 τ_p are the six generalised forces at the pelvis that neither gravity nor the ground exerts, force N and moment N m in
 pelvis axes (thesis 3.2.3): errors of body, markers and plates. With inertial force states
 (:data:`mbkf.model.human_dynamics.FORCE_STATES`) this reading ties plates to motion. An infinite σ leaves the residual a
-random walk, as in the thesis.
+random walk, as in the thesis. It is not read while a foot of unknown wrench stands and wrenches are known inputs
+(:mod:`mbkf.sensors.given_plates`): the missing load then stands in it.
 """
 
 from __future__ import annotations
@@ -31,10 +32,12 @@ class PelvisResidual(Block[ForceState, None, Notes, None]):
         """Args: the forced body, and standard deviations (6,) of force, N, and moment, N m."""
         self.dynamics, self.sd = dynamics, residual_sd
 
-    def linearise(self, at: OperatingPoint[ForceState, None], decision: Notes) -> Information:
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: Notes) -> Information | None:
         """Information on the whole state."""
         state = at.state
-        torque = self.dynamics.joint_forces(state.q, state.v, state.u)
+        if np.isnan(state.given).any():
+            return None
+        torque = self.dynamics.joint_forces(state.q, state.v, state.forces)
         H = np.hstack([torque.by_q, torque.by_v, torque.by_u])[:6]
         found = information(-torque.torque[:6], H, self.sd)
         return Information(found.matrix, found.vector, 0.0, 0)

@@ -34,3 +34,11 @@ class ForceState(State, Protocol):
     @property
     def u(self) -> Array:
         """(nu,) forces of a forced body (:mod:`mbkf.model.forced_body`): N m, N."""
+
+    @property
+    def given(self) -> Array:
+        """(12,) wrenches of the feet that are known inputs, NaN for unknown ones; (0,) where they are among u."""
+
+    @property
+    def forces(self) -> Array:
+        """All that moves the body: u followed by the given wrenches."""

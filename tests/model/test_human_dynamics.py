@@ -7,10 +7,11 @@ import pinocchio as pin
 import pytest
 
 from mbkf.errors import UnknownName
-from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics
+from mbkf.model.human_dynamics import FORCE_STATES, GIVEN_FRAME, WRENCH_FRAMES, HumanDynamics
 from tests.motions import assert_near, central_difference, moderate_pose, random_model, worst
 
-each_state = pytest.mark.parametrize(("force_state", "frame"), list(product(FORCE_STATES, WRENCH_FRAMES)))
+FRAMES = (*WRENCH_FRAMES, GIVEN_FRAME)
+each_state = pytest.mark.parametrize(("force_state", "frame"), list(product(FORCE_STATES, FRAMES)))
 LOAD = np.array([80.0, 40.0, 500.0, 60.0, 60.0, 20.0])
 
 
@@ -22,11 +23,19 @@ class Moment:
         self.model = random_model(rng)
         mask = np.zeros(self.model.nv, dtype=bool)
         mask[list(fixed)] = True
-        self.body = HumanDynamics(self.model, mask, frame, force_state)
+        given = frame == GIVEN_FRAME
+        self.body = HumanDynamics(
+            self.model, mask, "ankle" if given else frame, force_state, loads_given=given
+        )
         self.q, self.v = moderate_pose(self.model, rng), 2.0 * rng.normal(size=self.model.nv)
         self.a = np.where(self.body.kinematic, 0.0, 10.0 * rng.normal(size=self.model.nv))
         self.wrench = rng.normal(size=(2, 6)) * LOAD
-        self.u = self.body.forces(self.q, self.v, self.a, self.wrench)
+        self.u = self.forces(self.a, self.wrench)
+
+    def forces(self, a, wrench):
+        """Forces of the motion, followed by the loads where they are given."""
+        own = self.body.forces(self.q, self.v, a, wrench)
+        return np.concatenate([own, wrench.ravel()]) if self.body.loads_given else own
 
 
 def change(function, x, step):
@@ -38,6 +47,11 @@ def test_the_reference_body_has_166_states():
     m = Moment()
     assert 2 * m.body.nv + m.body.nu == 166
     assert len(m.body.torque_dofs) == 50
+
+
+def test_given_loads_leave_the_state():
+    body = Moment(frame=GIVEN_FRAME).body
+    assert 2 * body.nv + body.nu == 154
 
 
 @each_state
@@ -65,7 +79,7 @@ def test_derivatives_of_the_acceleration(force_state, frame):
     slope = m.body.linearise(m.q, m.v, m.u)
     by_q = central_difference(m.model, lambda q: m.body.acceleration(q, m.v, m.u), m.q)
     by_v = change(lambda v: m.body.acceleration(m.q, v, m.u), m.v, 1e-5)
-    by_u = change(lambda u: m.body.acceleration(m.q, m.v, u), m.u, 1.0)
+    by_u = change(lambda u: m.body.acceleration(m.q, m.v, u), m.u, 1.0)[:, : m.body.nu]
     for found, numeric in ((slope.by_q, by_q), (slope.by_v, by_v), (slope.by_u, by_u)):
         assert worst(found - numeric) < 1e-6 * max(1.0, worst(numeric))
 
@@ -77,7 +91,7 @@ def test_joint_torques_and_their_derivatives(force_state, frame):
     assert_near(found.torque, m.body.generalised(m.q, m.v, m.a, m.u)[rows], 1e-8)
     by_q = central_difference(m.model, lambda q: m.body.joint_forces(q, m.v, m.u).torque, m.q)
     by_v = change(lambda v: m.body.joint_forces(m.q, v, m.u).torque, m.v, 1e-5)
-    by_u = change(lambda u: m.body.joint_forces(m.q, m.v, u).torque, m.u, 1.0)
+    by_u = change(lambda u: m.body.joint_forces(m.q, m.v, u).torque, m.u, 1.0)[:, : m.body.nu]
     for stated, numeric in ((found.by_q, by_q), (found.by_v, by_v), (found.by_u, by_u)):
         assert worst(stated - numeric) < 1e-7 * max(1.0, worst(numeric))
 
@@ -85,11 +99,11 @@ def test_joint_torques_and_their_derivatives(force_state, frame):
 @each_state
 def test_forces_follow_accelerations_and_loads(force_state, frame):
     m = Moment(force_state, frame)
-    rows = m.body.force_rows(m.q)
-    more = m.body.forces(m.q, m.v, m.a + np.where(m.body.kinematic, 0.0, 1.0), m.wrench)
-    assert_near(rows @ np.concatenate([~m.body.kinematic * 1.0, np.zeros(12)]), more - m.u, 1e-8)
-    heavier = m.body.forces(m.q, m.v, m.a, 2.0 * m.wrench)
-    assert_near(rows @ np.concatenate([np.zeros(m.model.nv), (heavier - m.u)[-12:]]), heavier - m.u, 1e-8)
+    rows, nu = m.body.force_rows(m.q), m.body.nu
+    more = m.forces(m.a + np.where(m.body.kinematic, 0.0, 1.0), m.wrench) - m.u
+    assert_near(rows @ np.concatenate([~m.body.kinematic * 1.0, np.zeros(12)]), more[:nu], 1e-8)
+    heavier = m.forces(m.a, 2.0 * m.wrench) - m.u
+    assert_near(rows @ np.concatenate([np.zeros(m.model.nv), heavier[-12:]]), heavier[:nu], 1e-8)
 
 
 def test_both_force_states_mean_the_same_torques():
@@ -99,7 +113,7 @@ def test_both_force_states_mean_the_same_torques():
     np.testing.assert_array_equal(first.u[-12:], second.u[-12:])
 
 
-@pytest.mark.parametrize("frame", WRENCH_FRAMES)
+@pytest.mark.parametrize("frame", FRAMES)
 def test_local_wrench_has_the_same_power_on_the_foot(frame):
     """Work on any motion of the foot is the same from the world's wrench and from the local one."""
     m = Moment(frame=frame)

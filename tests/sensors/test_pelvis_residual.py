@@ -1,8 +1,11 @@
 """The pelvis residual near zero: what a true motion leaves of it, and a spread that says nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mbkf.filters.torque.plant import ForcedState
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.sensors.pelvis_residual import PelvisResidual
 from tests.dynamics import prepared_at, trial
@@ -48,6 +51,18 @@ def test_a_residual_state_is_read_itself():
     rest = found.matrix.copy()
     rest[at, at] = 0.0
     assert not rest.any()
+
+
+def test_a_foot_of_unknown_load_leaves_it_unread():
+    m, t = trial("squat"), FRAME
+    body, motion = HumanDynamics(m.model, loads_given=True), m.motion
+    block, load = PelvisResidual(body, np.full(6, 2.0)), motion.foot_wrench[t].ravel()
+    u = body.forces(motion.q[t], motion.v[t], motion.a[t], motion.foot_wrench[t])
+    state = ForcedState(motion.q[t], motion.v[t], u, np.eye(3), given=load)
+    found = block.linearise(prepared_at(block, state), None)
+    assert worst(found.vector) / np.abs(found.matrix).max() ** 0.5 < 0.5
+    unknown = replace(state, given=np.where(np.arange(12) < 6, np.nan, load))
+    assert block.linearise(prepared_at(block, unknown), None) is None
 
 
 @each_state

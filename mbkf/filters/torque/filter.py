@@ -7,13 +7,14 @@ coordinates of the forces, :data:`mbkf.model.human_dynamics.FORCE_STATES` says.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
-from mbkf.filters.filter import Filter, Memory, Step
+from mbkf.filters.filter import Filter, Memory, Prior, Step
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.torque.noise import ForceNoise
 from mbkf.filters.torque.plant import ForcedState, TorquePlant
@@ -24,7 +25,8 @@ from mbkf.numerics.kalman import informed_whole
 from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import ContactDecision
-from mbkf.sensors.foot_plates import Ahead, FootPlates, FootPlateSettings, PlateMemory
+from mbkf.sensors.foot_plates import Ahead, FootPlates, FootPlateSettings, FootReading, PlateMemory
+from mbkf.sensors.given_plates import GivenPlates
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
 from mbkf.sensors.pelvis_residual import PelvisResidual
@@ -80,7 +82,7 @@ def torque_blocks(
             track_loss=False,
             compress=JacobianInformation,
         ),
-        FootPlates(body, detector, dt_s, plates),
+        (GivenPlates if body.loads_given else FootPlates)(body, detector, dt_s, plates),
         PostureAndRest(PostureSensor(body.model), body.fixed, weak.posture_scale, weak.velocity_sd),
         PelvisResidual(body, residual_sd(body, settings)),
     ]
@@ -146,7 +148,9 @@ class TorqueFilter(Filter[ForcedState]):
                 "a torque-state filter needs one block FootPlates and takes no block that adds states of its own; "
                 "the dynamic filter does"
             )
-        plant = TorquePlant(body, dt_s, ForceNoise(body, dt_s, settings), settings.scheme, wrenches=True)
+        plant = TorquePlant(
+            body, dt_s, ForceNoise(body, dt_s, settings), settings.scheme, wrenches=not body.loads_given
+        )
         super().__init__(plant, blocks, informed_whole)
         self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
         self.noise_m = noise_m * settings.tracking.marker_noise_scale
@@ -173,9 +177,31 @@ class TorqueFilter(Filter[ForcedState]):
             unobservable: (nv,) dofs that no marker of the capture moves with.
             settings: Settings of plant and blocks.
         """
-        body = HumanDynamics(sensor.model, unobservable, settings.wrench_frame, settings.force_state)
+        given = settings.plates == "inputs"
+        body = HumanDynamics(
+            sensor.model, unobservable, settings.wrench_frame, settings.force_state, loads_given=given
+        )
         blocks = torque_blocks(sensor, noise_m, body, detector, dt_s, settings)
         return cls(sensor, noise_m, dt_s, body, settings, blocks)
+
+    def correct(self, prior: Prior[ForcedState], memory: Memory, frame: Frame) -> TorqueStep:
+        """Correction of a prior by one frame; given loads of the frame replace those of the frame before first.
+
+        Args:
+            prior: The prediction; its covariance is changed in place.
+            memory: Of the frame before.
+            frame: The readings.
+        """
+        if self.body.loads_given:
+            kept = memory.blocks[self.blocks.index(self.plates)]
+            decision = self.plates.decide(OperatingPoint(prior.state, None), frame, kept, Notes())
+            state = replace(prior.state, given=self._given(decision.reading))
+            prior = prior._replace(state=state, points=[at._replace(state=state) for at in prior.points])
+        return super().correct(prior, memory, frame)
+
+    def _given(self, feet: FootReading) -> Array:
+        """(12,) wrenches of the feet where they are known inputs, else (0,)."""
+        return self.plates.loads(feet) if isinstance(self.plates, GivenPlates) else np.zeros(0)
 
     def first(self, motion: KinematicState, acceleration: Array, frame: Frame) -> FirstState:
         """A first state from a motion, and the plates of its frame.
@@ -191,7 +217,7 @@ class TorqueFilter(Filter[ForcedState]):
             OperatingPoint(cast("ForcedState", motion), None), frame, begun, Notes()
         )
         feet = decision.reading
-        state = self._start.state(motion, acceleration, feet, self.plates.sd(feet))
+        state = self._start.state(motion, acceleration, feet, self.plates.sd(feet), self._given(feet))
         memory = self._with_plates(self.begin(), self.plates.next_memory(state, decision))
         return FirstState(state, memory, decision.contact)
 
@@ -205,6 +231,8 @@ class TorqueFilter(Filter[ForcedState]):
         """
         kept = memory.blocks[self.blocks.index(self.plates)]
         decision = self.plates.decide(OperatingPoint(state, None), frame, kept, Notes())
+        if self.body.loads_given:
+            state = replace(state, given=self._given(decision.reading))
         remembered = self._with_plates(memory, self.plates.next_memory(state, decision))
         return FirstState(state, remembered, decision.contact)
 

@@ -88,6 +88,8 @@ class ForceNoise:
         jerk = settings.jerk_scale * body.model.acceleration_sd
         self._jerk = np.where(body.kinematic, 0.0, jerk**2)
         self._residual, self._load = residual_variance(settings, mass), load_variance(settings, mass)
+        if body.loads_given:
+            self._load = np.zeros(FEET)
         roles, ids = body.model.roles, {name: j.joint_id for name, j in body.model.joints.items()}
         # Segments in whose axes a force of unequal variances stands in the state.
         self._root = None if settings.residual_vertical_force_n is None else ids[roles.root]
@@ -142,4 +144,5 @@ class ForceNoise:
         torque = scale * np.where(legs, self.settings.lower_torque_nm, self.settings.upper_torque_nm)
         variance = np.where(body.kinematic, 0.0, torque**2)
         variance[:6] = self._residual
-        return np.concatenate([variance[body.torque_dofs], self._load])
+        own = variance[body.torque_dofs]
+        return own if body.loads_given else np.concatenate([own, self._load])

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -27,12 +28,23 @@ from mbkf.numerics.transition import DenseTransition
 
 @dataclass(frozen=True)
 class ForcedState:
-    """Mean and covariance of a forced body: q, v (nv,), u = T_e (nu,), P (n, n) of (δq, δv, δu)."""
+    """Mean and covariance of a forced body: q, v (nv,), u = T_e (nu,), P (n, n) of (δq, δv, δu).
+
+    Attributes:
+        given: (12,) wrenches of right and left foot that are known inputs, as the body takes them, NaN for a foot of
+            unknown wrench; (0,) where the wrenches are among u.
+    """
 
     q: Array
     v: Array
     u: Array
     P: Array
+    given: Array = field(default_factory=partial(np.zeros, 0), kw_only=True)
+
+    @property
+    def forces(self) -> Array:
+        """u, followed by the given wrenches with 0 for unknown ones: all that moves the body."""
+        return np.concatenate([self.u, np.nan_to_num(self.given)]) if len(self.given) else self.u
 
     def retracted(self, model: Body, step: Array, P: Array) -> ForcedState:
         """The state moved by a tangent vector.
@@ -43,7 +55,7 @@ class ForcedState:
             P: (n, n) covariance of the moved state.
         """
         q, v, u = parted(step, self.v, self.v, self.u)
-        return ForcedState(model.integrate(self.q, q), self.v + v, self.u + u, P)
+        return ForcedState(model.integrate(self.q, q), self.v + v, self.u + u, P, given=self.given)
 
     def minus(self, model: Body, origin: ForcedState) -> Array:
         """(n,) tangent vector from the mean of another state to this one's."""
@@ -148,7 +160,7 @@ class TorquePlant(Plant[ForcedState, None, None]):
     def move(self, state: ForcedState) -> ForcedState:
         """Motion and forces one frame later."""
         now, u, _ = self._advanced(state)
-        return ForcedState(now.q, now.v, u, state.P)
+        return ForcedState(now.q, now.v, u, state.P, given=state.given)
 
     def transition(self, state: ForcedState) -> Array:
         """(n, n) Φ at a state; a :class:`ForcedPrediction` holds that of its own step."""
@@ -162,17 +174,18 @@ class TorquePlant(Plant[ForcedState, None, None]):
         """The state one frame later (thesis eqs. 2.48, 2.49)."""
         now, u, whole = self._advanced(state)
         P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
-        return ForcedPrediction(now.q, now.v, u, P.T, whole.phi)
+        return ForcedPrediction(now.q, now.v, u, P.T, whole.phi, given=state.given)
 
     def _advanced(self, state: ForcedState) -> tuple[Motion, Array, Discrete]:
         """Motion and forces one frame later, and the step of their error."""
         parts = max(1, self.scheme.substeps)
         h, density = self.dt_s / parts, self.density(state)
-        now, u = Motion(state.q, state.v), state.u
+        now, u, given = Motion(state.q, state.v), state.u, np.nan_to_num(state.given)
         whole: Discrete | None = None
         for _ in range(parts):
-            later = self._advance(self.body, now, u, h)
-            F = self._slope(now, later, u)
+            forces = np.concatenate([u, given]) if len(given) else u
+            later = self._advance(self.body, now, forces, h)
+            F = self._slope(now, later, forces)
             part = discretise(F, density, h, self.scheme.propagation, self.scheme.covariance)
             whole = part if whole is None else whole.then(part)
             now = later

@@ -33,8 +33,9 @@ class TorqueState:
         a: (nv,) acceleration by Newton's law.
         tau: (nv,) generalised forces; the first six are the pelvis residual in pelvis axes.
         foot_wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
-        tau_sd: (nv,) standard deviations of ``tau``; NaN for dofs whose torque does not belong to the state.
-        foot_wrench_sd: (2, 6) standard deviations of ``foot_wrench``.
+        tau_sd: (nv,) standard deviations of ``tau``; NaN for dofs whose torque does not belong to the state, and for
+            all while a foot of unknown wrench stands and wrenches are known inputs.
+        foot_wrench_sd: (2, 6) standard deviations of ``foot_wrench``; of known inputs 0, or NaN for an unknown one.
     """
 
     q: Array
@@ -59,18 +60,24 @@ class TorqueState:
             wrenches: Its wrench states carried to points in the world.
             state: Mean and covariance.
         """
-        every = np.arange(len(state.P))
-        a = body.acceleration(state.q, state.v, state.u)
-        tau = body.generalised(state.q, state.v, a, state.u)
-        at_origin = wrenches.reading(state.q, state.u[-FEET:], np.zeros((2, 3)))
-        columns = np.concatenate([every[: body.nv], every[-FEET:]])
-        H = np.hstack([at_origin.by_q, at_origin.by_state])
-        spread = ((H @ state.P[np.ix_(columns, columns)]) * H).sum(axis=1)
+        forces = state.forces
+        a = body.acceleration(state.q, state.v, forces)
+        tau = body.generalised(state.q, state.v, a, forces)
+        at_origin = wrenches.reading(state.q, forces[-FEET:], np.zeros((2, 3)))
+        if body.loads_given:
+            spread = np.where(np.isnan(state.given), np.nan, 0.0)
+        else:
+            every = np.arange(len(state.P))
+            columns = np.concatenate([every[: body.nv], every[-FEET:]])
+            H = np.hstack([at_origin.by_q, at_origin.by_state])
+            spread = ((H @ state.P[np.ix_(columns, columns)]) * H).sum(axis=1)
         tau_sd = np.full(body.nv, np.nan)
-        torque = body.joint_forces(state.q, state.v, state.u)
+        torque = body.joint_forces(state.q, state.v, forces)
         T = np.hstack([torque.by_q, torque.by_v, torque.by_u])
         tau_sd[body.torque_dofs] = root(((T @ state.P) * T).sum(axis=1))
         tau_sd[body.fixed] = np.nan
+        if np.isnan(state.given).any():
+            tau_sd[:] = np.nan
         found = at_origin.wrench.reshape(2, 6), tau_sd, root(spread).reshape(2, 6)
         return cls(state.q, state.v, a, tau, *found)
 

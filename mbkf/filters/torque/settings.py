@@ -36,6 +36,12 @@ from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES
 MASS_OF_TABLE_KG = 100.0
 """Covariances of forces scale with the subject's mass over this (thesis eq. 4.18)."""
 
+PLATES = ("sensors", "inputs")
+"""Parts of force plates in the filter, see :mod:`mbkf.sensors.foot_plates` and :mod:`mbkf.sensors.given_plates`."""
+
+SENSED = {"only_with": ("plates", "sensors")}
+"""Of a setting that matters where wrenches are states."""
+
 NOISES = ("consistent", "independent")
 """Process noise of the forces, see :mod:`mbkf.filters.torque.noise`."""
 
@@ -50,6 +56,8 @@ class TorqueSettings:
         scheme: Integrator, propagation and covariance.
         tracking: Gate, weak pulls and scale of the marker noise, as in the kinematic filter.
         force_state: "inertial" or "torque", see :data:`mbkf.model.human_dynamics.FORCE_STATES`.
+        plates: "sensors": wrenches of the feet are states that plates read; "inputs": the plates' wrenches are known
+            and enter the equations of motion, without noise, and the wrenches leave the state (thesis 3.2.3).
         wrench_frame: "ankle", "foot" or "thesis", see :data:`mbkf.model.human_dynamics.WRENCH_FRAMES`.
         noise: "consistent": accelerations and foot loads change freely, and forces with them;
             "independent": every force by itself (thesis 3.2.3).
@@ -71,18 +79,19 @@ class TorqueSettings:
     scheme: Scheme = field(default_factory=Scheme)
     tracking: KinematicSettings = field(default_factory=KinematicSettings)
     force_state: str = field(default="inertial", metadata={"words": FORCE_STATES})
-    wrench_frame: str = field(default="ankle", metadata={"words": WRENCH_FRAMES})
+    plates: str = field(default="sensors", metadata={"words": PLATES})
+    wrench_frame: str = field(default="ankle", metadata={"words": WRENCH_FRAMES, **SENSED})
     noise: str = field(default="consistent", metadata={"words": NOISES})
     jerk_scale: float = field(default=3.0, metadata={"only_with": ("noise", "consistent")})
     toe_acceleration: float | None = field(default=None, metadata={"absent": "table"})
-    load_force_n: float = 1000.0
-    load_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
-    load_moment_nm: float = 100.0
-    plate_force_n: float = 5.0
-    plate_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
-    plate_moment_nm: float = 2.0
-    unloaded_force_n: float = 0.1
-    unloaded_moment_nm: float = 0.02
+    load_force_n: float = field(default=1000.0, metadata=SENSED)
+    load_vertical_force_n: float | None = field(default=None, metadata={"absent": "same", **SENSED})
+    load_moment_nm: float = field(default=100.0, metadata=SENSED)
+    plate_force_n: float = field(default=5.0, metadata=SENSED)
+    plate_vertical_force_n: float | None = field(default=None, metadata={"absent": "same", **SENSED})
+    plate_moment_nm: float = field(default=2.0, metadata=SENSED)
+    unloaded_force_n: float = field(default=0.1, metadata=SENSED)
+    unloaded_moment_nm: float = field(default=0.02, metadata=SENSED)
     residual_force_n: float = 10.0
     residual_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
     residual_moment_nm: float = 5.0

@@ -14,6 +14,8 @@ from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.layout import Layout
 from mbkf.sensors.foot_plates import FootReading
 
+NOTHING = np.zeros(0)
+
 
 class TorqueStart:
     """Makes a first state.
@@ -46,7 +48,12 @@ class TorqueStart:
         self._unmeasured = np.sqrt(load_variance(settings, mass))
 
     def state(
-        self, motion: KinematicState, acceleration: Array, feet: FootReading, plate_sd: Array
+        self,
+        motion: KinematicState,
+        acceleration: Array,
+        feet: FootReading,
+        plate_sd: Array,
+        given: Array = NOTHING,
     ) -> ForcedState:
         """The first state.
 
@@ -55,17 +62,18 @@ class TorqueStart:
             acceleration: (nv,) estimate.
             feet: What is known of the ground's reactions.
             plate_sd: (12,) standard deviations of that, infinite where nothing is known.
+            given: (12,) wrenches that are known inputs, or (0,).
         """
         a = np.where(self.body.kinematic, 0.0, acceleration)
         u = self.body.forces(motion.q, motion.v, a, feet.wrench)
         if self.settings.noise == "independent":
-            return ForcedState(motion.q, motion.v, u, self._plain_covariance(motion, u))
+            return ForcedState(motion.q, motion.v, u, self._plain_covariance(motion, u), given=given)
         load_sd = np.where(np.isfinite(plate_sd), plate_sd, self._unmeasured)
-        return self._agreed(ForcedState(motion.q, motion.v, u, motion.P), load_sd)
+        return self._agreed(ForcedState(motion.q, motion.v, u, motion.P, given=given), load_sd)
 
     def _agreed(self, motion: ForcedState, load_sd: Array) -> ForcedState:
         """Motion and reactions made to agree; ``motion`` has the covariance of (q, v) alone."""
-        body, q, v, u = self.body, motion.q, motion.v, motion.u
+        body, q, v, u = self.body, motion.q, motion.v, motion.forces
         layout, torque = Layout.dynamic(body.nv), body.joint_forces(q, v, u)
         motion_part = layout.motion
         linear = body.linearise(q, v, u)

@@ -121,6 +121,11 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
 
 def _torque(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
     _refuse(own, "the torque filter is the thesis's")
+    if inputs.torque.plates == "inputs" and not inputs.plates:
+        raise InvalidInput(
+            'plates = "inputs" takes the feet\'s wrenches from force plates, and 0 plates are read; '
+            'give the ground reactions, or plates = "sensors"'
+        )
     detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
     known = inputs.sensor, inputs.noise_m, detector, inputs.dt_s, inputs.unobservable, inputs.torque
     return _started(TorqueReport(TorqueFilter.standard(*known)), inputs)

@@ -65,7 +65,8 @@ def assemble(
         result: The track.
     """
     model, times_s = inputs.sensor.model, measured.times_s
-    ground = ground_reactions(model, result, times_s, measured.rate_hz, inputs.plates)
+    given = settings.filter == "torque" and settings.torque.plates == "inputs"
+    ground = ground_reactions(model, result, times_s, measured.rate_hz, inputs.plates, given)
     torques = ground.torques
     frame = pelvis_frame(settings.pelvis, model, result.q, times_s)
     reading = angle_reading(settings.angles, model, subject, capture.processing)

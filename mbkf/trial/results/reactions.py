@@ -52,7 +52,12 @@ class GroundReactions:
 
 
 def ground_reactions(
-    model: Body, track: Track, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
+    model: Body,
+    track: Track,
+    times_s: Array,
+    rate_hz: float,
+    plates: tuple[PlateReadings, ...],
+    inputs: bool = False,
 ) -> GroundReactions:
     """Loads and torques of a tracked trial.
 
@@ -62,6 +67,7 @@ def ground_reactions(
         times_s: (T,) times of the frames.
         rate_hz: Frame rate.
         plates: The plates it could read.
+        inputs: The plates are known inputs, so that the load of a foot without a plate is not estimated.
     """
     read = assign_feet(model, track.q, times_s, rate_hz, plates)
     supports = supports_of(model, track)
@@ -85,7 +91,7 @@ def ground_reactions(
         held = ~falling(track.q[:, 2], rate_hz) & ~bears
         flies = (track.foot_contact == Contact.AIR).all(axis=1) & ~held & ~bears
         accounted = measured | ((estimated | flies) & ~_stray(read, plates))
-        contact = _contact_warnings(track.foot_contact, plates)
+        contact = _contact_warnings(track.foot_contact, plates, inputs)
         floating = _floating_warning(track.foot_contact, held & track.tracked)
         warnings = (*read.warnings, *contact, *floating)
     torque_sd, torque_offset = (
@@ -165,7 +171,7 @@ def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, 
     return change
 
 
-def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list[str]:
+def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...], inputs: bool) -> list[str]:
     unread = contact == Contact.UNMEASURED
     one, both = int(unread.any(axis=1).sum()), int(unread.all(axis=1).sum())
     warnings = []
@@ -173,12 +179,18 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
         warnings.append(
             "no force plates: reactions are estimated from the motion, residuals are not computed"
         )
-    if one:
+    if one and inputs:
+        warnings.append(
+            f"in {one} of {len(contact)} frames a foot carries weight where no plate reads: plates are known inputs, "
+            "so its load counts as 0, stands in the pelvis residual, and torques have no standard deviation; "
+            'set plates = "sensors" to have it estimated'
+        )
+    elif one:
         warnings.append(
             f"in {one} of {len(contact)} frames a foot carries weight where no plate reads: its reaction is estimated "
             "from the motion"
         )
-    if both:
+    if both and not inputs:
         warnings.append(
             f"in {both} frames both feet do, and how they share the load is known by where they stand only "
             "(see the standard deviations)"

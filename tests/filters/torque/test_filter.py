@@ -156,6 +156,31 @@ def test_a_hidden_leg_is_carried_by_dynamics(model, motions):
     assert rms(last[6:]) < np.deg2rad(2.0)
 
 
+@pytest.mark.parametrize(("name", "scheme"), [("walk", "FDMC"), ("squat", "FD")])
+def test_plates_as_inputs_are_followed_without_wrench_states(model, motions, name, scheme):
+    run = Run(model, motions[name], replace(preset(scheme), plates="inputs"))
+    assert len(run.steps[-1].state.P) == 154
+    assert run.angle_rms() < np.deg2rad(1.5)
+    dynamic = ~run.filter.body.kinematic
+    assert rms(run.error("tau")[:, dynamic][:, 6:]) < 8.0
+    found = np.array([state.foot_wrench for state in run.states])
+    assert_near(found, run.wrench, 1e-9)
+    assert not any(state.foot_wrench_sd.any() for state in run.states)
+    assert all(np.isfinite(state.tau_sd[run.filter.body.torque_dofs]).all() for state in run.states)
+
+
+def test_an_input_that_no_plate_reads_is_left_to_the_residual(model, motions):
+    settings = replace(preset("FDMC"), plates="inputs")
+    run = Run(model, motions["squat"], settings, frames=60, measured=np.array([True, False]))
+    pelvis = model.joint("pelvis").joint_id
+    residual = [model.placements(state.q)[0][pelvis] @ state.tau[:3] for state in run.states[15:]]
+    assert_near(np.mean(residual, axis=0), run.wrench[15:, 1, :3].mean(axis=0), 25.0)
+    assert run.angle_rms() < np.deg2rad(2.0)
+    assert all(np.isnan(state.tau_sd).all() for state in run.states)
+    assert all(np.isnan(state.foot_wrench_sd[1]).all() for state in run.states)
+    assert not any(state.foot_wrench[1].any() for state in run.states)
+
+
 def test_an_unmeasured_foot_is_inferred(model, motions):
     """Newton's law and the other plate tell what stands on the missing one."""
     run = Run(model, motions["squat"], TorqueSettings(), measured=np.array([True, False]))

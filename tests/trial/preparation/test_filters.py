@@ -72,6 +72,14 @@ def test_settings_reach_their_own_filter():
     assert tracking_filter("torque", known).kalman.settings is known.torque
 
 
+def test_plates_as_inputs_need_plates():
+    wanted = replace(preset("FDMC"), plates="inputs")
+    found = tracking_filter("torque", replace(inputs(), torque=wanted))
+    assert found.kalman.body.loads_given
+    with pytest.raises(InvalidInput, match=r'0 plates are read.*plates = "sensors"'):
+        tracking_filter("torque", replace(inputs(), torque=wanted, plates=()))
+
+
 @pytest.mark.parametrize("name", ["torque", "dynamic"])
 def test_plates_reach_the_filters_that_read_them(name):
     found = tracking_filter(name, inputs(plates=made().plates[:1]))

@@ -49,8 +49,8 @@ def truly():
     return plate_wrenches(plates(), motion().times_s[SOME], RATE_HZ)
 
 
-def found_with(track, plates=()):
-    found = ground_reactions(trial("squat").model, track, motion().times_s[SOME], RATE_HZ, plates)
+def found_with(track, plates=(), inputs=False):
+    found = ground_reactions(trial("squat").model, track, motion().times_s[SOME], RATE_HZ, plates, inputs)
     parts = vars(found.loads) | vars(found.supports) | vars(found.torques)
     return SimpleNamespace(
         **parts, measured=found.measured, accounted=found.accounted, warnings=found.warnings
@@ -67,6 +67,17 @@ def test_measured_and_estimated_reactions_agree_where_the_estimate_is_exact():
     assert_near(estimated.residual_force_n, measured.residual_force_n, 1e-9)
     assert estimated.measured.all() and measured.measured.all()
     assert estimated.warnings == measured.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [(False, "its reaction is estimated"), (True, "counts as 0, stands in the pelvis residual")],
+)
+def test_a_foot_without_a_plate_is_named_with_its_treatment(inputs, said):
+    contact = np.tile([Contact.MEASURED, Contact.UNMEASURED], (FRAMES, 1))
+    found = found_with(followed(truly(), contact), plates(), inputs)
+    assert sum(said in one for one in found.warnings) == 1
+    assert sum("a foot carries weight where no plate reads" in one for one in found.warnings) == 1
 
 
 def test_torques_and_residuals_are_those_of_the_true_motion():
