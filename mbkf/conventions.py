@@ -50,7 +50,7 @@ def data_folder(kind: str) -> Path:
     """Folder of the data files of one kind, wherever the package is installed.
 
     Args:
-        kind: ``"models"``, ``"markers"`` or ``"presets"``.
+        kind: ``"models"`` or ``"markers"``.
 
     Returns:
         The folder beside the package in a source tree, inside it in an installed wheel.

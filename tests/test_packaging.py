@@ -17,7 +17,7 @@ from tests.quick_compiler import quick_compiler
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[1]
-KINDS = ("models", "markers", "presets")
+KINDS = ("models", "markers")
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def wheel(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
     tree = folder / "tree"
     built = shutil.ignore_patterns("*.so", "__pycache__")
-    for name in ("mbkf", "models", "markers", "presets", ".ci"):
+    for name in ("mbkf", "models", "markers", ".ci"):
         shutil.copytree(ROOT / name, tree / name, ignore=built)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, tree / name)

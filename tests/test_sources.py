@@ -7,7 +7,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 ENDINGS = {".css", ".html", ".js", ".md", ".py", ".toml"}
-FOLDERS = ("mbkf", "tests", "benchmarks", "models", "markers", "presets")
+FOLDERS = ("mbkf", "tests", "benchmarks", "models", "markers")
 FILES = sorted(
     path
     for path in [*(path for folder in FOLDERS for path in (ROOT / folder).rglob("*")), *ROOT.glob("*.*")]

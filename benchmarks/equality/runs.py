@@ -132,11 +132,7 @@ class Tree:
         return word.replace("{data}", str(self.data)).replace("{made}", str(made))
 
     def _digest(self) -> str:
-        files = (
-            path
-            for name in ("mbkf", "models", "markers", "presets")
-            for path in (self.source / name).rglob("*")
-        )
+        files = (path for name in ("mbkf", "models", "markers") for path in (self.source / name).rglob("*"))
         state = sha256()
         for path in sorted(p for p in files if p.is_file() and p.suffix != ".pyc"):
             state.update(path.relative_to(self.source).as_posix().encode() + b"\0" + path.read_bytes())

@@ -117,7 +117,7 @@ def preset_folder() -> Path:
 
 def shipped_presets() -> dict[str, Path]:
     """Files of the presets that come with mbkf by name."""
-    files = data_folder("presets").glob(f"*{SUFFIX}")
+    files = (data_folder("models") / "presets").glob(f"*{SUFFIX}")
     return {path.stem: path for path in sorted(files, key=lambda path: path.stem)}
 
 

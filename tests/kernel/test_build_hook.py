@@ -13,7 +13,7 @@ from tests.quick_compiler import quick_compiler
 
 ROOT = Path(__file__).resolve().parents[2]
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", "mbkf/version.py")
-FOLDERS = ("mbkf/kernel", "models", "markers", "presets", ".ci")
+FOLDERS = ("mbkf/kernel", "models", "markers", ".ci")
 
 
 @pytest.fixture
