@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from benchmarks.double_pendulum.consistency import FRAMES, READING_DOF, STATE_DOF, Consistency
 from benchmarks.double_pendulum.kinematic import KinematicMethod
@@ -33,6 +32,10 @@ from benchmarks.thesis_report.figures import (
 )
 from mbkf.conventions import Array
 from mbkf.synthesis.cameras import skin_artefact
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 SEED = 0
 GAPS_S = ((0.85, 1.15), (1.85, 2.15))

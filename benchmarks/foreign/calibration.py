@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.figure import Figure
 
 from benchmarks.foreign.errors import GROUPS, Judged, Series
 from benchmarks.foreign.making.persons import CHOSEN_ON, SHOWN_ON
 from benchmarks.foreign.score import LEVELS, AngleScore, angle_score, reliability, score
 from benchmarks.thesis_report.figures import BLUE, GREEN, ORANGE, TRUTH, axes, labelled
 from mbkf.conventions import Array
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FIGURE, PAGE = "reliability.svg", "calibration.md"
 
@@ -35,6 +37,8 @@ def write_page(folder: Path, figures: Path, sets: Sets) -> None:
         figures: Folder of the figure.
         sets: Motions by set of persons; persons made from our own body last.
     """
+    from matplotlib import rc_context
+
     with rc_context({"svg.hashsalt": "calibration"}):  # the same file from the same numbers
         drawn(sets).savefig(figures / FIGURE, metadata={"Date": None})
     (folder / PAGE).write_text("\n".join(page(sets)) + "\n", encoding="utf-8")

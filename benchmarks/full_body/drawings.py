@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from benchmarks.dynamic.methods import Mapper
 from benchmarks.full_body.filters import CAUSAL, COLOURS, DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from benchmarks.dynamic.losses import CAPTURES
 from benchmarks.full_body.filters import COLOURS, DYNAMIC, FCDI
@@ -26,6 +25,9 @@ from benchmarks.full_body.occlusion import (
 )
 from benchmarks.thesis_report.figures import GREEN, GREY, TRUTH, Drawing, axes, labelled, legend
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 RIGID_FILLING = "rigid body"
 """Better of rigid-body filling from a segment's own markers and with its neighbours'."""
 
@@ -43,6 +45,8 @@ Value = Callable[[Point, str], float]
 
 def occlusion_drawings(points: Sequence[Point]) -> Iterator[Drawing]:
     """All figures of what was measured."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
     note = "Dashed: later frames are used. The spline and rigid-body filling use them, too."
     for title, chosen, by_gap in (
         ("Hidden markers over the share hidden", over_share(points), False),

@@ -11,7 +11,6 @@ from dataclasses import replace
 from time import process_time
 
 import numpy as np
-from vqf import VQF, offlineVQF
 
 from benchmarks.checks import Check, Context
 from benchmarks.kernel import using
@@ -113,6 +112,8 @@ def _longer(one: ImuReadings, samples: int) -> ImuReadings:
 
 def _vqf(one: ImuReadings, method: str) -> Array:
     """(T, 4) VQF's orientation."""
+    from vqf import VQF, offlineVQF
+
     parts = [
         np.ascontiguousarray(x)
         for x in (one.angular_velocity_rad_s, one.specific_force_mps2, one.magnetic_field)

@@ -12,8 +12,6 @@ from time import perf_counter
 
 import numpy as np
 import scipy.io
-from ahrs.filters import Madgwick
-from vqf import VQF, offlineVQF
 
 from benchmarks.checks import Check, Context
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
@@ -85,6 +83,8 @@ def _shown(name: str, angle_rad: float) -> Check:
 
 def _from_ahrs(one: ImuReadings, moving: BoolArray) -> float:
     """Greatest angle in degrees between the two Madgwick filters, from the same start."""
+    from ahrs.filters import Madgwick
+
     theirs = Madgwick(
         gyr=one.angular_velocity_rad_s, acc=one.specific_force_mps2, mag=one.magnetic_field,
         frequency=one.rate_hz, gain=BETA,
@@ -109,6 +109,8 @@ def beside_vqf(context: Context) -> Iterator[Check]:
 
 
 def _yardsticks(name: str, one: ImuReadings, moving: BoolArray) -> Iterator[Check]:
+    from vqf import VQF, offlineVQF
+
     assert one.orientation is not None
     parts = [
         np.ascontiguousarray(x)
@@ -168,6 +170,8 @@ def source_rows(context: Context) -> Iterator[Check]:
 
 def _time_rows(one: ImuReadings) -> Iterator[Check]:
     """Time per sample, stepwise, one sensor with its magnetometer."""
+    from ahrs.filters import Madgwick
+
     repeat = -(-_TIMED // one.samples)
     gyro, force, field = (
         np.tile(np.asarray(x), (repeat, 1))

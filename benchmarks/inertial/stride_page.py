@@ -7,11 +7,9 @@ import io
 from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from benchmarks.checks import Check
 from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, cubic_steps
@@ -35,6 +33,10 @@ from benchmarks.inertial.stride_study import (
 )
 from benchmarks.thesis_report.figures import BLUE, GREEN, ORANGE, TRUTH, axes
 from mbkf.imu.key_points import KeyPointSettings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 PAGE = "stride.html"
 RED = "#b3261e"
@@ -291,6 +293,8 @@ def _labelled(panel: Axes, x: str, y: str) -> None:
 
 
 def _picture(figure: Figure, caption: str) -> str:
+    from matplotlib import rc_context
+
     file = io.BytesIO()
     with rc_context({"svg.hashsalt": caption, "svg.fonttype": "path"}):
         figure.savefig(file, format="svg", metadata={"Date": None})

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 TRUTH, BLUE, ORANGE, GREEN, GREY = "#111111", "#1f6fb4", "#e06c10", "#2a9150", "#9aa0a6"
 SHADE = "#dfe2e5"
@@ -38,6 +41,8 @@ def axes(rows: int = 1, columns: int = 1, height: float = 2.6) -> tuple[Figure, 
         columns: Columns of axes.
         height: Height of a row, inches.
     """
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(7.2, height * rows), layout="constrained")
     made = [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
     for one in made:

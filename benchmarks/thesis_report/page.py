@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from matplotlib import rc_context
-
 from benchmarks.thesis_report.contents import Band, Claim, Sheet
 from benchmarks.thesis_report.figures import Drawing
 
@@ -219,6 +217,8 @@ def _number(text: str) -> str:
 
 def _svg(drawing: Drawing) -> bytes:
     """The figure, the same bytes for the same numbers."""
+    from matplotlib import rc_context
+
     file = io.BytesIO()
     with rc_context({"svg.hashsalt": drawing.file, "svg.fonttype": "path"}):
         drawing.figure.savefig(file, format="svg", metadata={"Date": None})
