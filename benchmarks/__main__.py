@@ -23,6 +23,7 @@ from rich.table import Table
 
 import benchmarks
 from benchmarks.checks import Check, Context
+from benchmarks.needs import Lacking, require
 from mbkf.errors import InvalidInput, MbkfError, MissingDependency, UnknownName
 
 DATA_VARIABLE, OLD_VARIABLE = "MBKF_DATA", "MBKF_OLD_TREE"
@@ -143,20 +144,25 @@ def _run(args: argparse.Namespace) -> list[Check]:
     console = _console()
     results: dict[str, list[Check]] = {}
     for name in args.names or known:
-        out = args.out / name
-        out.mkdir(parents=True, exist_ok=True)
-        start = perf_counter()
-        module = importlib.import_module(f"benchmarks.{name}")
+        out, start = args.out / name, perf_counter()
         try:
+            _say(console, "" if args.only else require(name, args.data, quick=args.quick))
+            out.mkdir(parents=True, exist_ok=True)
+            module = importlib.import_module(f"benchmarks.{name}")
             results[name] = getattr(module, ENTRY_POINT)(context_of(args, out))
-        except MissingDependency as missing:
+        except (Lacking, MissingDependency) as missing:
             if args.names:
                 raise
-            console.print(f"{name}: left out, since {missing}", markup=False)
+            _say(console, f"{name} is left out: {missing}")
             continue
         console.print(_table(name, results[name], perf_counter() - start))
     _write(args.out / "checks.json", results, args.quick)
     return [check for checks in results.values() for check in checks]
+
+
+def _say(console: Console, line: str) -> None:
+    if line:
+        console.print(line, markup=False, soft_wrap=True)
 
 
 def _check_folders(args: argparse.Namespace) -> None:
@@ -187,6 +193,8 @@ def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:
         value, bound = f"{check.value:.4g}", f"{check.relation} {check.bound:.4g}"
         if not check.bounded:
             verdict, bound = "", "for information"
+        if check.left_out:
+            value, bound, verdict = "–", "", f"left out: {check.note}"
         table.add_row(check.name, value, bound, check.unit, verdict)
     return table
 
@@ -198,7 +206,7 @@ def _write(path: Path, results: dict[str, list[Check]], quick: bool) -> None:
             **asdict(check),
             "value": float(check.value) if math.isfinite(check.value) else None,
             "bound": float(check.bound) if check.bounded else None,
-            "passed": check.passed,
+            "passed": None if check.left_out else check.passed,
         }
         for name, checks in results.items()
         for check in checks

@@ -20,6 +20,7 @@ class Check:
         bound: The number it is compared with; infinite where the value is shown for information only.
         relation: "<=" where the value may not exceed the bound, ">=" where it must reach it.
         unit: Unit of value and bound, "" for pure numbers.
+        note: Why the row was left out and what it needs; empty where it was measured.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Check:
     bound: float
     relation: Literal["<=", ">="]
     unit: str = ""
+    note: str = ""
 
     def __post_init__(self) -> None:
         if self.relation not in {"<=", ">="}:
@@ -36,6 +38,11 @@ class Check:
     def bounded(self) -> bool:
         """Whether there is a bound to keep."""
         return math.isfinite(self.bound)
+
+    @property
+    def left_out(self) -> bool:
+        """Whether the row was not measured, and so neither keeps nor breaks a bound."""
+        return bool(self.note)
 
     @property
     def passed(self) -> bool:
@@ -103,6 +110,16 @@ def information(name: str, value: float, unit: str = "") -> Check:
         unit: Its unit.
     """
     return Check(name, value, math.inf, "<=", unit)
+
+
+def left_out(name: str, note: str) -> Check:
+    """A row that was not measured: it neither passes nor fails.
+
+    Args:
+        name: Name of the row.
+        note: Why, and what it needs.
+    """
+    return Check(name, math.nan, math.inf, "<=", note=note)
 
 
 def number(value: float | None) -> float:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as runner
-from benchmarks.checks import Check, Context, number, within
+from benchmarks import needs
+from benchmarks.checks import Check, Context, left_out, number, within
 from mbkf.errors import InvalidInput, MissingDependency
 
 
@@ -85,23 +86,36 @@ def test_a_benchmark_without_its_library_is_left_out_unless_it_is_named(fake, tm
 
     fake.run = run
     assert runner.main(["--out", str(tmp_path)]) == 0
-    assert "left out" in (told := capsys.readouterr().out) and "pip install opensim" in told
+    assert "fake is left out" in (told := capsys.readouterr().out) and "pip install opensim" in told
     assert runner.main(["fake", "--out", str(tmp_path)]) == 2
     assert "pip install opensim" in capsys.readouterr().err
-
-
-def test_every_benchmark_module_says_what_it_measures_and_can_run():
-    import benchmarks
-
-    for name in runner.names():
-        module = __import__(f"{benchmarks.__name__}.{name}", fromlist=["run"])
-        assert module.__doc__, name
-        assert callable(module.run), name
 
 
 def test_a_band_has_two_checks():
     low, high = within("x", 0.7, 0.8, 1.25)
     assert (low.passed, high.passed) == (False, True)
+
+
+def test_a_row_that_is_left_out_neither_passes_nor_fails(fake, tmp_path, capsys):
+    fake.run = lambda context: [left_out("torque", "needs captures"), Check("error", 0.5, 1.0, "<=")]
+    assert runner.main(["--out", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert "left out: needs captures" in told and told.count("pass") == 1
+    first, second = json.loads((tmp_path / "checks.json").read_text())["checks"]
+    assert (first["passed"], first["value"], first["note"], second["passed"]) == (
+        None,
+        None,
+        "needs captures",
+        True,
+    )
+
+
+def test_a_benchmark_without_captures_is_left_out_unless_it_is_named(fake, tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(needs.NEEDS, "fake", needs.Needs(captures=("some_walk",)))
+    assert runner.main(["--out", str(tmp_path)]) == 0
+    assert "fake is left out: fake needs captures (some_walk); docs/captures.md" in capsys.readouterr().out
+    assert runner.main(["fake", "--out", str(tmp_path)]) == 2
+    assert "needs captures (some_walk)" in capsys.readouterr().err
 
 
 def test_a_missing_number_passes_no_bound():
