@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -68,6 +68,16 @@ SOURCES: Mapping[str, Source] = {
     ),
     "gaitalytics": Source("gaitalytics_walk", "overground_fullbody_4plates.c3d", 63.6),
 }
+
+
+def present(names: Iterable[str], data: Path | None) -> list[str]:
+    """Those of some captures whose folders are there.
+
+    Args:
+        names: Names in :data:`SOURCES`.
+        data: Folder of the public captures; None without any.
+    """
+    return [name for name in names if data is not None and (data / SOURCES[name].folder).is_dir()]
 
 
 @dataclass(frozen=True)

@@ -1,38 +1,45 @@
 """The thesis's full-body studies (its chapter 4.2 and Table 4.4): every claim beside its measurement, on one page.
 
-Synthetic trials of eight persons with exact truth, and the public captures; the kinematic filter with inverse dynamics
-(FCDI), the thesis's FDMC and mbkf's dynamic filter, causal and smoothed, with one set of settings for all of them.
+Synthetic trials of eight persons with exact truth, and public captures, whose rows are left out where they are missing;
+the kinematic filter with inverse dynamics (FCDI), the thesis's FDMC and mbkf's dynamic filter, causal and smoothed,
+with one set of settings for all of them.
 """
 
 from __future__ import annotations
 
-from benchmarks.checks import Check, Context
+from collections.abc import Iterator
+from pathlib import Path
+
+from benchmarks.checks import Check, Context, left_out
+from benchmarks.dynamic.captures import present
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.full_body.accuracy import accuracy_findings, lost_by_fdmc, trial_count
 from benchmarks.full_body.claims import survey_claims
 from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
 from benchmarks.full_body.filters import FCDI
 from benchmarks.full_body.observability import observability_findings
-from benchmarks.full_body.occlusion import measured, occlusion_findings
+from benchmarks.full_body.occlusion import bands_left_out, measured, occlusion_findings
 from benchmarks.full_body.occlusion_drawings import occlusion_drawings
-from benchmarks.full_body.real import real_findings, real_scores
+from benchmarks.full_body.persons import PERSONS
+from benchmarks.full_body.real import captures, real_findings, real_scores
 from benchmarks.full_body.single_markers import (
     measure_single_markers,
     single_marker_drawing,
     single_marker_findings,
 )
 from benchmarks.full_body.speed import measure_speed, real_time_factors, speed_drawing, speed_findings
-from benchmarks.full_body.survey import Survey, keys, survey
+from benchmarks.full_body.survey import SEEDS, Survey, survey
 from benchmarks.full_body.trials import JUMP
+from benchmarks.needs import PAGE
 from benchmarks.thesis_report.page import Report, Texts
 
 
 def run(context: Context) -> list[Check]:
-    """All studies and the page; with ``quick`` one person's squat and jump and one capture."""
-    data, quick = context.require_data(), context.quick
+    """All studies and the page; with ``quick`` one person by causal filters, and one capture."""
+    data, quick = context.data, context.quick
     speed = measure_speed(quick)
     with in_parallel() as mapper:
-        found = survey(mapper, keys(quick=quick))
+        found = survey(mapper, quick=quick)
         real = real_scores(data, mapper, quick=quick)
         hidden = measured(data, mapper, quick=quick)
         sliding = measure_single_markers(mapper, quick=quick)
@@ -46,7 +53,7 @@ def run(context: Context) -> list[Check]:
         speed_findings(speed),
     ]
     bands = [band for part in parts for band in part.bands]
-    claims = [*([] if quick else survey_claims(found)), *(claim for part in parts for claim in part.claims)]
+    claims = [*survey_claims(found), *(claim for part in parts for claim in part.claims)]
     sheets = [sheet for part in parts for sheet in part.sheets]
     pictures = [
         *drawings,
@@ -55,12 +62,34 @@ def run(context: Context) -> list[Check]:
         single_marker_drawing(sliding),
         speed_drawing(speed),
     ]
-    Report(_texts(found), quick, bands, claims, sheets, pictures).write(context.out)
+    absent = [*_not_there(data, quick), *(_not_run() if quick else ())]
+    Report(_texts(found, absent, quick), quick, bands, claims, sheets, pictures).write(context.out)
     kept = [check for band in bands for check in band.checks(quick)]
-    return [*kept, *lost_by_fdmc(found), *real_time_factors(speed)]
+    return [*kept, *lost_by_fdmc(found), *real_time_factors(speed), *absent]
 
 
-def _texts(found: Survey) -> Texts:
+def _not_there(data: Path | None, quick: bool) -> Iterator[Check]:
+    """Rows of real captures that are missing."""
+    note = f"needs captures ({PAGE})"
+    for name in bands_left_out(data, quick=quick):
+        yield left_out(name, note)
+    for name in captures(quick):
+        if not present([name], data):
+            yield left_out(f"real capture {name}: markers, residual, delay and noise", note)
+
+
+def _not_run() -> Iterator[Check]:
+    """What a quick run leaves out."""
+    note = "--quick"
+    yield left_out(f"{len(PERSONS) - 1} of {len(PERSONS)} persons", note)
+    yield left_out(f"{SEEDS - 1} of {SEEDS} seeds of each movement", note)
+    yield left_out("smoothed filters on synthetic trials", note)
+    yield left_out("hidden markers: all conditions but one; sliding markers: all but two", note)
+    yield left_out("figures 4.4 to 4.14 of the thesis", note)
+
+
+def _texts(found: Survey, absent: list[Check], quick: bool) -> Texts:
+    missing = "; ".join(f"{check.name}: {check.note}" for check in absent)
     return Texts(
         title="Full body: thesis and measurement",
         introduction="Walking, a general movement (reach, one-foot stands, turn, step up), squats, squats with the "
@@ -73,8 +102,9 @@ def _texts(found: Survey) -> Texts:
         command="python -m benchmarks full_body",
         bands="What mbkf's filters have to keep. Splines and rigid-body filling know where a marker is after its gap; "
         "the dynamic filter, frame by frame, does not, and is compared with them all the same.",
-        claims="The thesis's statements on whole bodies, and what was measured",
+        claims="The thesis's statements on whole bodies, and what was measured"
+        + (" on one person, one trial of each movement" if quick else ""),
         figures="Truth black, FCDI blue, FDMC per frame violet, FDMC ours green, dynamic orange.",
         remark="The synthetic persons are the filters' own body, so errors of the body itself are left out, but for "
-        "the study with a wrong mass.",
+        "the study with a wrong mass." + (f" Left out in this run: {missing}." if missing else ""),
     )

@@ -25,6 +25,10 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.person import body_of
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 DRAWN = (FCDI, FDMC_PER_FRAME, DYNAMIC)
 SEED = 0
 
@@ -224,7 +228,7 @@ def survey_drawings(found: Survey, real: Sequence[RealScores]) -> Iterator[Drawi
 
     Args:
         found: The synthetic trials.
-        real: The real captures.
+        real: The real captures; empty without any.
     """
     names = [name for name in (FCDI, FDMC_PER_FRAME, FDMC, DYNAMIC) if found.of(name)]
     numbers = (
@@ -237,7 +241,10 @@ def survey_drawings(found: Survey, real: Sequence[RealScores]) -> Iterator[Drawi
     )
     delays = (("velocity_delay_ms", "velocity delay (ms)"), ("torque_delay_ms", "torque delay (ms)"))
     yield Drawing("own", "Delay of the legs' curves", _bars(found, delays, names), "Mean over common trials.")
-    yield Drawing("own", "Residual force on real captures", _real_bars(real, names), "RMS after correction.")
+    if real:
+        yield Drawing(
+            "own", "Residual force on real captures", _real_bars(real, names), "RMS after correction."
+        )
 
 
 def _bars(found: Survey, numbers: Sequence[tuple[str, str]], names: Sequence[str]) -> Figure:

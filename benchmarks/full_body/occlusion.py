@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.dynamic.captures import Person, load
+from benchmarks.dynamic.captures import Person, load, present
 from benchmarks.dynamic.losses import CAPTURES, FRACTIONS, Occluded, occluded
 from benchmarks.dynamic.methods import Mapper, pooled
 from benchmarks.dynamic.synthetic import differences, make_case
@@ -55,6 +55,7 @@ SYNTHETIC_SEEDS = 2
 
 CAUSAL_RATIO, SMOOTHED_RATIO = 1.0, 0.7
 WITHIN_SD, NOMINAL = 1.96, 0.95
+_OVER = "over the best of spline, rigid-body filling and FCDI"
 _MM = 1e3
 
 
@@ -125,16 +126,16 @@ class Point:
         return self.hidden_mm(name) / self.hidden_mm(self.best(others))
 
 
-def measured(data: Path, mapper: Mapper, *, quick: bool) -> tuple[Point, ...]:
+def measured(data: Path | None, mapper: Mapper, *, quick: bool) -> tuple[Point, ...]:
     """All points of all curves; a condition of both curves is measured once.
 
     Args:
-        data: Folder of the reference captures.
+        data: Folder of the public captures; without it, or where a walk is missing, synthetic walks remain.
         mapper: Runs a function on many items, in turn or on several processes.
         quick: Whether one walk and one condition, with one seed, are enough.
     """
     conditions = _conditions(quick)
-    people = [load(name, data, correct=False) for name in CAPTURES[: 1 if quick else None]]
+    people = [load(name, data, correct=False) for name in real_walks(data, quick=quick) if data is not None]
     counts = {one: 1 if quick else SEEDS if one.bounded else FEW_SEEDS for one in conditions}
     trials = [
         Trial(person, None, one, seed)
@@ -142,16 +143,34 @@ def measured(data: Path, mapper: Mapper, *, quick: bool) -> tuple[Point, ...]:
         for one in conditions
         for seed in range(counts[one])
     ]
-    if not quick:
+    if not (quick and people):
         trials += [
             Trial(person, truth, one, seed)
-            for seed, (person, truth) in enumerate(mapper(_synthetic, range(SYNTHETIC_SEEDS)))
+            for seed, (person, truth) in enumerate(mapper(_synthetic, range(1 if quick else SYNTHETIC_SEEDS)))
             for one in conditions
         ]
     groups: dict[tuple[str, Condition], list[Scores]] = {}
     for trial, scores in zip(trials, mapper(scores_of, trials), strict=True):
         groups.setdefault((trial.person.name, trial.condition), []).append(scores)
     return tuple(Point(name, one, len(found), _pooled(found)) for (name, one), found in groups.items())
+
+
+def real_walks(data: Path | None, *, quick: bool) -> list[str]:
+    """Names of the real walks that are measured and there; the first one when quick."""
+    return present(CAPTURES[: 1 if quick else None], data)
+
+
+def bands_left_out(data: Path | None, *, quick: bool) -> list[str]:
+    """Names of the bounded numbers that real walks which are missing would give."""
+    wanted = CAPTURES[: 1 if quick else None]
+    missing = [name for name in wanted if name not in real_walks(data, quick=quick)]
+    kinds = (f"dynamic {_OVER}", f"smoothed {_OVER}")
+    bounded = [one for one in _conditions(quick) if one.bounded]
+    return [f"{_row(name, one)}: {kind}" for name in missing for one in bounded for kind in kinds]
+
+
+def _row(name: str, condition: Condition) -> str:
+    return f"occlusion, {name}, {100 * condition.share:.0f} % hidden"
 
 
 def _conditions(quick: bool) -> list[Condition]:
@@ -266,11 +285,10 @@ def occlusion_findings(points: Sequence[Point]) -> Findings:
     bands = []
     for point in points:
         if point.capture in CAPTURES and point.condition.bounded:
-            row = f"occlusion, {point.capture}, {100 * point.condition.share:.0f} % hidden"
-            over = "over the best of spline, rigid-body filling and FCDI"
+            row = _row(point.capture, point.condition)
             bands += [
-                Band(row, f"dynamic {over}", point.ratio(DYNAMIC), -OPEN, CAUSAL_RATIO),
-                Band(row, f"smoothed {over}", point.ratio(DYNAMIC_SMOOTHED), -OPEN, SMOOTHED_RATIO),
+                Band(row, f"dynamic {_OVER}", point.ratio(DYNAMIC), -OPEN, CAUSAL_RATIO),
+                Band(row, f"smoothed {_OVER}", point.ratio(DYNAMIC_SMOOTHED), -OPEN, SMOOTHED_RATIO),
             ]
     note = (
         "Hidden-marker RMS against the withheld samples; on synthetic walks also against the truth. Streaks may "

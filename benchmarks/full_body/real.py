@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.dynamic.captures import SOURCES, load
+from benchmarks.dynamic.captures import SOURCES, load, present
 from benchmarks.dynamic.methods import Mapper, Method
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, SMOOTHED
 from benchmarks.full_body.scores import (
@@ -122,21 +122,31 @@ def _scored(
     )
 
 
-def real_scores(data: Path, mapper: Mapper, *, quick: bool) -> list[RealScores]:
-    """All filters on all captures; a few filters on one capture when quick.
+def real_scores(data: Path | None, mapper: Mapper, *, quick: bool) -> list[RealScores]:
+    """All filters on all captures that are there; a few filters on one capture when quick.
 
     Args:
-        data: Folder of the reference captures.
+        data: Folder of the public captures; None without any.
         mapper: Runs a function on many items, in turn or on several processes.
         quick: Whether to do a shorter run.
     """
-    names, methods = (QUICK_CAPTURES, QUICK) if quick else (tuple(SOURCES), EVERY)
+    methods = QUICK if quick else EVERY
+    if data is None:
+        return []
+    names = present(captures(quick), data)
     found = mapper(partial(measure_capture, data=data, methods=methods), names)
     return [one for part in found for one in part]
 
 
+def captures(quick: bool) -> tuple[str, ...]:
+    """Names of the real captures of a run."""
+    return QUICK_CAPTURES if quick else tuple(SOURCES)
+
+
 def real_findings(scores: Sequence[RealScores]) -> Findings:
-    """The table of the real captures."""
+    """The table of the real captures; nothing without any."""
+    if not scores:
+        return Findings()
     columns = (
         "capture",
         "filter",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC, FDMC_PER_F
 from benchmarks.full_body.persons import PERSONS
 from benchmarks.full_body.scores import Scores, score
 from benchmarks.full_body.trials import (
-    JUMP,
+    GENERAL,
     LOST,
     MOVEMENTS,
     SQUAT,
@@ -24,9 +25,6 @@ from benchmarks.full_body.trials import (
 from mbkf.conventions import Array
 
 SEEDS = 4
-QUICK_SEED = 2
-"""Not the first, so that fewer filters run."""
-
 SEEDS_OF = {FDMC: 2, FDMC_PER_FRAME: 1, **dict.fromkeys(SMOOTHED, 1)}
 """Seeds on which a filter runs where that is not all of them: those that lose no trial need fewer for their errors."""
 
@@ -37,7 +35,10 @@ OF_VARIANTS = (FCDI, FDMC_PER_FRAME, FDMC, DYNAMIC)
 """Filters that run on the variants of the general movement."""
 
 Key = tuple[str, int, int]
-"""Movement, person and seed."""
+"""Movement or variant, person and seed."""
+
+MADE_FROM: Mapping[str, str] = {LOST: SQUAT, **dict.fromkeys(VARIANTS, GENERAL)}
+"""Movements whose trials are made from those of another one."""
 
 
 @dataclass(frozen=True)
@@ -51,16 +52,17 @@ class Outcome:
     scores: Scores
 
 
-def measure(key: Key) -> list[Outcome]:
-    """All filters on the trials of a movement, a person and a seed."""
+def measure(key: Key, quick: bool = False) -> list[Outcome]:
+    """All filters on the trial of a movement, a person and a seed; no smoothed ones when quick."""
     movement, person, seed = key
-    return [outcome for trial in make_trials(movement, person, seed) for outcome in filtered(trial)]
+    made = make_trials(MADE_FROM.get(movement, movement), person, seed)
+    return [one for trial in made if trial.movement == movement for one in filtered(trial, quick)]
 
 
-def filtered(trial: Trial) -> list[Outcome]:
-    """All filters on a trial; FCDI's run also tells what the plates measured under each foot."""
+def filtered(trial: Trial, quick: bool = False) -> list[Outcome]:
+    """All filters on a trial, no smoothed ones when quick; FCDI's run also gives the wrenches under each foot."""
     measured = CAUSAL[FCDI].run(trial.capture, trial.subject)
-    every = {**CAUSAL, **SMOOTHED}
+    every = CAUSAL if quick else {**CAUSAL, **SMOOTHED}
     found = []
     for name, method in every.items():
         if not runs(name, trial):
@@ -153,24 +155,23 @@ class Survey:
 
 
 def keys(*, quick: bool = False) -> list[Key]:
-    """What has to be measured, the longest first so that two workers end together; two trials when quick.
+    """What has to be measured, the longest first so that two workers end together; one person and seed when quick."""
+    made = sorted((*MOVEMENTS, *VARIANTS), key=lambda name: -SYNTHESISED[MADE_FROM.get(name, name)][1])
+    persons, seeds = (1, 1) if quick else (len(PERSONS), SEEDS)
+    return [
+        (name, person, seed)
+        for name in made
+        for person in range(persons)
+        for seed in range(1 if name in VARIANTS else seeds)
+    ]
 
-    The squat with lost markers comes with the squat.
-    """
-    if quick:
-        return [(movement, 0, QUICK_SEED) for movement in (SQUAT, JUMP)]
-    made = sorted(
-        set(MOVEMENTS) - {LOST}, key=lambda name: -SYNTHESISED[name][1] * (2.0 if name == SQUAT else 1.0)
-    )
-    return [(name, person, seed) for name in made for person in range(len(PERSONS)) for seed in range(SEEDS)]
 
-
-def survey(mapper: Mapper, wanted: Sequence[Key]) -> Survey:
+def survey(mapper: Mapper, *, quick: bool = False) -> Survey:
     """Measures all trials.
 
     Args:
         mapper: Runs a function on many items, in turn or on several processes.
-        wanted: Movements, persons and seeds.
+        quick: Whether one person and seed are enough, without smoothed filters.
     """
-    found = mapper(measure, wanted)
+    found = mapper(partial(measure, quick=quick), keys(quick=quick))
     return Survey([outcome for part in found for outcome in part])

@@ -1,5 +1,6 @@
 """Outcomes pooled by filter and movement: lost trials do not count, ratios are over the trials that both followed."""
 
+import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -7,8 +8,8 @@ import numpy as np
 import pytest
 
 from benchmarks.full_body.filters import DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME, FDMC_PRINTED
-from benchmarks.full_body.survey import Survey, keys, runs
-from benchmarks.full_body.trials import BESIDE, GENERAL, JUMP, LOST, MOVEMENTS, SQUAT, WALK
+from benchmarks.full_body.survey import Survey, keys, measure, runs
+from benchmarks.full_body.trials import BESIDE, GENERAL, JUMP, MOVEMENTS, VARIANTS, WALK
 from tests.benchmarks.full_body.conftest import made_survey
 
 
@@ -42,11 +43,26 @@ def test_a_ratio_is_over_the_trials_that_nobody_lost():
 
 def test_the_whole_study_has_160_trials_of_every_filter():
     wanted = keys()
-    assert len(wanted) == len(set(wanted)) == 8 * 4 * 4
-    assert {movement for movement, _, _ in wanted} == set(MOVEMENTS) - {LOST}
-    squats = sum(movement == SQUAT for movement, _, _ in wanted)
-    assert len(wanted) + squats == 160
+    assert len(wanted) == len(set(wanted)) == 8 * 4 * 5 + 8 * 2
+    assert sum(movement in MOVEMENTS for movement, _, _ in wanted) == 160
+    assert {key for key in wanted if key[0] in VARIANTS} == {
+        (name, k, 0) for name in VARIANTS for k in range(8)
+    }
     assert wanted[0][0] == GENERAL
+
+
+def test_a_quick_study_has_every_movement_and_variant_of_one_person_once():
+    assert sorted(keys(quick=True)) == sorted((movement, 0, 0) for movement in (*MOVEMENTS, *VARIANTS))
+
+
+def test_a_key_names_one_of_the_trials_that_are_made_together(monkeypatch):
+    made = [SimpleNamespace(movement=name, person=3, seed=0) for name in (GENERAL, *VARIANTS)]
+    asked = []
+    module = sys.modules[measure.__module__]
+    monkeypatch.setattr(module, "make_trials", lambda *key: asked.append(key) or made)
+    monkeypatch.setattr(module, "filtered", lambda trial, quick: [(trial.movement, quick)])
+    assert measure((BESIDE, 3, 0), quick=True) == [(BESIDE, True)]
+    assert asked == [(GENERAL, 3, 0)]
 
 
 def test_fdmc_as_printed_and_the_bounded_filters_run_on_every_trial():
@@ -54,10 +70,11 @@ def test_fdmc_as_printed_and_the_bounded_filters_run_on_every_trial():
         return sum(
             runs(name, SimpleNamespace(movement=movement, person=person, seed=seed))
             for movement, person, seed in keys()
+            if movement in MOVEMENTS
         )
 
-    assert [count(name) for name in (FCDI, FDMC_PRINTED, DYNAMIC)] == [128] * 3
-    assert (count(FDMC), count(FDMC_PER_FRAME), count(f"{DYNAMIC}, smoothed")) == (64, 32, 16)
+    assert [count(name) for name in (FCDI, FDMC_PRINTED, DYNAMIC)] == [160] * 3
+    assert (count(FDMC), count(FDMC_PER_FRAME), count(f"{DYNAMIC}, smoothed")) == (80, 40, 20)
     beside = SimpleNamespace(movement=BESIDE, person=1, seed=0)
     assert runs(FDMC_PER_FRAME, beside)
     assert not runs(FDMC_PRINTED, beside)
