@@ -21,7 +21,7 @@ ANNEX = PendulumShape(mass_1_kg=50.0, mass_2_kg=35.0)
 
 STUDY_RECIPE = Recipe(shape=STUDY)
 ANNEX_RECIPE = Recipe(shape=ANNEX, noise=PendulumNoise(force_n=0.05, moment_nm=0.005))
-"""Table A.1 with the marker noise of Table 3.1, without which the printed errors cannot be reproduced."""
+"""Departs from thesis Table A.1 in the markers' noise, that of Table 3.1: else the printed errors cannot be had."""
 
 EFFORT_NOISE = 1000.0
 """σ_P of the dynamic filter unless a study sweeps it; the thesis leaves it open."""

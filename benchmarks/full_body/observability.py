@@ -72,13 +72,13 @@ def _claims(least: dict[str, dict[str, int]]) -> list[Claim]:
     return [
         Claim(
             "4.1.4.2",
-            "Eq. 4.14 tells whether a combination of force sensors determines the torques.",
+            "The rank (thesis eq. 4.14) tells whether a combination of force sensors determines the torques.",
             f"rank {on[COMPLETE]} of {STATES} with a plate under each foot, {off[COMPLETE]} without plates",
             judged(on[COMPLETE] == STATES and off[COMPLETE] == STATES - REACTIONS),
         ),
         Claim(
             "4.1.4.2",
-            "With ∂z̈/∂T_e alone, and all other derivatives of z̈ zero (eq. 4.15), the system stays observable.",
+            "With ∂z̈/∂T_e alone, and all other derivatives of z̈ zero (thesis eq. 4.15), the system stays observable.",
             f"rank {on[SIMPLIFIED]} of {STATES}",
             judged(on[SIMPLIFIED] == STATES),
         ),

@@ -7,16 +7,16 @@ windows of 10 samples at 50 Hz, and every window becomes one sample: the mean of
     S = α_σ σ_a + α_μ Δμ_a + α_ω μ_ω                                                               (stride eq. 1)
 
 with the spread σ_a of the specific force, the change Δμ_a of its mean since the window before, and the mean angular
-velocity μ_ω, each as the length of its three axes. Where S < E_s the foot rests and the window is a key point (the
-study's pseudocode; its prose says the reverse, which fails): gravity is the mean specific force and the velocity zero.
-Between two key points gravity is turned by the gyroscope from either side and blended (stride eqs. 2–4). The readings
-are then turned level by gravity's direction, gravity is taken off (stride eq. 5) and the rest is integrated twice
-(stride eq. 6).
+velocity μ_ω, each as the length of its three axes. Where S < E_s the foot rests and the window is a key point:
+gravity is the mean specific force and the velocity zero. Between two key points gravity is turned by the gyroscope from
+either side and blended (stride eqs. 2–4). The readings are then turned level by gravity's direction, gravity is taken
+off (stride eq. 5) and the rest is integrated twice (stride eq. 6).
 
-Three choices differ from the printed text by default; :func:`as_printed` gives the printed ones. The velocity is zero
-at key points, where equation 6 integrates over them. The gyroscope's bias is its mean over the first rest, where the
-study takes the first second, in rest or not. The constant c of equation 4, which the study leaves to its source, is
-half of the gap between two key points: for every other value the weight jumps at c.
+The test of S departs from stride key points in prose, where S is to exceed E_s, and is that of the pseudocode. Three
+choices differ by default; :func:`as_printed` gives the printed ones. The velocity is zero at key points, which departs
+from stride eq. 6. The gyroscope's bias is its mean over the first rest, which departs from stride real signals, whose
+first second may be in rest or not. The constant c, which the study leaves to its source, is half of the gap between two
+key points, since for every other value the weight jumps at c: this departs from stride eq. 4.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ class KeyPointSettings:
 
 
 def as_printed(weights: tuple[float, float, float] = NOISY_WEIGHTS) -> KeyPointSettings:
-    """The study's numbers and equations as printed: its first second for the bias, its equation 6 for the position.
+    """The study's numbers and equations as printed: its first second for the bias, stride eq. 6 for the position.
 
     Args:
         weights: α_σ, α_μ, α_ω; the study takes :data:`NOISY_WEIGHTS` for real readings.

@@ -1,9 +1,10 @@
 """Madgwick's orientation filter: the gyroscope, corrected by a gradient step towards gravity and magnetic north.
 
 Madgwick, *An efficient orientation filter for inertial and inertial/magnetic sensor arrays*, 2010. The steps are those
-of De Miguel Pueyo's thesis (docs/references.md, key ``Madgwick``), eqs. 22–37, with two misprints put right: the third
-row of f has a_z, and the last row for the field has 2 b₃ (½ − q₁² − q₂²). They are written in components, which may be
-floats (one sensor, live) or arrays over many sensors.
+of De Miguel Pueyo's thesis (docs/references.md, key ``Madgwick``), eqs. 22–37. Departs from Madgwick eq. 28 in two
+misprints: the third row of f has a_z, and the last row for the field has 2 b₃ (½ − q₁² − q₂²). Departs from Madgwick
+eq. 34, which corrects each sample for itself: the corrections add up to the bias. The steps are written in components,
+which may be floats (one sensor, live) or arrays over many sensors.
 """
 
 from __future__ import annotations
@@ -75,7 +76,10 @@ class MadgwickFilter:
         self.dt_s, self.settings = dt_s, settings or MadgwickSettings()
 
     def begin(self, specific_force: Array, magnetic_field: Array | None = None) -> MadgwickState:
-        """State of sensors at rest: (…, 3) specific force and field, any unit."""
+        """State of sensors at rest: (…, 3) specific force and field, any unit.
+
+        Departs from Madgwick section 5.3, which begins with the sensors' own quaternion, as :meth:`begin_at` does.
+        """
         return self.begin_at(attitude(np.asarray(specific_force), magnetic_field))
 
     def begin_at(self, quaternion: Array) -> MadgwickState:

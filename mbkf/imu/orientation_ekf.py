@@ -4,7 +4,8 @@ Gravity is split from linear acceleration because a limb stays about where it is
 world and less gravity, is integrated to a velocity, and a pseudo-reading of zero velocity has a spread that follows the
 present movement (adaptive to linear acceleration). The field is read as a heading only, so that it cannot
 tilt the estimate, and with less weight the more its strength and dip differ from their running means (adaptive to
-magnetic disturbance). Errors are small rotations in the world: R = Exp(δ) R̂.
+magnetic disturbance). Errors are small rotations in the world: R = Exp(δ) R̂. Departs from Madgwick eqs. 17–20, whose
+state is the quaternion alone.
 """
 
 from __future__ import annotations

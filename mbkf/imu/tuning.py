@@ -1,5 +1,8 @@
 """Gains of Madgwick's filter: from the noise of a sensor that lies still, or by search against a reference.
 
+Departs from Madgwick eqs. 46 and 48, whose root covers the product, so that units do not agree. Departs from Madgwick
+eqs. 45 and 47 as well: σ_ω is that about the slow drift, and σ_ω̇ the slope of a line through all samples.
+
 Madgwick's β = √(3/4) σ_ω and ζ = √(3/4) σ_ω̇ count the gyroscope's errors at rest only. On moving sensors they are far
 too small, since scale and alignment errors grow with the motion; the search measures by how much.
 """

@@ -8,7 +8,8 @@ distance where thesis eq. 4.6 has the Euclidean one:
     c_ij = d²_ij + ln det(2π S_i) + 2 ln λ
 
 A negative cost is better than a hidden marker and a ghost; ``linear_sum_assignment`` finds the
-cheapest set of pairs, so that no point gets two labels and no marker two points.
+cheapest set of pairs, so that no point gets two labels and no marker two points. Departs from thesis eq. 4.6 in this,
+too: the thesis takes the nearest pairs first.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Labels of a first frame without any prediction: relative positions of points, then a pose fit that must be good.
 
-The thesis sorts the markers of a standing pose by height and side. The subject's own marker geometry replaces such
-rules here, for any protocol: the root's markers are found by their distances, the other segments by the distances of
-their markers from each other and from the joint, and the pose fitted to these (the least squares of thesis eq. 4.1
-with positions only) predicts the rest.
+Departs from thesis section 4.1.3, which sorts the markers of a standing pose by height and side. The subject's own
+marker geometry replaces such rules here, for any protocol: the root's markers are found by their distances, the other
+segments by the distances of their markers from each other and from the joint, and the pose fitted to these (the least
+squares of thesis eq. 4.1 with positions only) predicts the rest.
 """
 
 from __future__ import annotations

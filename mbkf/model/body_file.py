@@ -39,6 +39,7 @@ from mbkf.model.trunk_levels import trunk_levels
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
 
+# Departs from thesis Table 4.2 in five numbers of models/human18.toml, which keeps the printed ones beside them.
 REMARKS = ("source", "_printed_m", "_printed_kg_m2", "_correction")
 """Endings of keys that document the source of numbers."""
 

@@ -2,6 +2,7 @@
 
 The only door to Pinocchio's joints: free-flyer root, spherical joints as unit quaternions, universal joints as two
 hinges one after the other, hinges. Joints are added depth-first, which Pinocchio's algorithms rely on.
+Departs from thesis eq. 3.6, whose three angles of a segment are singular where its x axis is vertical: a level thigh.
 Pinocchio: J. Carpentier et al., IEEE/SICE Int. Symp. System Integration 2019, 614-619.
 """
 

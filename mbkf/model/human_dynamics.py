@@ -27,7 +27,7 @@ WRENCH_FRAMES = ("ankle", "foot", "thesis")
 "ankle": force in world axes on the ankle. A turn of the foot changes nothing, a turn of the leg little.
 "foot": force in the foot's axes on the ankle; a turn of the foot turns the whole load.
 "thesis": force in world axes on the foot's centre of mass (section 4.1.4.1), below the ankle, where it topples the
-foot.
+foot. The default "ankle" departs from thesis eq. 4.11.
 """
 
 GIVEN_FRAME = "world"
@@ -138,7 +138,10 @@ class HumanDynamics(ForcedBody):
         return pin.dIntegrate(model, q, dv, pin.ARG0), pin.dIntegrate(model, q, dv, pin.ARG1)
 
     def transport(self, v: Array) -> Array:
-        """(nv, nv) −ad(v) of each joint: δ̇ = −v × δ + δv for errors in the joints' own axes."""
+        """(nv, nv) −ad(v) of each joint: δ̇ = −v × δ + δv for errors in the joints' own axes.
+
+        Departs from thesis eq. 3.40, which has 0 here: its coordinates are a flat space.
+        """
         T = np.zeros((self.nv, self.nv))
         root = -pin.skew(v[3:6])
         T[:3, :3] = T[3:6, 3:6] = root
@@ -161,7 +164,8 @@ class HumanDynamics(ForcedBody):
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
         """The acceleration with its complete analytic derivatives.
 
-        ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a constant in the last term.
+        ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a constant in the last term. Departs from thesis eq. 3.48, whose
+        2Ṙ holds for velocities of points and not for angular velocities, by differentiating Newton–Euler itself.
         """
         nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
         given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)

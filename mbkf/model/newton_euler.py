@@ -2,7 +2,8 @@
 
 τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the root, zero for a body that obeys Newton's
 law; the others are the joint torques. Wrenches are about the world's origin in world axes, so that a constant one
-does not change with q by itself.
+does not change with q by itself. Departs from thesis eq. 3.9: a torque is in the axes of the joint's own segment, those
+of v, where the thesis has the axes of the segment before it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Readings in compressed form: any number of them enters a Kalman update as n×n information and an n-vector."""
+"""Readings in compressed form: any number of them enters a Kalman update as n×n information and an n-vector.
+
+Departs from thesis eq. 2.54, whose P − K H P loses symmetry to rounding: the posterior is (P⁻¹ + Λ)⁻¹, symmetric.
+"""
 
 from __future__ import annotations
 

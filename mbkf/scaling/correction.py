@@ -5,6 +5,7 @@ each marker's offset in its segment is found anew over frames of the whole trial
 Displacements by flexion stay as scaling found them; the place of a marker is that in the trial's usual posture.
 Shoulders are displaced as they are held in the trial (:mod:`mbkf.sensors.shoulder_girdle`), with the markers there.
 
+Departs from thesis section 4.1.1, which takes each marker's mean place in its segment.
 A trial does not separate a rigid displacement of all markers of a segment from another pose of that segment. Left to
 the offsets of single markers, it would move joint centres by a centimetre, and torques with them. On the segments
 between plates and pelvis it therefore has a prior near the static trial, where bones were marked.

@@ -1,4 +1,4 @@
-"""Scaling as one least-squares problem over many frames (thesis eq. 4.1): residuals and analytic derivatives.
+"""Scaling as one least-squares problem over many frames; departs from thesis eq. 4.1 in weights and priors.
 
 Unknowns: the pose x_t of every frame, the independent scale factors k, an offset δ of every marker from its reference
 place and its displacements c_d by flexion (:mod:`mbkf.sensors.flexed_skin`), shared by all frames, and by those of a

@@ -25,7 +25,8 @@ class ScalingSettings:
         dynamic_marker_frames: Number of independent observations of the markers in a dynamic trial: skin moves with the
             posture and not anew in every frame.
         skin: Fit the markers' displacements by flexion, where a trial moves.
-        thesis_factors: Scale by the thesis's factors (its Table 4.1): one that the body file splits equals its origin.
+        thesis_factors: Scale by the thesis's factors: one that the body file splits equals its origin. The default
+            departs from thesis Table 4.1, where pelvis and torso have one vertical factor.
         frames_per_trial: Greatest number of frames taken from one trial.
         outlier_m: Distance from the fitted body beyond which a sample is left out, m.
         correct_names: Put names right that a static trial exchanges (:mod:`mbkf.scaling.standing_names`).

@@ -1,8 +1,9 @@
 """Expected readings of inertial sensors on a body: angular velocity and specific force, with derivatives.
 
-ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations
-(eqs. 38–43 of docs/references.md, key ``Madgwick``, take finite differences instead). A turn of the world about the
-vertical changes neither.
+ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations.
+Departs from Madgwick eqs. 38 and 39, which take finite differences and leave gravity out. Departs from Madgwick eqs.
+40–43, whose matrix has the opposite sign and whose rates are twice too large. A turn of the world about the vertical
+changes neither reading.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
 τ_p are the six generalised forces at the pelvis that neither gravity nor the ground exerts, force N and moment N m in
 pelvis axes (thesis 3.2.3): errors of body, markers and plates. With inertial force states
-(:data:`mbkf.model.human_dynamics.FORCE_STATES`) this reading ties plates to motion. An infinite σ leaves the residual a
-random walk, as in the thesis. It is not read while a foot of unknown wrench stands and wrenches are known inputs
-(:mod:`mbkf.sensors.given_plates`): the missing load then stands in it.
+(:data:`mbkf.model.human_dynamics.FORCE_STATES`) this reading ties plates to motion. A finite σ departs from thesis
+section 3.2.3; an infinite one leaves the residual a random walk, as there. It is not read while a foot of unknown
+wrench stands and wrenches are known inputs (:mod:`mbkf.sensors.given_plates`): the missing load then stands in it.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ FEET = ("right", "left")
 """Feet, each with a plate of its own."""
 
 COMPLETE, SIMPLIFIED, CUT = "complete F", "simplified F", "F without ∂z̈/∂T_e"
-"""Sensitivities of the torque filter: thesis eq. 3.40, eq. 4.15, and the latter without its only block of dynamics."""
+"""Sensitivities of the torque filter: thesis eq. 3.40; thesis eq. 4.15; and that without its only block of dynamics."""
 
 PLANT, WITH_PRIORS = "the filter's plant", "with the filter's priors"
 

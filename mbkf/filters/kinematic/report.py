@@ -1,4 +1,7 @@
-"""Report of the kinematic filter: accelerations are differences of velocities (thesis eq. 3.7)."""
+"""Report of the kinematic filter: accelerations are differences of velocities (thesis eq. 3.7).
+
+Departs from thesis eq. 3.7 where later frames are known: smoothed accelerations are central differences.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Process noise of the whole body's forces: independent as in the thesis, or correlated as Newton–Euler demands.
 
-Forces that follow free accelerations and loads change by δτ = M δa − Jᵀ δw, or by M δa alone where loads are taken
-off ("inertial"). Noise that is independent instead leaves a foot of 1e-3 kg m² with the difference of two moments of
+Consistent noise departs from thesis eq. 3.39, whose forces are Wiener processes that do not depend on each other.
+Forces that follow free accelerations and loads change by δτ = M δa − Jᵀ δw, or by M δa alone where loads are taken off
+("inertial"). Noise that is independent instead leaves a foot of 1e-3 kg m² with the difference of two moments of
 many N m. Where the residual is itself part of the random walk ("torque"), it has to stay small: there (δa, δw) are
 drawn on condition that the pelvis's six rows of δτ are the residual's own small noise.
 """

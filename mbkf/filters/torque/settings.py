@@ -15,10 +15,10 @@ squat 7.7, walk 8.8, jump 8.5), and RMS change of the plate forces that the filt
 
 Read as spectral densities, the covariances of Table 4.3 let a plate force change by 2 N in a frame where
 walking changes it by 90 N: the filter lags, bends the motion, and loses it where it is quick. Ten sub-steps or a
-wrench on the ankle change none of this. Read as what a frame adds they follow, if noisily. What the stable settings
-change, each of which helps: "inertial" force states (see FORCE_STATES), which also leave the simplified F little to
-neglect; noise in which forces follow accelerations and loads; a start that agrees with the plates; a residual that
-is pulled to zero instead of walking away.
+wrench on the ankle change none of this. Read as what a frame adds they follow, if noisily. FD and FDMC therefore
+depart from thesis Table 4.3. What these stable settings change, each of which helps: "inertial" force states (see
+FORCE_STATES), which also leave the simplified F little to neglect; noise in which forces follow accelerations and
+loads; a start that agrees with the plates; a residual that is pulled to zero instead of walking away.
 """
 
 from __future__ import annotations
@@ -125,7 +125,10 @@ SCHEMES = {
     "FD": Scheme("TN", "exponential", "van_loan"),
     "FDMC": Scheme("FE", "second", "series", complete=False),
 }
-"""The thesis's two filters: the exact one and the one light enough for real time."""
+"""The thesis's two filters: the exact one and the one light enough for real time.
+
+FDMC departs from thesis eq. 3.51, which the thesis cites for its propagation of second order: that is thesis eq. 3.52.
+"""
 
 
 def preset(name: str, *, literal: bool = False) -> TorqueSettings:

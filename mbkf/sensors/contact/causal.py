@@ -2,7 +2,8 @@
 
 A foot is *measured* when a loaded plate's centre of pressure lies under it, *unmeasured* when it carries weight where
 no plate reads (its wrench is then unknown, not zero), and otherwise in the *air*. Two feet on one plate *share* it.
-The rules with their limits are in :mod:`mbkf.sensors.contact.rules`.
+The rules with their limits are in :mod:`mbkf.sensors.contact.rules`. Departs from thesis section 4.1.4.1, where every
+plate belongs to the nearest foot.
 """
 
 from __future__ import annotations

@@ -44,6 +44,8 @@ def surface_height(plate: PlateReadings) -> float:
 def pressed_at(wrench: Sequence[Number], surface_m: float) -> tuple[Number, Number]:
     """World x and y of the centre of pressure: the point of a surface about which the horizontal moment vanishes.
 
+    Departs from thesis eq. 4.9, which leaves out the shear: it holds where moments are about a point of the surface.
+
     Args:
         wrench: Its six components, each a number or an array, with a vertical force other than zero.
         surface_m: Height of the surface.
