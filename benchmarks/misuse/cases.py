@@ -142,7 +142,7 @@ CASES = (
          runs=False, writes=LIVE),
     Case("imu replay", "{imus} --wait 0.1 --speed 100", runs=False),
     Case("imu stride", "{imus} --sensor left_foot --out {OUT}", "new"),
-    Case("export", "{subject} --to urdf --out {OUT}", "new.urdf"),
+    Case("export", "{subject} --to urdf --out {OUT}", "new.urdf", (".urdf.toml",)),
     Case("export", "{subject} --to mjcf --out {OUT}", "new.xml"),
     Case("export", "{result} --to c3d --out {OUT}", "new.c3d"),
     Case("export", "{result} --to bvh --out {OUT}", "new.bvh"),

@@ -4,6 +4,7 @@ A subject:
   urdf  has no spherical joint: each becomes three hinges, named after the clinical angles (hip_flexion_r, …), whose
         positions in rad are those angles. The pelvis is the root link and floats; the reading program adds the free
         joint. Masses, inertias and markers are the subject's; boxes, cylinders and spheres draw the body.
+        FILE.urdf.toml beside it holds roles, soles, landmarks and angles: 'mbkf scale --body FILE.urdf' reads both.
   mjcf  keeps ball joints and a free joint; otherwise the same.
 
 A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
@@ -49,11 +50,15 @@ def run(args: argparse.Namespace) -> int:
         InvalidInput: The format is for subjects and the source a result, or the other way round.
     """
     from mbkf.errors import InvalidInput
+    from mbkf.io.atomic import check_file
     from mbkf.io.results_folder import read_reconstruction
     from mbkf.io.subject import read_subject
+    from mbkf.model.urdf_body import side_path
     from mbkf.trial.export import export_result, export_subject
 
     source = Path(args.source)
+    if args.to == "urdf":
+        check_file(side_path(Path(args.out)))
     is_result = source.is_dir() or source.suffix.lower() in {".h5", ".hdf5"}
     formats = _OF_RESULT if is_result else _OF_SUBJECT
     if args.to not in formats:
@@ -75,4 +80,6 @@ def run(args: argparse.Namespace) -> int:
     else:
         export_subject(read_subject(source), args.to, args.out)
     print(args.out)
+    if args.to == "urdf":
+        print(side_path(Path(args.out)))
     return 0

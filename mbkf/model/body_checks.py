@@ -11,6 +11,9 @@ from mbkf.model.description import JOINT_DOF, BodyDescription, Segment
 MASS_TOLERANCE = 0.01
 """Greatest difference between the sum of the segments' masses and the reference mass, as a share of the latter."""
 
+ROUNDING = 1e-9
+"""Share by which the largest moment may exceed the sum of the others: a flat body's are equal but for rounding."""
+
 SHAPE_KINDS = {"limb": 2, "ellipsoid": 6, "tube": 4, "foot": 0, "toes": 0}
 """Count of numbers of each kind of shape; of a tube, per section."""
 
@@ -71,7 +74,7 @@ def _joint(segment: Segment) -> Iterator[str]:
     kind, dof, axes = f"{segment.joint} joint", JOINT_DOF[segment.joint], segment.axes
     if len(axes) != _AXES[segment.joint] or len(set(axes)) != len(axes) or set(axes) - set("xyz"):
         yield f"a {kind} has {_AXES[segment.joint]} axes out of x, y and z, not '{axes}'"
-    for name in ("origin_m", "com_m", "inertia_kg_m2"):
+    for name in ("origin_m", "com_m", "inertia_kg_m2", "products_kg_m2"):
         values = getattr(segment, name)
         if values.shape != (3,) or not np.isfinite(values).all():
             yield f"{name} needs three finite numbers"
@@ -88,12 +91,15 @@ def _joint(segment: Segment) -> Iterator[str]:
 
 
 def _inertia(segment: Segment) -> Iterator[str]:
-    moments = np.sort(segment.inertia_kg_m2)
+    if not all(np.shape(one) == (3,) for one in (segment.inertia_kg_m2, segment.products_kg_m2)):
+        return
+    moments = np.linalg.eigvalsh(np.nan_to_num(segment.inertia_matrix_kg_m2))
     if not segment.mass_kg > 0:
         yield f"mass_kg must be positive, not {segment.mass_kg}"
-    if not (moments > 0).all() or moments[2] > moments[0] + moments[1]:
+    if not (moments > 0).all() or moments[2] > (moments[0] + moments[1]) * (1.0 + ROUNDING):
+        shown = segment.inertia_kg_m2 if not segment.products_kg_m2.any() else moments
         yield (
-            f"a rigid body cannot have the principal moments {segment.inertia_kg_m2.tolist()} kg m²; all are positive, "
+            f"a rigid body cannot have the principal moments {shown.tolist()} kg m²; all are positive, "
             "and the largest is at most the sum of the others"
         )
 

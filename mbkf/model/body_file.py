@@ -21,6 +21,7 @@ from mbkf.errors import FileFormatError, MbkfError, UnknownName
 from mbkf.io.known_keys import refuse_unknown
 from mbkf.io.plain_data import parse_toml, plain_text
 from mbkf.model.body_checks import check_body
+from mbkf.model.body_entries import KNOWN, OPTIONAL, REMARKS, SEGMENT_KEYS
 from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
 from mbkf.model.description import (
     JOINT_DOF,
@@ -35,59 +36,29 @@ from mbkf.model.description import (
 from mbkf.model.sides import mirrored
 from mbkf.model.spread_tables import joint_centres, segment_skin, shoulder_girdle
 from mbkf.model.trunk_levels import trunk_levels
+from mbkf.model.urdf_body import side_path, urdf_body_text
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
 
-# Departs from thesis Table 4.2 in five numbers of models/human18.toml, which keeps the printed ones beside them.
-REMARKS = ("source", "_printed_m", "_printed_kg_m2", "_correction")
-"""Endings of keys that document the source of numbers."""
-
-_SEGMENT_KEYS = (
-    "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
-    "posture_sd_deg", "acceleration_sd", "movement_sd", "limits_deg",
-)  # fmt: skip
-_ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title", "zero_sd_deg", "opensim_zero_deg")
-KNOWN = {
-    "": (
-        "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
-        "landmark", "sole", "clinical_joint", "shape", "bearing", "joint_centre", "skin", "level",
-        "girdle",
-    ),
-    "segment": _SEGMENT_KEYS,
-    "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
-    "landmark": ("name", "segment", "position_m"),
-    "sole": ("height_m", "heel_x_m", "ball_x_m", "toe_x_m", "inner_y_m", "outer_y_m"),
-    "clinical_joint": (
-        "name", "proximal", "distal", "order", "main", "mirror", "heading_sd_deg", "angle", "translation",
-        "opensim_origin_m",
-    ),
-    "clinical_joint.angle": _ANGLE_KEYS,
-    "clinical_joint.translation": _ANGLE_KEYS,
-    "shape": ("segment", "kind", "numbers", "to"),
-    "bearing": ("name", "segment", "position_m", "radius_m", "lever_m"),
-    "joint_centre": ("segment", "sd_mm"),
-    "skin": ("segment", "flexions", "common_mm", "own_mm"),
-    "level": (
-        "name", "above", "position_m", "sd_mm", "part_mass_kg", "part_com_m", "part_inertia_kg_m2", "opensim",
-    ),
-    "girdle": ("segment", "mean_mm", "sd_mm", "held_mm"),
-}  # fmt: skip
-"""Entries of a body's file."""
-
 
 def load_body(body: str | Path = "human18") -> BodyDescription:
-    """Reads a reference body by its name, or a user's own from a TOML file.
+    """Reads a reference body by its name, or a user's own from a TOML or a URDF file.
+
+    A URDF file states segments, joints and inertias; roles, soles and what else a body has stand in a side file of the
+    same name with ``.toml`` at its end (``robot.urdf.toml``).
 
     Args:
-        body: Name of a body that comes with mbkf, or path of a file (ending in ``.toml``).
+        body: Name of a body that comes with mbkf, or path of a file (ending in ``.toml`` or ``.urdf``).
 
     Raises:
         UnknownName: The body does not exist, or the file names a segment, a landmark, a scale factor or a kind of joint
             that does not exist.
-        FileFormatError: The file is missing or not a valid body description.
+        FileFormatError: The file or its side file is missing or not a valid body description.
     """
     path = Path(body)
+    if path.suffix == ".urdf":
+        return parse_body(urdf_body_text(path), f"{path} with {side_path(path).name}")
     if path.suffix == ".toml":
         try:
             text = plain_text(path)
@@ -104,7 +75,7 @@ def _shipped(name: str) -> BodyDescription:
     path = data_folder("models") / f"{name}.toml"
     if not path.is_file():
         names = [p.stem for p in data_folder("models").glob("*.toml")]
-        raise UnknownName("body", name, names, "give your own body by its file, ending in .toml")
+        raise UnknownName("body", name, names, "give your own body by its file, ending in .toml or .urdf")
     return _parse(path.read_text(encoding="utf-8"), path, "")
 
 
@@ -175,7 +146,7 @@ def _split_factors(table: dict[str, Any], factors: tuple[str, ...], path: Path) 
 
 def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Segment:
     where = f"{path}, segment {entry.get('name', '?')}"
-    missing = [key for key in _SEGMENT_KEYS if key not in entry and key not in ("axes", "limits_deg")]
+    missing = [key for key in SEGMENT_KEYS if key not in entry and key not in OPTIONAL]
     if missing:
         raise FileFormatError(path, f"segment {entry.get('name', '?')}: lacks {', '.join(missing)}")
     if entry["joint"] not in JOINT_DOF:
@@ -193,6 +164,7 @@ def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Seg
             mass_kg=float(entry["mass_kg"]),
             com_m=read_only(entry["com_m"]),
             inertia_kg_m2=read_only(entry["inertia_kg_m2"]),
+            products_kg_m2=read_only(entry.get("products_kg_m2", [0.0, 0.0, 0.0])),
             scale_matrix=read_only(_scale_matrix(entry["scale"], factors)),
             length_index=factors.index(entry["length_factor"]),
             posture_sd_rad=read_only(np.deg2rad(entry["posture_sd_deg"])),
@@ -236,7 +208,7 @@ def _known(name: str, segments: tuple[Segment, ...], where: str) -> str:
 def _landmarks(
     entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
 ) -> dict[str, Landmark]:
-    """Landmarks by full name: one of a paired segment or off the midline exists on both sides."""
+    """Landmarks by full name: one of a paired segment or off the midline is on both sides, but with mirror = false."""
     names = {segment.name for segment in segments}
     found = {}
     for entry in entries:
@@ -244,7 +216,7 @@ def _landmarks(
         position = np.array(entry["position_m"], dtype=float)
         if position.shape != (3,) or not np.isfinite(position).all():
             raise FileFormatError(path, f"landmark {name}: position_m needs three finite numbers")
-        if segment in names and position[1] == 0.0:
+        if segment in names and (position[1] == 0.0 or not entry.get("mirror", True)):
             found[name] = Landmark(name, segment, read_only(position))
             continue
         for side, sign in (("right", 1.0), ("left", -1.0)):
@@ -284,7 +256,7 @@ def _roles(table: dict[str, Any], segments: tuple[Segment, ...], path: Path) -> 
         root=root,
         feet=(feet[0], feet[1]),
         toes=toes,
-        soles=_soles(table["sole"], feet, toes, segments),
+        soles=_soles(table["sole"], table.get("left_sole"), feet, toes, segments),
         legs=tuple(legs),
         leading=several("leading", legs),
         steady=several("steady", [root, *feet, *toes]),
@@ -302,14 +274,19 @@ def _chain(segment: str, parents: dict[str, str]) -> list[str]:
 
 
 def _soles(
-    entry: dict[str, Any], feet: tuple[str, ...], toes: tuple[str, ...], segments: tuple[Segment, ...]
+    entry: dict[str, Any],
+    left_entry: dict[str, Any] | None,
+    feet: tuple[str, ...],
+    toes: tuple[str, ...],
+    segments: tuple[Segment, ...],
 ) -> tuple[Sole, Sole]:
-    right = dict(entry)
-    if toes:
-        bend = next(segment for segment in segments if segment.name == toes[0])
-        right.setdefault("ball_x_m", bend.origin_m[0])
-    right = {key: float(value) for key, value in right.items()}
-    left = {**right, "inner_y_m": -right["inner_y_m"], "outer_y_m": -right["outer_y_m"]}
+    bends = [next(segment for segment in segments if segment.name == one).origin_m[0] for one in toes]
+    right, left = (
+        {key: float(value) for key, value in {**({"ball_x_m": bends[k]} if bends else {}), **one}.items()}
+        for k, one in enumerate((entry, left_entry or entry))
+    )
+    if left_entry is None:
+        left = {**right, "inner_y_m": -right["inner_y_m"], "outer_y_m": -right["outer_y_m"]}
     return Sole(feet[0], **right), Sole(feet[1], **left)
 
 

@@ -6,11 +6,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, read_only
 from mbkf.errors import UnknownName
 from mbkf.model.clinical_table import ClinicalJoint
 
@@ -30,7 +30,7 @@ class Segment:
         origin_m: (3,) its proximal joint in the parent's frame, m.
         mass_kg: Reference mass.
         com_m: (3,) reference centre of mass, m.
-        inertia_kg_m2: (3,) reference principal moments about the centre of mass, kg m².
+        inertia_kg_m2: (3,) reference moments about the centre of mass and the segment's axes, kg m².
         scale_matrix: (3, K) rows that turn the K independent factors into the x, y, z factors.
         length_index: Index of the independent factor that is the length factor k: moments of inertia grow as k_m k²
             with the mass factor k_m.
@@ -38,6 +38,7 @@ class Segment:
         acceleration_sd: (dof,) typical acceleration of each dof, m/s² or rad/s².
         movement_sd: (dof,) standard deviation of the acceleration of each dof over a movement, m/s² or rad/s².
         limits_rad: (dof, 2) least and greatest rotation about each axis; ±inf without a limit.
+        products_kg_m2: (3,) entries xy, xz and yz of the inertia matrix; 0 where the axes are principal ones.
     """
 
     name: str
@@ -54,6 +55,13 @@ class Segment:
     acceleration_sd: Array
     movement_sd: Array
     limits_rad: Array
+    products_kg_m2: Array = field(default_factory=lambda: read_only(np.zeros(3)))
+
+    @property
+    def inertia_matrix_kg_m2(self) -> Array:
+        """(3, 3) reference inertia about the centre of mass in the segment's axes."""
+        xy, xz, yz = self.products_kg_m2
+        return np.diag(self.inertia_kg_m2) + np.array([[0.0, xy, xz], [xy, 0.0, yz], [xz, yz, 0.0]])
 
 
 @dataclass(frozen=True)

@@ -195,14 +195,14 @@ class HumanModel(Body):
         return segment.scale_matrix @ self.scale
 
     def _inertia(self, segment: Segment) -> pin.Inertia:
-        """Mass by the mass factor k_m, centre of mass by the axes' factors, moments by k_m k², k the length factor."""
+        """Mass by the mass factor k_m, centre of mass by the axes' factors, inertia by k_m k², k the length factor."""
         k_m = self.mass_kg / self._unit_kg
         k = self.scale[segment.length_index]
         com = self.axis_scale(segment) * segment.com_m
         if segment.name in self.inertia:
             own = self.inertia[segment.name]
             k_m, com = k_m * own.mass_factor, com + own.centre_shift_m
-        return pin.Inertia(k_m * segment.mass_kg, com, np.diag(k_m * k**2 * segment.inertia_kg_m2))
+        return pin.Inertia(k_m * segment.mass_kg, com, k_m * k**2 * segment.inertia_matrix_kg_m2)
 
     def _supports(self) -> BoolArray:
         supports = np.zeros((self.pin_model.njoints, self.nv), dtype=bool)

@@ -56,9 +56,9 @@ def to_mjcf(model: Body, markers: Sequence[SubjectMarker] = ()) -> str:
         ET.SubElement(
             body,
             "inertial",
+            _moments(inertia.inertia),
             pos=_numbers(inertia.lever),
             mass=_number(inertia.mass),
-            diaginertia=_numbers(np.diag(inertia.inertia)),
         )
         _add_capsules(body, model, segment.name)
     for marker in markers:
@@ -76,6 +76,14 @@ def to_mjcf(model: Body, markers: Sequence[SubjectMarker] = ()) -> str:
         + ET.tostring(root, encoding="unicode")
         + "\n"
     )
+
+
+def _moments(inertia: Array) -> dict[str, str]:
+    """The moments of inertia, with the products where the axes are not principal ones."""
+    products = inertia[[0, 0, 1], [1, 2, 2]]
+    if not products.any():
+        return {"diaginertia": _numbers(np.diag(inertia))}
+    return {"fullinertia": _numbers([*np.diag(inertia), *products])}
 
 
 def _add_joints(body: ET.Element, segment: Segment) -> None:

@@ -201,7 +201,7 @@ def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
 def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
     """The body a protocol was written for; the path of a file is relative to the protocol's folder."""
     name = str(table.get("body", "human18"))
-    return load_body(path.parent / name if name.endswith(".toml") else name)
+    return load_body(path.parent / name if name.endswith((".toml", ".urdf")) else name)
 
 
 def _markers(

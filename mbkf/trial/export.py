@@ -7,11 +7,14 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.atomic import write_text
+from mbkf.io.atomic_folder import replacing_beside
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.model.mjcf import to_mjcf
 from mbkf.model.urdf import to_urdf
+from mbkf.model.urdf_body import side_path
+from mbkf.model.urdf_side import urdf_side_text
 from mbkf.trial.exchange.result_bvh import write_result_bvh
 from mbkf.trial.exchange.result_c3d import write_result_c3d
 from mbkf.trial.exchange.result_glb import write_result_glb
@@ -26,6 +29,8 @@ RESULT_FORMATS = {"c3d": write_result_c3d, "bvh": write_result_bvh, "glb": write
 def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
     """Writes a subject's body with its markers, whole or not at all.
 
+    Beside a URDF file stands its side file, so that :func:`mbkf.load_body` reads the body back.
+
     Args:
         subject: The scaled person.
         kind: A key of :data:`FORMATS`.
@@ -39,7 +44,19 @@ def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
     _check(kind, FORMATS, path)
     model = HumanModel.of(subject)
     text = FORMATS[kind](model, subject.markers)
-    write_text(path, text)
+    if kind != "urdf":
+        write_text(path, text)
+        return
+    beside = urdf_side_text(model, _height_m(subject, model))
+    path = Path(path)
+    with replacing_beside(path) as partial:
+        write_text(partial / path.name, text)
+        write_text(partial / side_path(path).name, beside)
+
+
+def _height_m(subject: Subject, model: HumanModel) -> float:
+    """The person's height; by the scale factors where it is not known."""
+    return subject.height_m or model.description.reference_height_m * float(model.scale.mean())
 
 
 def export_result(reconstruction: Reconstruction, kind: str, path: str | Path) -> None:

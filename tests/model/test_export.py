@@ -188,6 +188,19 @@ class TestMjcf:
             mujoco.mj_forward(other, data)
             assert data.energy[1] == pytest.approx(0.5 * v @ model.mass_matrix(q) @ v, rel=1e-8)
 
+    def test_products_of_inertia_reach_mujoco(self, model):
+        import mujoco
+
+        thigh = model.joint("left_thigh").joint_id
+        inertias = list(model.pin_model.inertias)
+        skew = inertias[thigh].inertia + np.array([[0, 0.01, 0.02], [0.01, 0, -0.015], [0.02, -0.015, 0]])
+        inertias[thigh] = pin.Inertia(inertias[thigh].mass, inertias[thigh].lever, skew)
+        other = mujoco.MjModel.from_xml_string(to_mjcf(model.with_inertias(inertias)))
+        axes, found = np.empty(9), other.body("left_thigh")
+        mujoco.mju_quat2Mat(axes, found.iquat)
+        axes = axes.reshape(3, 3)
+        np.testing.assert_allclose(axes @ np.diag(found.inertia) @ axes.T, skew, atol=1e-12)
+
     def test_nothing_but_gravity_acts(self, other, model):
         data, _ = self.posed(other, model, model.neutral())
         assert data.ncon == 0

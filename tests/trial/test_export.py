@@ -10,6 +10,7 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.io.written import form_of
 from mbkf.model.body_file import load_body
+from mbkf.model.human import HumanModel
 from mbkf.trial.export import FORMATS, RESULT_FORMATS, export_result, export_subject
 from tests.recordings import walk
 
@@ -30,7 +31,19 @@ def test_a_subject_is_written_with_its_markers(tmp_path, kind, tag, name):
     assert root.tag == tag
     assert any(element.get("name") == name for element in root.iter())
     assert form_of(path) is not None
-    assert [p.name for p in path.parent.iterdir()] == [path.name]
+    beside = ["body.urdf.toml"] if kind == "urdf" else []
+    assert sorted(p.name for p in path.parent.iterdir()) == [path.name, *beside]
+
+
+def test_a_urdf_file_is_read_back_as_a_body(tmp_path):
+    export_subject(SUBJECT, "urdf", tmp_path / "body.urdf")
+    body = load_body(tmp_path / "body.urdf")
+    own = HumanModel.of(SUBJECT)
+    assert body.reference_mass_kg == pytest.approx(70.0, abs=1e-9)
+    np.testing.assert_allclose(
+        body.segment("head").com_m, own.pin_model.inertias[own.joint("head").joint_id].lever
+    )
+    assert form_of(tmp_path / "body.urdf.toml") is not None
 
 
 def test_wrong_formats_and_places_are_refused(tmp_path):
