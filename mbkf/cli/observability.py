@@ -12,7 +12,8 @@ Examples:
   mbkf observability reference36 --lost RHAL,RMID
   mbkf observability my_markers.toml
   mbkf observability                    all protocols that come with mbkf
-  mbkf observability reference36 --filter torque --preset FDMC-literal
+  mbkf observability reference36 --preset FDMC-literal --without-plate
+  mbkf observability reference36 --preset FDMC --set plates=inputs
   mbkf observability reference36 --filter dynamic --without-plate left
 """
 
@@ -23,7 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbkf.cli.options import comma_separated
+from mbkf.cli.options import add_preset_options, comma_separated, with_chosen
 from mbkf.cli.tables import table, terminal
 
 if TYPE_CHECKING:
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from mbkf.sensors.observability import Observability
     from mbkf.trial.filter_observability import FilterObservability
     from mbkf.trial.observability import ProtocolObservability
-    from mbkf.trial.preparation.settings import ReconstructSettings
 
 WEAKEST_SHOWN = 5
 CLEAR_GAP = 100.0
@@ -54,11 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         choices=("kinematic", "torque", "dynamic"),
         help="the filter whose state is asked of (default: that of the preset, or kinematic)",
     )
-    parser.add_argument(
-        "--preset",
-        metavar="NAME|FILE",
-        help="settings of the torque or dynamic filter, as for 'mbkf reconstruct'",
-    )
+    add_preset_options(parser)
     parser.add_argument(
         "--without-plate",
         metavar="N",
@@ -78,11 +74,12 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.errors import InvalidInput
     from mbkf.model.protocol import load_protocol, protocol_names
+    from mbkf.trial.preparation.settings import ReconstructSettings
 
     lost = comma_separated(args.lost)
     if lost and args.protocol is None:
         raise InvalidInput("--lost needs the protocol whose markers are lost")
-    settings = _settings(args)
+    settings = with_chosen(ReconstructSettings(filter=args.filter or "kinematic"), args)
     names = protocol_names() if args.protocol is None else (args.protocol,)
     protocols = [load_protocol(name) for name in names]
     if settings.filter != "kinematic":
@@ -107,14 +104,6 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _settings(args: argparse.Namespace) -> ReconstructSettings:
-    from mbkf.trial.preparation.presets import with_preset
-    from mbkf.trial.preparation.settings import ReconstructSettings
-
-    settings = ReconstructSettings(filter=args.filter or "kinematic")
-    return settings if args.preset is None else with_preset(settings, args.preset, args.filter)
-
-
 def _show_state(check: FilterObservability) -> None:
     from mbkf.filters.observability import OBSERVED_SD, WINDOW_S
 
@@ -126,6 +115,13 @@ def _show_state(check: FilterObservability) -> None:
     console.print(f"{', '.join(plates)}")
     parts = ", ".join(f"{part} {count}" for part, count in _counted(check.state).items())
     console.print(f"{check.filter} filter, state of {size}: {parts}")
+    if check.loads_given:
+        missing = (
+            "; without a plate that of a foot counts as 0, and is missing in the residual"
+            if check.without
+            else ""
+        )
+        console.print(f"Wrenches of the feet are known inputs{missing}.")
     ranks = table("", "", "standing still", "in motion (least)")
     ranks.add_row("rank of H", *_ranks([one.reading_rank for one in check.found], size))
     for name, points in check.variants.items():

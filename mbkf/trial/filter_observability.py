@@ -98,6 +98,11 @@ class FilterObservability:
         return all(one.rank == len(self.state) for one in self.found)
 
     @property
+    def loads_given(self) -> bool:
+        """True if the feet's wrenches are known inputs and not part of the state."""
+        return all(one.part != f"{FEET[0]} foot" for one in self.state)
+
+    @property
     def unobserved_share(self) -> Array:
         """(N,) median share of each component in the directions that no reading shows, over the moving points."""
         return np.asarray(np.median([one.unobserved_share for one in self.found[1:]], axis=0))
@@ -223,12 +228,15 @@ class _Maker:
     def _of_torque(self, kalman: TorqueFilter, motion: _Motion) -> _Point:
         body, plant = kalman.body, kalman.plant
         a = np.where(body.kinematic, 0.0, motion.a)
+        given = body.wrench_state(motion.q, motion.wrench) if body.loads_given else np.zeros(0)
         u = body.forces(motion.q, motion.v, a, motion.wrench)
-        slope = body.linearise(motion.q, motion.v, u)
+        state = ForcedState(motion.q, motion.v, u, self._spread(kalman), given=given)
+        slope = body.linearise(motion.q, motion.v, state.forces)
 
         def sensitivity(complete: bool) -> Array:
             scheme = replace(plant.scheme, complete=complete)
-            same = TorquePlant(body, _DT_S, plant.density, scheme, plant.drift, wrenches=True)
+            wrenches = not body.loads_given
+            same = TorquePlant(body, _DT_S, plant.density, scheme, plant.drift, wrenches=wrenches)
             return same.sensitivity(motion.v, slope)
 
         slopes = {COMPLETE: sensitivity(True), SIMPLIFIED: sensitivity(False)}
@@ -236,7 +244,6 @@ class _Maker:
             slopes = dict(reversed(slopes.items()))
         slopes[CUT] = slopes[SIMPLIFIED].copy()
         slopes[CUT][plant.layout.v, plant.layout["u"]] = 0.0
-        state = ForcedState(motion.q, motion.v, u, self._spread(kalman))
         return self._point(kalman, state, slopes)
 
     def _of_dynamic(self, kalman: DynamicFilter, motion: _Motion) -> _Point:

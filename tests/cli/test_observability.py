@@ -77,6 +77,14 @@ def test_a_rank_that_hangs_on_the_bound_is_called_doubtful(capsys):
     assert "hardly observed either way" in capsys.readouterr().out
 
 
+def test_a_load_that_is_an_input_is_missing_without_its_plate(capsys):
+    words = ["--preset", "FDMC", "--set", "plates=inputs", "--without-plate", "2"]
+    assert main(["observability", "reference36", *words]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "state of 154" in shown
+    assert "Wrenches of the feet are known inputs; without a plate that of a foot counts as 0" in shown
+
+
 def test_all_protocols_are_listed_for_a_filter(capsys, monkeypatch):
     monkeypatch.setattr("mbkf.model.protocol.protocol_names", lambda: ("reference36", "plug_in_gait"))
     assert main(["observability", "--filter", "torque", "--without-plate", "both"]) == 0

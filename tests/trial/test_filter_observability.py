@@ -16,7 +16,7 @@ from mbkf.trial.filter_observability import (
     check_filter,
     plate_feet,
 )
-from mbkf.trial.preparation.presets import with_preset
+from mbkf.trial.preparation.presets import with_preset, with_set
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 PROTOCOL = load_protocol("reference36")
@@ -80,6 +80,13 @@ def test_torques_of_an_inertial_state_are_named_as_such():
     parts = {one.part for one in check_filter(PROTOCOL, TORQUE).state}
     assert "accelerating torque" in parts
     assert "torque" not in parts
+
+
+def test_wrenches_that_are_known_inputs_leave_the_state():
+    given = check_filter(PROTOCOL, with_set(LITERAL, ["plates=inputs"]), without=["left"])
+    assert given.loads_given
+    assert len(given.state) == 154
+    assert ranks(given)[SIMPLIFIED] == {154}
 
 
 @pytest.mark.parametrize(("without", "rank"), [([], 174), (["right"], 168), (["1", "2"], 162)])
