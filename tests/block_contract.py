@@ -148,10 +148,11 @@ def whole(said, size):
     return rows.T @ rows, innovation @ rows
 
 
-def derivative(found, rng, left_out=False):
+def derivative(found, rng, left_out=False, settled=False):
     """Stated slope and finite differences, along random tangent vectors.
 
-    ``left_out``: they stay within the components that its rows hold.
+    ``left_out``: they stay within the components that its rows hold. ``settled``: the rows are compared where little
+    of their innovations is left, as information is.
 
     Rows fall by their Jacobian. The vector Hᵀ R⁻¹ y of information falls by its matrix where y vanishes, so the
     state is first moved to where little of it is left.
@@ -171,7 +172,13 @@ def derivative(found, rng, left_out=False):
             return found.says(found.moved(x, state)).vector
 
     else:
-        stated = stacked(said, size)[0]
+        stated, y = stacked(said, size)
+        least = LITTLE * np.linalg.norm(y)
+        for _ in range(MOST_STEPS if settled else 0):
+            if np.linalg.norm(y) <= least:
+                break
+            state = found.moved(0.9 * np.linalg.pinv(stated) @ y, state)
+            stated, y = stacked(found.says(state), size)
 
         def value(x):
             return stacked(found.says(found.moved(x, state)), size)[1]

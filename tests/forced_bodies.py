@@ -41,6 +41,9 @@ class Cart(PlainBody):
         none = np.zeros((2, 2))
         return LinearAcceleration(self.acceleration(q, v, u), none, none, np.diag(1 / self.mass))
 
+    def force_response(self, q):
+        return np.diag(1 / self.mass)
+
 
 class DampedPendulum(PlainBody):
     """A = u − 9 sin q − 0.4 v³: nothing about it is linear."""
@@ -51,6 +54,9 @@ class DampedPendulum(PlainBody):
     def linearise(self, q, v, u):
         by_q, by_v = np.diag(-9.0 * np.cos(q)), np.diag(-1.2 * v**2)
         return LinearAcceleration(self.acceleration(q, v, u), by_q, by_v, np.eye(1))
+
+    def force_response(self, q):
+        return np.eye(1)
 
 
 def torque_plant(body):

@@ -63,7 +63,9 @@ def test_a_frame_without_readings_says_nothing_of_readings(name):
             more = np.linalg.eigvalsh(always.matrix - said.matrix)
             assert more.min() >= -1e-9 * more.max(), "nothing is known that readings do not tell as well"
         elif counted:
-            np.testing.assert_array_equal(stacked(always, found.plant.layout.size)[0], rows)
+            known = stacked(always, found.plant.layout.size)[0]
+            for row in rows:
+                assert (known == row).all(axis=1).any(), "nothing is known that readings do not tell as well"
         at = OperatingPoint(found.state, found.block.prepare(found.state, found.memory))
         found.block.remember(found.state, at, found.decision, found.memory)
 

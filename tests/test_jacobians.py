@@ -101,6 +101,23 @@ ELSEWHERE = {
     "model.casadi_dynamics.casadi_dynamics": "model/test_casadi_dynamics.py",
     "model.symbolic.recursions.world_jacobian": "model/symbolic/test_recursions.py",
     "sensors.pose_fit.joint_by_joint": "sensors/test_pose_fit.py",
+    "model.forced_body.ForcedBody.force_response": "model/test_forced_body.py",
+    "model.compiled_forces.CompiledForces.given": "model/test_compiled_forces.py joint_forces",
+    "model.compiled_forces.CompiledForces.pull": "model/test_compiled_forces.py force_rows",
+    "model.compiled_forces.CompiledForces.inertia_slope": "model/test_compiled_forces.py linearise",
+    "model.compiled_forces.Given.by_q": "model/test_compiled_forces.py",
+    "model.compiled_forces.Given.by_v": "model/test_compiled_forces.py",
+    "model.compiled_forces.Given.by_state": "model/test_compiled_forces.py",
+    "model.compiled_forces.Wrenches.by_q": "model/test_compiled_forces.py",
+    "model.compiled_forces.Wrenches.by_state": "model/test_compiled_forces.py",
+    "numerics.discretisation.Discrete.transition": "numerics/test_discretisation.py",
+    "numerics.forced_error.ForcedRates.by_q": "numerics/test_forced_error.py",
+    "numerics.forced_error.ForcedRates.by_v": "numerics/test_forced_error.py by_q",
+    "numerics.forced_error.ForcedRates.by_u": "numerics/test_forced_error.py matrix",
+    "numerics.forced_error.ForcedStep.transition": "numerics/test_forced_error.py",
+    "numerics.forced_error.LightStep.by_u": "numerics/test_forced_error.py LightStep",
+    "numerics.forced_error.LightStep.transition": "numerics/test_forced_error.py",
+    "numerics.information_update.positive_informed": "numerics/test_kalman.py",
 }
 """What holds no derivative of its own or is algebra: the test file that checks each, and the name it has
 there where that is another."""

@@ -86,3 +86,7 @@ class WithIdleStates:
         own = self.body.linearise(q, v, u[: self.body.nu])
         by_u = np.hstack([own.by_u, np.zeros((self.nv, self.idle))])
         return LinearAcceleration(own.a, own.by_q, own.by_v, by_u)
+
+    def force_response(self, q: Array) -> Array:
+        """(nv, nu) M⁻¹ Bᵀ at a configuration q (nq,), 0 by idle states."""
+        return np.hstack([self.body.force_response(q), np.zeros((self.nv, self.idle))])

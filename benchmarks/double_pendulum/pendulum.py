@@ -97,6 +97,7 @@ class DoublePendulum(PlainCoordinates):
         self._maps = Compiled("maps", [z], [R, M, Bt])
         self._accelerate = Compiled("acceleration", [z, v, u], [accelerated])
         slopes = [ca.jacobian(accelerated, x) for x in (z, v, u)]
+        self._respond = Compiled("response", [z], [ca.solve(M, Bt)])
         self._linearise = Compiled("linearise", [z, v, u], [accelerated, *slopes])
         self._given = Compiled("inertial", [z, v, a], [given, *(ca.jacobian(given, x) for x in (z, v, a))])
 
@@ -121,6 +122,10 @@ class DoublePendulum(PlainCoordinates):
             u: (nu,) forces.
         """
         return LinearAcceleration(*self._linearise(q, v, u))
+
+    def force_response(self, q: Array) -> Array:
+        """(4, nu) M⁻¹ Bᵀ at coordinates q (4,)."""
+        return self._respond(q)[0]
 
     def inertial(self, q: Array, v: Array, a: Array) -> Inertial:
         """M z̈ − Q_g of a motion with its derivatives; without residual, Bᵀ T_e equals it.

@@ -70,6 +70,12 @@ class PinocchioPendulum(PlainCoordinates):
             a, self._back @ by_q, self._back @ by_v, self._back @ inverse @ self._drive(q)
         )
 
+    def force_response(self, q: Array) -> Array:
+        """(4, nu) M⁻¹ Bᵀ at coordinates q (4,)."""
+        upper = np.triu(pin.computeMinverse(self.pin_model, self._data, FROM_ABSOLUTE @ q))
+        found: Array = self._back @ (upper + np.triu(upper, 1).T) @ self._drive(q)
+        return found
+
     def efforts(self, q: Array, v: Array, a: Array) -> Array:
         """(nu,) T_e that cause a motion without residual, by recursive Newton–Euler.
 

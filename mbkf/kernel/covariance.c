@@ -173,6 +173,77 @@ void mbkf_propagate_velocities(int nv, int J, const double *P, const double *A, 
     add_noise(2, nv, N, noise, NULL, after);
 }
 
+/* y (N) += a x */
+VECTORISED static void plus(int N, double a, const double *x, double *y)
+{
+    for (int i = 0; i < N; i++)
+        y[i] += a * x[i];
+}
+
+/* Rows of q and v of Phi P, R (2 nv x N); W: (nv x N) to work in. */
+static void forced_rows(int N, int nv, int nu, int J, const double *P, const double *A, const double *B,
+                        const double *U, const int *joints, double dt, double push, double *W, double *R)
+{
+    product(WHOLE, N, nv, nu, 1.0, P + 2L * nv * N, N, U, nv, 0.0, NULL, W, N);
+    for (int k = 0; k < J; k++)
+        joint_rows(joints[2 * k], joints[2 * k + 1], nv, N, A, B, P, P + (long)nv * N, R);
+    if (push != 0.0)
+        plus(nv * N, push, W, R);
+    memcpy(R + (long)nv * N, P + (long)nv * N, sizeof *R * nv * N);
+    plus(nv * N, dt, W, R + (long)nv * N);
+}
+
+/* Noise of forces that last: Q of thesis eq. 2.45 in v and u; Y: (nv x nu) and Z: (nv x nv) to work in. */
+static void add_forces(int N, int nv, int nu, const double *U, const double *D, double dt, double *Y, double *Z,
+                       double *after)
+{
+    product(WHOLE, nv, nu, nu, 1.0, U, nv, D, nu, 0.0, NULL, Y, nv);
+    product(WHOLE, nv, nv, nu, dt * dt * dt / 3.0, Y, nv, U, nv, 0.0, NULL, Z, nv);
+    for (int i = 0; i < nv; i++) {
+        double *row = after + (long)(nv + i) * N + nv;
+        plus(nv, 1.0, Z + (long)i * nv, row);
+        for (int k = 0; k < nu; k++)
+            row[nv + k] += 0.5 * dt * dt * Y[(long)k * nv + i];
+    }
+    for (int k = 0; k < nu; k++)
+        plus(nu, dt, D + (long)k * nu, after + (long)(2 * nv + k) * N + 2 * nv);
+}
+
+void mbkf_propagate_forces(int N, int nv, int nu, int J, const double *P, const double *A, const double *B,
+                           const double *by_u, const int *joints, double dt, double push, const double *own,
+                           const double *forces, double *after)
+{
+    const int both = 2 * nv;
+    double *W = are_all_dofs(J, joints, nv) ? workspace(3L * nv * N + 3L * nv * nv + 2L * nv * nu) : NULL;
+    if (!W)
+        return;
+    double *R = W + (long)nv * N, *V = R + 2L * nv * N, *Y = V + 2L * nv * nv, *Z = Y + 2L * nv * nu;
+    forced_rows(N, nv, nu, J, P, A, B, by_u, joints, dt, push, W, R);
+    /* Columns of v gain dt V, V = R_u U' (2 nv x nv, row by row), those of q push V. */
+    transposed(nu, both, R + both, N, Y);
+    product(WHOLE, nv, both, nu, 1.0, by_u, nv, Y, both, 0.0, NULL, V, nv);
+    for (int i = 0; i < nv; i++)
+        memcpy(W + (long)i * nv, R + (long)i * N + nv, sizeof *W * nv);
+    for (int k = 0; k < J; k++)
+        joint_columns(joints[2 * k], joints[2 * k + 1], nv, N, A, B, R, W, after);
+    for (int i = 0; i < both; i++) {
+        double *to = after + (long)i * N;
+        memcpy(to + nv, R + (long)i * N + nv, sizeof *to * (N - nv));
+        plus(nv, dt, V + (long)i * nv, to + nv);
+        if (i < nv && push != 0.0)
+            plus(nv, push, V + (long)i * nv, to);
+    }
+    for (int k = both; k < N; k++)
+        memcpy(after + (long)k * N + both, P + (long)k * N + both, sizeof *after * nu);
+    for (int i = 0; i < nv; i++) {
+        after[(long)i * (N + 1)] += own[i] * dt * dt * dt / 3.0;
+        after[(long)i * (N + 1) + nv] += own[i] * dt * dt / 2.0;
+        after[(long)(nv + i) * (N + 1)] += own[i] * dt;
+    }
+    add_forces(N, nv, nu, by_u, forces, dt, Y, Z, after);
+    mirror(N, after);
+}
+
 /* G with G G' = L: lower Cholesky factor; rows and columns of components without information are zero. */
 static int square_root(int n, const double *L, double *G)
 {
@@ -247,13 +318,6 @@ int mbkf_add_information(int N, int n, int m, const double *P, const double *inf
     product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, after, N);
     mirror(N, after);
     return 0;
-}
-
-/* y (N) += a x */
-VECTORISED static void plus(int N, double a, const double *x, double *y)
-{
-    for (int i = 0; i < N; i++)
-        y[i] += a * x[i];
 }
 
 void mbkf_correction(int N, int n, int m, const double *P, const double *vector, const double *rows,

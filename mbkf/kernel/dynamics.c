@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-static void set_inertia(const Joint *joint, const double *R, Inertia *inertia)
+void segment_inertia(const Joint *joint, const double *R, Inertia *inertia)
 {
     const double m = joint->mass;
     double c[3], half[9], I[6], *second = inertia->second;
@@ -88,7 +88,7 @@ static void set_segments(Tree *tree, const double *v, const double *a)
         set_motion(tree, &tree->joint[i], v, a, one);
         if (tree->joint[i].mass == 0.0)
             continue;
-        set_inertia(&tree->joint[i], tree->frames + 12 * i, &one->inertia);
+        segment_inertia(&tree->joint[i], tree->frames + 12 * i, &one->inertia);
         set_gyration(&one->inertia, one->velocity, one->gyration);
         set_force(one);
     }

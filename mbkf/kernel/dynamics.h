@@ -4,6 +4,9 @@
 
 #include "tree.h"
 
+/* Inertia of a joint's segment about the origin of the axes in which its frame R (axes and origin) stands. */
+void segment_inertia(const Joint *joint, const double *R, Inertia *inertia);
+
 /* Sums up the forces of composites, without loads; derivatives are not touched. */
 void tree_forces(Tree *tree, const double *q, const double *v, const double *a);
 

@@ -90,6 +90,29 @@ class CompiledTree:
         motion = _read(q), _read(v), _read(a)
         return self.kernel.torque_derivatives(self.handle, *motion, moves, _read(wrenches))
 
+    def mass_inverse(self, q: Array, moving: BoolArray) -> tuple[Array, Array]:
+        """(nv, nv) mass matrix, and the inverse of its part of the moving dofs; the rest of that is 0.
+
+        Args:
+            q: (nq,) configuration.
+            moving: (nv,) dofs that forces move.
+
+        Raises:
+            numpy.linalg.LinAlgError: The mass matrix is not positive.
+        """
+        failed, mass, inverse = self.kernel.mass_inverse(self.handle, _read(q), moving)
+        if failed:
+            raise np.linalg.LinAlgError("the mass matrix is not positive")
+        return mass, inverse
+
+    def foot_wrenches(
+        self, q: Array, joint_ids: Int32Array, levers: Array, own_axes: bool, state: Array, points: Array
+    ) -> tuple[Array, Array, Array]:
+        """(12,) wrenches and derivatives (12, 12), (12, nv). Args: as :meth:`BodyFunctions.foot_wrenches`."""
+        return self.kernel.foot_wrenches(
+            self.handle, _read(q), joint_ids, levers, own_axes, _read(state), _read(points)
+        )
+
     def height_jacobian(self, q: Array, joint_ids: Int32Array) -> Array:
         """(n, nv) derivative of the heights of the origins of n joints by the configuration q (nq,)."""
         return self.kernel.height_jacobian(self.handle, _read(q), joint_ids)

@@ -61,3 +61,6 @@ class ForcedBody(Protocol):
             v: (nv,) velocity in the tangent space.
             u: (nu,) forces.
         """
+
+    def force_response(self, q: Array) -> Array:
+        """(nv, nu) derivative of the acceleration by the forces alone, M⁻¹ Bᵀ at a configuration q (nq,)."""

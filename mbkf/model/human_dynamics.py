@@ -18,8 +18,10 @@ import scipy.linalg
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.model.body import Body
+from mbkf.model.compiled_forces import CompiledForces, Given
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.layout import FEET, Layout
+from mbkf.model.turning import Turning
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
 """Coordinates of a wrench state; the moment is in the foot's axes in each.
@@ -34,6 +36,9 @@ GIVEN_FRAME = "world"
 """Coordinates of wrenches that are known inputs: force and moment about the world's origin, world axes, as plates read.
 """
 
+
+ROOT = 6
+"""Dofs of the pelvis, the first ones."""
 
 FORCE_STATES = ("inertial", "torque")
 """Coordinates of residual and joint torques T_d in u, which stay constant between frames.
@@ -68,6 +73,7 @@ class HumanDynamics(ForcedBody):
         force_state: Coordinates of its first entries, see :data:`FORCE_STATES`.
         loads_given: The feet's wrenches are known inputs (thesis 3.2.3), not forces of the body.
         nv, nu: Degrees of freedom, forces (62 for the reference body, 50 with given loads).
+        compiled: The same by the compiled kernel, where it knows the body's joints; else None.
 
     With given loads, arguments u of the methods are the forces followed by these, (nu + 12,), and derivatives by u are
     those by the forces alone.
@@ -120,7 +126,10 @@ class HumanDynamics(ForcedBody):
         self._acting = force_state == "torque"
         self._selector = np.zeros((model.nv, len(self.torque_dofs)))
         self._selector[self.torque_dofs, np.arange(len(self.torque_dofs))] = 1.0
-        self._turning = [joint.v for joint in model.joints.values() if joint.kind == "spherical"]
+        self._turning = Turning.of(model)
+        self.compiled = CompiledForces.where_built(
+            model, ~self.kinematic, np.array(self._points), self.wrench_frame
+        )
 
     # The manifold.
 
@@ -134,32 +143,42 @@ class HumanDynamics(ForcedBody):
 
     def retraction(self, q: Array, dv: Array) -> tuple[Array, Array]:
         """Derivatives (nv, nv) of q ⊕ dv by q and by dv."""
-        model = self.model.pin_model
-        return pin.dIntegrate(model, q, dv, pin.ARG0), pin.dIntegrate(model, q, dv, pin.ARG1)
+        return self.model.integration_derivatives(q, dv)
 
     def transport(self, v: Array) -> Array:
         """(nv, nv) −ad(v) of each joint: δ̇ = −v × δ + δv for errors in the joints' own axes.
 
         Departs from thesis eq. 3.40, which has 0 here: its coordinates are a flat space.
         """
-        T = np.zeros((self.nv, self.nv))
-        root = -pin.skew(v[3:6])
-        T[:3, :3] = T[3:6, 3:6] = root
-        T[:3, 3:6] = -pin.skew(v[:3])
-        for dofs in self._turning:
-            T[dofs, dofs] = -pin.skew(v[dofs])
-        return T
+        return self._turning.at(v)
 
     # Forces.
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
         """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs, 0 of the kinematic ones."""
         dofs = len(self.torque_dofs)
-        push = self._selector @ u[:dofs]
+        push = np.zeros(self.nv)
+        push[self.torque_dofs] = u[:dofs]
         if self._acting:
-            local = self.local_wrench(q, u[dofs:])[0]
-            push += self._pull() @ local - pin.nonLinearEffects(self.model.pin_model, self._data, q, v)
-        return self._accelerate(q, push)[0]
+            push += self._force(q, v, u[dofs:])
+        return self._accelerate(q, push)
+
+    def force_response(self, q: Array) -> Array:
+        """(nv, nu) ∂z̈/∂T_e = M⁻¹ Bᵀ alone, all that the simplified F has of the dynamics (thesis eq. 4.15)."""
+        dofs, found = len(self.torque_dofs), np.zeros((self.nv, self.nu), order="F")
+        acting = self._acting and not self.loads_given
+        if self.compiled is not None:
+            inverse = self.compiled.mass(q)[1]
+            found[:, :dofs] = inverse[:, self.torque_dofs]
+            if acting:
+                found[:, dofs:] = inverse @ self._load_by_state(q)
+            return found
+        right = np.zeros((self.nv, self.nu))
+        right[:, :dofs] = self._selector
+        if acting:
+            right[:, dofs:] = self._load_by_state(q)
+        found[self._free] = scipy.linalg.cho_solve(self._factor(q), right[self._free], check_finite=False)
+        return found
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
         """The acceleration with its complete analytic derivatives.
@@ -168,12 +187,23 @@ class HumanDynamics(ForcedBody):
         2Ṙ holds for velocities of points and not for angular velocities, by differentiating Newton–Euler itself.
         """
         nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
-        given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)
-        a, factor = self._accelerate(q, self._selector @ u[:dofs] + given.force)
+        given = self._given(q, v, u[dofs:]) if self._acting else Given.nothing(nv)
+        push = given.force.copy()
+        push[self.torque_dofs] += u[:dofs]
+        a = self._accelerate(q, push)
+        right = given.by_q - self._inertia_slope(q, a)
+        if self.compiled is not None:
+            inverse, by_u = self.compiled.mass(q)[1], np.zeros((nv, self.nu), order="F")
+            by_u[:, :dofs] = inverse[:, self.torque_dofs]
+            if not self._acting:
+                return LinearAcceleration(a, inverse @ right, given.by_v, by_u)
+            if not self.loads_given:
+                by_u[:, dofs:] = inverse @ given.by_state
+            return LinearAcceleration(a, inverse @ right, inverse @ given.by_v, by_u)
         by_forces = [self._selector] if self.loads_given else [self._selector, given.by_state]
-        right = np.concatenate([given.by_q - self._inertia_slope(q, a), given.by_v, *by_forces], axis=1)
+        right = np.concatenate([right, given.by_v, *by_forces], axis=1)
         slope = np.zeros((nv, right.shape[1]))
-        slope[rows] = scipy.linalg.cho_solve(factor, right[rows], check_finite=False)
+        slope[rows] = scipy.linalg.cho_solve(self._factor(q), right[rows], check_finite=False)
         columns = self._columns
         return LinearAcceleration(a, slope[:, columns.q], slope[:, columns.v], slope[:, columns["u"]])
 
@@ -187,9 +217,9 @@ class HumanDynamics(ForcedBody):
             foot_wrench: (2, 6) force N and moment N m about the world's origin on right and left foot.
         """
         state = self.wrench_state(q, foot_wrench)
-        u = self.model.mass_matrix(q) @ a
+        u = self.mass(q) @ a
         if self._acting:
-            u -= self._given(q, v, state).force
+            u -= self._force(q, v, state)
         return u[self.torque_dofs] if self.loads_given else np.concatenate([u[self.torque_dofs], state])
 
     def generalised(self, q: Array, v: Array, a: Array, u: Array) -> Array:
@@ -201,9 +231,7 @@ class HumanDynamics(ForcedBody):
             a: (nv,) acceleration.
             u: (nu,) forces.
         """
-        local = self.local_wrench(q, u[len(self.torque_dofs) :])[0]
-        load = self._pull() @ local
-        return self.model.inverse_dynamics(q, v, a) - load
+        return self.mass(q) @ a - self._force(q, v, u[len(self.torque_dofs) :])
 
     def joint_forces(self, q: Array, v: Array, u: Array) -> JointForces:
         """Residual and joint torques T_d of a state.
@@ -224,14 +252,34 @@ class HumanDynamics(ForcedBody):
         rows = self.torque_dofs
         return JointForces(u[:dofs] - given.force[rows], -given.by_q[rows], -given.by_v[rows], by_u)
 
+    def residual(self, q: Array, v: Array, u: Array) -> JointForces:
+        """The pelvis's six of :meth:`joint_forces`.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
+        if self._acting or self.compiled is None:
+            every = self.joint_forces(q, v, u)
+            return JointForces(every.torque[:ROOT], every.by_q[:ROOT], every.by_v[:ROOT], every.by_u[:ROOT])
+        dofs = len(self.torque_dofs)
+        given, by_u = self.compiled.at_root(q, v, u[dofs:]), np.eye(ROOT, self.nu)
+        if not self.loads_given:
+            by_u[:, dofs:] = -given.by_state
+        return JointForces(u[:ROOT] - given.force, -given.by_q, -given.by_v, by_u)
+
+    def mass(self, q: Array) -> Array:
+        """(nv, nv) symmetric mass matrix."""
+        return self.model.mass_matrix(q) if self.compiled is None else self.compiled.mass(q)[0]
+
     def force_rows(self, q: Array) -> Array:
         """(nu, nv + 12) derivative of u by accelerations and wrench states, δu = rows (δa, δw)."""
         dofs = len(self.torque_dofs)
         rows = np.zeros((self.nu, self.nv + FEET))
-        rows[:dofs, : self.nv] = self.model.mass_matrix(q)[self.torque_dofs]
+        rows[:dofs, : self.nv] = self.mass(q)[self.torque_dofs]
         if self._acting:
-            _, by_state, _ = self.local_wrench(q, np.zeros(FEET))
-            rows[:dofs, self.nv :] = -(self._pull() @ by_state)[self.torque_dofs]
+            rows[:dofs, self.nv :] = -self._load_by_state(q)[self.torque_dofs]
         if not self.loads_given:
             rows[dofs:, self.nv :] = np.eye(FEET)
         return rows
@@ -295,8 +343,24 @@ class HumanDynamics(ForcedBody):
         """(nv, 12) Jᵀ from wrenches in the feet's axes to generalised forces, likewise."""
         return np.concatenate(self._foot_jacobians(), axis=0).T
 
-    def _given(self, q: Array, v: Array, state: Array) -> _Given:
-        """Generalised forces of wrench states, gravity and velocity on all dofs, with derivatives."""
+    def _load_by_state(self, q: Array) -> Array:
+        """(nv, 12) derivative of the generalised forces by the wrench states, which they are linear in."""
+        if self.compiled is not None:
+            return self.compiled.pull(q)
+        _, by_state, _ = self.local_wrench(q, np.zeros(FEET))
+        return self._pull() @ by_state
+
+    def _force(self, q: Array, v: Array, state: Array) -> Array:
+        """(nv,) generalised forces of wrench states, gravity and velocity on all dofs."""
+        if self.compiled is not None:
+            return self.compiled.force(q, v, state)
+        local = self.local_wrench(q, state)[0]
+        return self._pull() @ local - pin.nonLinearEffects(self.model.pin_model, self._data, q, v)
+
+    def _given(self, q: Array, v: Array, state: Array) -> Given:
+        """:meth:`_force` with derivatives."""
+        if self.compiled is not None:
+            return self.compiled.given(q, v, state)
         model, still = self.model.pin_model, np.zeros(self.nv)
         local, by_state, by_q = self.local_wrench(q, state)
         pull = self._pull()
@@ -305,32 +369,24 @@ class HumanDynamics(ForcedBody):
         force = -pin.rnea(model, self._data, q, v, still, self._loads)
         # Pinocchio's derivative includes how the pull of a wrench constant in the foot's axes changes with q.
         bias_q, bias_v, _ = pin.computeRNEADerivatives(model, self._data, q, v, still, self._loads)
-        return _Given(force, pull @ by_q - bias_q, -bias_v, pull @ by_state)
+        return Given(force, pull @ by_q - bias_q, -bias_v, pull @ by_state)
 
     def _inertia_slope(self, q: Array, a: Array) -> Array:
         """(nv, nv) ∂(M a)/∂q."""
+        if self.compiled is not None:
+            return self.compiled.inertia_slope(q, a)
         return pin.computeRNEADerivatives(self._weightless, self._data, q, np.zeros(self.nv), a)[0]
 
-    def _accelerate(self, q: Array, push: Array) -> tuple[Array, tuple[Array, bool]]:
-        """Acceleration under generalised forces, and the Cholesky factor of the free dofs' mass matrix."""
+    def _accelerate(self, q: Array, push: Array) -> Array:
+        """(nv,) acceleration of the free dofs under generalised forces."""
+        if self.compiled is not None:
+            return self.compiled.mass(q)[1] @ push
+        a = np.zeros(self.nv)
+        a[self._free] = scipy.linalg.cho_solve(self._factor(q), push[self._free], check_finite=False)
+        return a
+
+    def _factor(self, q: Array) -> tuple[Array, bool]:
+        """Cholesky factor of the free dofs' mass matrix."""
         rows = self._free
         upper = pin.crba(self.model.pin_model, self._data, q)[np.ix_(rows, rows)]
-        factor = scipy.linalg.cho_factor(upper, lower=False, check_finite=False)
-        a = np.zeros(self.nv)
-        a[rows] = scipy.linalg.cho_solve(factor, push[rows], check_finite=False)
-        return a, factor
-
-
-@dataclass(frozen=True)
-class _Given:
-    """Q_g + Jᵀ w: ``force`` (nv,), its derivatives ``by_q``, ``by_v`` (nv, nv) and ``by_state`` (nv, 12)."""
-
-    force: Array
-    by_q: Array
-    by_v: Array
-    by_state: Array
-
-    @classmethod
-    def nothing(cls, nv: int) -> _Given:
-        none = np.zeros((nv, nv))
-        return cls(np.zeros(nv), none, none, np.zeros((nv, FEET)))
+        return scipy.linalg.cho_factor(upper, lower=False, check_finite=False)

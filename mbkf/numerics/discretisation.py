@@ -25,10 +25,9 @@ class Discrete:
     phi: Array
     noise: Array
 
-    def then(self, later: Discrete) -> Discrete:
-        """This step followed by a later one."""
-        noise = later.phi @ self.noise @ later.phi.T + later.noise
-        return Discrete(later.phi @ self.phi, symmetric(noise))
+    def transition(self) -> Array:
+        """(n, n) ``phi``."""
+        return self.phi
 
 
 def symmetric(matrix: Array) -> Array:

@@ -33,12 +33,22 @@ def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
         rows: (m, N) whitened Jacobian of the other readings; their values do not enter.
     """
     try:
-        return _informed_with_rows(covariance, matrix, rows)
+        return positive_informed(covariance, matrix, rows)
     except np.linalg.LinAlgError:
-        return _informed_with_rows(made_positive(covariance), matrix, rows)
+        return positive_informed(made_positive(covariance), matrix, rows)
 
 
-def _informed_with_rows(P: Array, matrix: Array, rows: Array) -> Array:
+def positive_informed(P: Array, matrix: Array, rows: Array) -> Array:
+    """(N, N) as :func:`informed_with_rows`, for covariances that must not be mended.
+
+    Args:
+        P: (N, N) prior covariance.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings.
+
+    Raises:
+        numpy.linalg.LinAlgError: The covariance is not positive.
+    """
     if not len(rows):
         return informed(P, matrix)
     h = _reduction(P, matrix)

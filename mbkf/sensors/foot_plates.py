@@ -24,8 +24,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.layout import Layout
-from mbkf.numerics.kalman import Information, information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact
 from mbkf.sensors.contact.sharing import SharedLoad
@@ -151,24 +150,22 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         notes.contact = self.detector.decide(memory.contact, *where, frame.plates)
         return PlateDecision(notes.contact, FootReading.of(notes.contact))
 
-    def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> Information | None:
-        """Information on the whole state, of which positions and wrenches are read."""
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> Rows | None:
+        """Whitened rows on the whole state, of which positions and wrenches are read."""
         state, feet = at.state, decision.reading
         _, ankles = self.body.placements(state.q)
         points = ankles[self.sensor.ids]
         predicted = self.sensor.reading(state.q, state.u[-12:], points)
         target = feet.wrench.copy()
-        target[:, 3:] -= np.cross(points, feet.wrench[:, :3])
-        y, H = target.ravel() - predicted.wrench, np.hstack([predicted.by_q, predicted.by_state])
+        target[:, 3:] -= _crossed(points, feet.wrench[:, :3])
+        y, H = target.ravel() - predicted.wrench, np.zeros((12, self.layout.size))
+        H[:, self.layout.q], H[:, self.layout.wrench] = predicted.by_q, predicted.by_state
         if feet.shared is not None:
             whitening = self._whitening(feet.shared, points)
-            own = information(whitening @ y, whitening @ H, np.ones(12))
-        else:
-            read = np.repeat(feet.known, 6)
-            own = information(y[read], H[read], self.sd(feet)[read])
-        matrix, vector = np.zeros((self.layout.size, self.layout.size)), np.zeros(self.layout.size)
-        matrix[np.ix_(self.columns, self.columns)], vector[self.columns] = own.matrix, own.vector
-        return Information(matrix, vector, own.innovation, own.readings)
+            return Rows(whitening @ H, whitening @ y, readings=12)
+        read = np.repeat(feet.known, 6)
+        weight = 1.0 / self.sd(feet)[read]
+        return Rows(H[read] * weight[:, None], y[read] * weight, readings=len(weight))
 
     def remember(
         self,
@@ -210,3 +207,9 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         if decision.reading.shared is not None:
             return 2.0 * float(np.log(self._plate).sum() + np.log(decision.reading.shared.sd).sum())
         return 2.0 * float(np.log(self.sd(decision.reading)[np.repeat(decision.reading.known, 6)]).sum())
+
+
+def _crossed(a: Array, b: Array) -> Array:
+    """(n, 3) a × b, row by row; numpy's own takes ten times as long on two rows."""
+    next_one, after = [1, 2, 0], [2, 0, 1]
+    return a[:, next_one] * b[:, after] - a[:, after] * b[:, next_one]

@@ -46,6 +46,9 @@ class FootWrenchSensor:
             state: (12,) wrench states of right and left foot.
             points_m: (2, 3) points in the world about which the moments are taken.
         """
+        if (compiled := self.dynamics.compiled) is not None:
+            found = compiled.wrenches(q, state, points_m)
+            return WrenchReading(found.wrench, found.by_q, found.by_state)
         rotations, origins, jacobian = self.dynamics.model.placements_and_jacobian(q)
         local, by_state, by_q = self.dynamics.local_wrench(q, state)
         wrench = np.empty(12)

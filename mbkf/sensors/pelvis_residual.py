@@ -13,8 +13,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.numerics.kalman import Information, information
-from mbkf.sensors.block import Block, Notes, OperatingPoint
+from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.states import ForceState
 
 
@@ -31,13 +30,14 @@ class PelvisResidual(Block[ForceState, None, Notes, None]):
     def __init__(self, dynamics: HumanDynamics, residual_sd: Array) -> None:
         """Args: the forced body, and standard deviations (6,) of force, N, and moment, N m."""
         self.dynamics, self.sd = dynamics, residual_sd
+        self._weight = 1.0 / residual_sd
 
-    def linearise(self, at: OperatingPoint[ForceState, None], decision: Notes) -> Information | None:
-        """Information on the whole state."""
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: Notes) -> Rows | None:
+        """Whitened rows on the whole state; None where nothing is known."""
         state = at.state
-        if np.isnan(state.given).any():
+        if not self._weight.any() or np.isnan(state.given).any():
             return None
-        torque = self.dynamics.joint_forces(state.q, state.v, state.forces)
-        H = np.hstack([torque.by_q, torque.by_v, torque.by_u])[:6]
-        found = information(-torque.torque[:6], H, self.sd)
-        return Information(found.matrix, found.vector, 0.0, 0)
+        residual = self.dynamics.residual(state.q, state.v, state.forces)
+        rows = np.concatenate([residual.by_q, residual.by_v, residual.by_u], axis=1)
+        rows *= self._weight[:, None]
+        return Rows(rows, -residual.torque * self._weight)

@@ -272,3 +272,26 @@ def test_deviations_from_another_configuration_are_pinocchio_s_differences(seed)
     np.testing.assert_allclose(deviation[6:], expected[6:], rtol=0, atol=1e-13)
     np.testing.assert_allclose(jacobian[6:, 6:], slope[6:, 6:], rtol=0, atol=1e-8)
     assert not deviation[:6].any() and not jacobian[:6].any()
+
+
+@often
+@seeds
+def test_the_mass_matrix_and_its_inverse(seed):
+    """Pinocchio's; the inverse is that of the moving dofs' part alone."""
+    s = moving(seed)
+    moves = s.rng.random(s.model.nv) < 0.8
+    mass, inverse = s.tree.mass_inverse(s.q, moves)
+    expected = np.triu(pin.crba(s.model, s.data, s.q))
+    expected += np.triu(expected, 1).T
+    assert_same(mass, expected)
+    part = np.linalg.inv(expected[np.ix_(moves, moves)])
+    size = np.sqrt(np.diag(part))
+    assert worst((inverse[np.ix_(moves, moves)] - part) / np.outer(size, size)) < 1e-8
+    assert not inverse[~moves].any() and not inverse[:, ~moves].any()
+
+
+def test_a_body_without_mass_has_no_inverse():
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root")
+    with pytest.raises(np.linalg.LinAlgError, match="mass matrix"):
+        CompiledTree.where_built(model).mass_inverse(pin.neutral(model), np.ones(6, dtype=bool))

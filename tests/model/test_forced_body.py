@@ -39,5 +39,6 @@ def test_speaks_the_protocol(name):
     shapes = [part.shape for part in (found.a, found.by_q, found.by_v, found.by_u, body.transport(v))]
     square = (body.nv, body.nv)
     assert shapes == [(body.nv,), square, square, (body.nv, body.nu), square]
+    np.testing.assert_allclose(body.force_response(q), found.by_u, atol=1e-12)
     assert [part.shape for part in body.retraction(q, v)] == [square, square]
     np.testing.assert_allclose(body.difference(q, body.integrate(q, v)), v, atol=1e-12)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.information_update import informed, informed_with_rows
+from mbkf.numerics.information_update import informed, informed_with_rows, positive_informed
 from mbkf.numerics.kalman import correct, information, informed_whole
 from tests.motions import worst
 
@@ -211,6 +211,7 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     found = informed_with_rows(P, matrix, rows)
     one = informed_with_rows(informed(P, matrix), SILENT, rows)
     np.testing.assert_allclose(found, one, rtol=0, atol=1e-13)
+    np.testing.assert_array_equal(positive_informed(P, matrix, rows), found)
     whole = informed_whole(P, matrix, rows)
     np.testing.assert_allclose(whole, one, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(whole, whole.T)

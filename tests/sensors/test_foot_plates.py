@@ -56,10 +56,10 @@ def test_true_plates_leave_no_innovation(scene):
     decision = block.decide(prepared_at(block, state), Frame(NO_MARKERS, wrench), block.begin(), Notes())
     assert decision.contact.contacts == (Contact.MEASURED, Contact.MEASURED)
     found = block.linearise(prepared_at(block, state), decision)
-    assert found.readings == 12 and found.innovation < 1e-12
-    silent = np.setdiff1d(np.arange(len(found.vector)), block.columns)
-    assert not found.matrix[silent].any()
-    assert np.linalg.matrix_rank(found.matrix[-12:, -12:]) == 12
+    assert found.readings == 12 and found.innovation @ found.innovation < 1e-12
+    silent = np.setdiff1d(np.arange(found.jacobian.shape[1]), block.columns)
+    assert not found.jacobian[:, silent].any()
+    assert np.linalg.matrix_rank(found.jacobian[:, -12:]) == 12
 
 
 def test_feet_without_a_reading_are_left_out(scene):
@@ -70,7 +70,7 @@ def test_feet_without_a_reading_are_left_out(scene):
         prepared_at(block, state), first._replace(contact=decision, reading=FootReading.of(decision))
     )
     assert found.readings == 6
-    assert not found.matrix[-12:-6].any() and found.matrix[-6:].any()
+    assert not found.jacobian[:, -12:-6].any() and found.jacobian[:, -6:].any()
 
 
 def shared(wrench, sd=(20.0, 20.0, 30.0, 10.0, 10.0, 5.0)):
@@ -94,11 +94,10 @@ def test_a_shared_plate_is_read_as_shares(scene):
     assert read.known.all() and not read.airborne.any()
     np.testing.assert_array_equal(read.wrench, wrench)
     right = linearised(scene, shared(wrench))
-    assert right.readings == 12 and right.innovation < 1e-12
+    assert right.readings == 12 and right.innovation @ right.innovation < 1e-12
     off = np.array([0.0, 0.0, 60.0, 60.0 * -0.1, 60.0 * -0.1, 0.0])  # 60 N at the right foot's centre
-    assert linearised(scene, shared(wrench + np.array([off, -off]))).innovation == pytest.approx(
-        (60.0 / 30.0) ** 2
-    )
+    found = linearised(scene, shared(wrench + np.array([off, -off])))
+    assert found.innovation @ found.innovation == pytest.approx((60.0 / 30.0) ** 2)
 
 
 def test_shares_leave_the_sum_as_exact_as_the_plate(scene):
@@ -106,9 +105,8 @@ def test_shares_leave_the_sum_as_exact_as_the_plate(scene):
     s = block.settings
     heavier = np.array([0.0, 0.0, 10.0, -1.0, -1.5, 0.0])  # 10 N on the left foot alone
     found = linearised(scene, shared(wrench + np.array([np.zeros(6), heavier])))
-    assert found.innovation >= (10.0 / s.plate_force_n) ** 2
-    matrix = found.matrix[-12:, -12:]
-    assert np.linalg.matrix_rank(matrix) == 12
+    assert found.innovation @ found.innovation >= (10.0 / s.plate_force_n) ** 2
+    assert np.linalg.matrix_rank(found.jacobian[:, -12:]) == 12
     sd = block.sd(FootReading.of(shared(wrench)))
     assert np.isfinite(sd).all() and sd[2] == pytest.approx(np.hypot(30.0, s.plate_force_n))
 

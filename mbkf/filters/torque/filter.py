@@ -20,8 +20,8 @@ from mbkf.filters.torque.noise import ForceNoise
 from mbkf.filters.torque.plant import ForcedState, TorquePlant
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.filters.torque.start import TorqueStart
+from mbkf.kernel.covariance import positive_informed
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.numerics.kalman import informed_whole
 from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import ContactDecision
@@ -151,7 +151,7 @@ class TorqueFilter(Filter[ForcedState]):
         plant = TorquePlant(
             body, dt_s, ForceNoise(body, dt_s, settings), settings.scheme, wrenches=not body.loads_given
         )
-        super().__init__(plant, blocks, informed_whole)
+        super().__init__(plant, blocks, positive_informed)
         self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
         self.noise_m = noise_m * settings.tracking.marker_noise_scale
         self.unobservable = body.fixed

@@ -18,8 +18,9 @@ from mbkf.conventions import Array
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.model.layout import FEET, FOOT, Layout
+from mbkf.model.layout import FEET, FOOT
 from mbkf.numerics.discretisation import symmetric
+from mbkf.numerics.forced_error import ForceDensity
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class ForceNoise:
             dt_s: Time step.
             settings: Variances of the thesis's Table 4.3 or their replacements.
         """
-        self.body, self.settings, self._layout = body, settings, Layout.forced(body.nv, body.nu)
+        self.body, self.settings = body, settings
         mass = body.model.mass_kg
         toes = body.model.acceleration_sd if settings.toe_acceleration is None else settings.toe_acceleration
         self._toes = np.where(body.kinematic & ~body.fixed, toes, 0.0) ** 2 * dt_s
@@ -98,13 +99,10 @@ class ForceNoise:
         self._feet = tuple(ids[name] for name in roles.feet) if apart else ()
         self._independent = self._own() * (1.0 / dt_s if settings.per_frame else 1.0)
 
-    def __call__(self, state: ForcedState) -> Array:
-        """(n, n) at a state."""
-        layout, u = self._layout, self._layout["u"]
-        density = np.zeros((layout.size, layout.size))
-        density[layout.v, layout.v] = np.diag(self._toes)
-        density[u, u] = self._apart(state) if self.settings.noise == "independent" else self._together(state)
-        return density
+    def __call__(self, state: ForcedState) -> ForceDensity:
+        """At a state."""
+        independent = self.settings.noise == "independent"
+        return ForceDensity(self._toes, self._apart(state) if independent else self._together(state))
 
     def _apart(self, state: ForcedState) -> Array:
         own = np.diag(self._independent)
@@ -114,8 +112,10 @@ class ForceNoise:
         return own
 
     def _together(self, state: ForcedState) -> Array:
-        rows = self.body.force_rows(state.q)
-        free = np.diag(np.concatenate([self._jerk, self._load]))
+        rows, jerk = self.body.force_rows(state.q), np.concatenate([self._jerk, self._load])
+        if self.body.force_state != "torque" and not self._feet:
+            return symmetric((rows * jerk) @ rows.T)
+        free = np.diag(jerk)
         self._turn_loads(state.q, free[-FEET:, -FEET:], self._load)
         if self.body.force_state == "torque":
             residual = self._residual

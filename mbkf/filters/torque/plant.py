@@ -7,10 +7,11 @@ n = 2 nv + nu.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
-from typing import cast
+from functools import cached_property, partial
+from itertools import pairwise
+from typing import Protocol, cast
 
 import numpy as np
 import scipy.linalg
@@ -18,11 +19,13 @@ import scipy.linalg
 from mbkf.conventions import Array
 from mbkf.filters.plant import Plant
 from mbkf.filters.torque.integrators import INTEGRATORS, Motion, integrator
+from mbkf.kernel.covariance import joint_ranges, propagated_forces
 from mbkf.model.body import Body
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.layout import Layout, parted
-from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS, Discrete, discretise, symmetric
+from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS, discretise, symmetric
+from mbkf.numerics.forced_error import ForceDensity, ForcedRates, LightStep, forced_step
 from mbkf.numerics.transition import DenseTransition
 
 
@@ -62,11 +65,27 @@ class ForcedState:
         return np.concatenate([model.difference(origin.q, self.q), self.v - origin.v, self.u - origin.u])
 
 
+class ErrorStep(Protocol):
+    """A step of the error, in any form."""
+
+    def transition(self) -> Array:
+        """(n, n) Φ."""
+
+
 @dataclass(frozen=True)
 class ForcedPrediction(ForcedState):
-    """A predicted state with the transition ``phi`` (n, n) from the state before, which a smoother needs."""
+    """A predicted state with the ``steps`` of its error, one after the other, which a smoother needs."""
 
-    phi: Array
+    steps: Sequence[ErrorStep]
+
+    @cached_property
+    def phi(self) -> Array:
+        """(n, n) transition from the state before."""
+        return _transition(self.steps)
+
+
+LIGHT = (("first", "series"), ("second", "series"))
+"""Propagations and covariances of a :class:`LightStep`."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +109,8 @@ class Scheme:
     substeps: int = 1
 
 
-NoiseDensity = Callable[[ForcedState], Array]
-"""The spectral density (n, n) of w̃ at a state: G Σᴾ Gᵀ of thesis eq. 2.46."""
+NoiseDensity = Callable[[ForcedState], Array | ForceDensity]
+"""The spectral density of w̃ at a state, (n, n) or by its parts: G Σᴾ Gᵀ of thesis eq. 2.46."""
 
 
 class TorquePlant(Plant[ForcedState, None, None]):
@@ -134,8 +153,12 @@ class TorquePlant(Plant[ForcedState, None, None]):
         self.body, self.density, self.scheme = body, density, scheme
         self.drift = drift
         self._advance = integrator(scheme.integrator)
-        step_s = dt_s / max(1, scheme.substeps)
-        self._fade: Array | None = None if drift is None else scipy.linalg.expm(step_s * drift)
+        self._step_s = dt_s / max(1, scheme.substeps)
+        self._fade: Array | None = None if drift is None else scipy.linalg.expm(self._step_s * drift)
+        # Of blocks the forces are random walks; a body without a model has a dozen states, which need none.
+        self._compiled = drift is None and isinstance(body, HumanDynamics) and body.compiled is not None
+        joints = model.joints.values() if self._compiled else ()
+        self._joints = joint_ranges(joint.v for joint in joints)
 
     def sensitivity(self, v: Array, slope: LinearAcceleration) -> Array:
         """(n, n) F of the error (thesis eq. 3.40, simplified by thesis eq. 4.15).
@@ -143,28 +166,32 @@ class TorquePlant(Plant[ForcedState, None, None]):
         On the manifold the zero block ∂ż/∂z becomes the turning of the tangent space with the motion, which is
         kinematics and belongs to the simplified F as well.
         """
-        q, v_, u = self.layout.q, self.layout.v, self.layout["u"]
-        F = np.zeros((self.layout.size, self.layout.size))
-        F[q, q] = self.body.transport(v)
-        F[q, v_] = np.eye(self.body.nv)
-        F[v_, u] = slope.by_u
-        if self.scheme.complete:
-            F[v_, q], F[v_, v_] = slope.by_q, slope.by_v
+        turning, complete = self.body.transport(v), self.scheme.complete
+        by_q, by_v = (slope.by_q, slope.by_v) if complete else (None, None)
+        return self._whole(ForcedRates(turning, by_q, by_v, slope.by_u))
+
+    def _whole(self, rates: ForcedRates) -> Array:
+        """(n, n) F with the forces' own drift."""
+        F = rates.matrix()
         if self.drift is not None:
-            F[u, u] = self.drift
+            F[self.layout["u"], self.layout["u"]] = self.drift
         return F
+
+    def spectral_density(self, state: ForcedState) -> Array:
+        """(n, n) Σ of the plant noise at a state."""
+        return _matrix(self.density(state))
 
     def noise(self, memory: None) -> None:
         """No memory: the noise depends on the state alone, and :meth:`predict` computes it there."""
 
     def move(self, state: ForcedState) -> ForcedState:
         """Motion and forces one frame later."""
-        now, u, _ = self._advanced(state)
-        return ForcedState(now.q, now.v, u, state.P, given=state.given)
+        now, u = self._course(state)[-1]
+        return ForcedState(now.q, now.v, u[: self.body.nu], state.P, given=state.given)
 
     def transition(self, state: ForcedState) -> Array:
         """(n, n) Φ at a state; a :class:`ForcedPrediction` holds that of its own step."""
-        return self._advanced(state)[2].phi
+        return self.predict(state).phi
 
     def step_transition(self, before: ForcedState, predicted: ForcedState) -> DenseTransition:
         """Φ that the prediction was made with."""
@@ -172,30 +199,65 @@ class TorquePlant(Plant[ForcedState, None, None]):
 
     def predict(self, state: ForcedState, noise: None = None) -> ForcedPrediction:
         """The state one frame later (thesis eqs. 2.48, 2.49)."""
-        now, u, whole = self._advanced(state)
-        P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
-        return ForcedPrediction(now.q, now.v, u, P.T, whole.phi, given=state.given)
+        density, course = self.density(state), self._course(state)
+        P, steps, h = state.P, [], self._step_s
+        for (now, u), (later, _) in pairwise(course):
+            rates = self._rates(now, later, u)
+            step, P = self._propagated(P, rates, density, h)
+            steps.append(step)
+        now, u = course[-1]
+        return ForcedPrediction(now.q, now.v, u[: self.body.nu], P.T, steps, given=state.given)
 
-    def _advanced(self, state: ForcedState) -> tuple[Motion, Array, Discrete]:
-        """Motion and forces one frame later, and the step of their error."""
-        parts = max(1, self.scheme.substeps)
-        h, density = self.dt_s / parts, self.density(state)
-        now, u, given = Motion(state.q, state.v), state.u, np.nan_to_num(state.given)
-        whole: Discrete | None = None
-        for _ in range(parts):
-            forces = np.concatenate([u, given]) if len(given) else u
-            later = self._advance(self.body, now, forces, h)
-            F = self._slope(now, later, forces)
-            part = discretise(F, density, h, self.scheme.propagation, self.scheme.covariance)
-            whole = part if whole is None else whole.then(part)
-            now = later
+    def _course(self, state: ForcedState) -> list[tuple[Motion, Array]]:
+        """Motion and forces, given ones behind, at the beginning of a frame and after each of its parts."""
+        now, u = Motion(state.q, state.v), state.forces
+        course = [(now, u)]
+        for _ in range(max(1, self.scheme.substeps)):
+            now = self._advance(self.body, now, u, self._step_s)
             if self._fade is not None:
-                u = self._fade @ u
-        assert whole is not None
-        return now, u, whole
+                own = len(self._fade)
+                u = np.concatenate([self._fade @ u[:own], u[own:]])
+            course.append((now, u))
+        return course
 
-    def _slope(self, now: Motion, later: Motion, u: Array) -> Array:
-        F = self.sensitivity(now.v, self.body.linearise(now.q, now.v, u))
-        if not self.scheme.mean_slope:
-            return F
-        return 0.5 * (F + self.sensitivity(later.v, self.body.linearise(later.q, later.v, u)))
+    def _propagated(
+        self, P: Array, rates: ForcedRates, density: Array | ForceDensity, h: float
+    ) -> tuple[ErrorStep, Array]:
+        """A step of the error, and the covariance after it.
+
+        The whole body's goes by its blocks, and by the compiled kernel where these are few; the textbook's dense form
+        serves all else.
+        """
+        scheme = self.scheme
+        if self._compiled and isinstance(density, ForceDensity):
+            if rates.by_q is None and (scheme.propagation, scheme.covariance) in LIGHT:
+                light = LightStep.of(rates, h, second=scheme.propagation == "second")
+                return light, propagated_forces(P, light, self._joints, density)
+            by_blocks = forced_step(rates, density, h, scheme.propagation, scheme.covariance)
+            return by_blocks, by_blocks.propagated(P)
+        step = discretise(self._whole(rates), _matrix(density), h, scheme.propagation, scheme.covariance)
+        return step, symmetric(step.phi @ P @ step.phi.T + step.noise)
+
+    def _rates(self, now: Motion, later: Motion, u: Array) -> ForcedRates:
+        """F of a step by its blocks."""
+        own = self._rates_at(now, u)
+        return own.mean(self._rates_at(later, u)) if self.scheme.mean_slope else own
+
+    def _rates_at(self, now: Motion, u: Array) -> ForcedRates:
+        turning = self.body.transport(now.v)
+        if not self.scheme.complete:
+            return ForcedRates(turning, None, None, self.body.force_response(now.q))
+        slope = self.body.linearise(now.q, now.v, u)
+        return ForcedRates(turning, slope.by_q, slope.by_v, slope.by_u)
+
+
+def _matrix(density: Array | ForceDensity) -> Array:
+    return density.matrix() if isinstance(density, ForceDensity) else density
+
+
+def _transition(steps: Sequence[ErrorStep]) -> Array:
+    """(n, n) Φ of steps one after the other."""
+    phi = steps[0].transition()
+    for step in steps[1:]:
+        phi = step.transition() @ phi
+    return phi

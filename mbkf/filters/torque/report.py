@@ -60,26 +60,29 @@ class TorqueState:
             wrenches: Its wrench states carried to points in the world.
             state: Mean and covariance.
         """
-        forces = state.forces
-        a = body.acceleration(state.q, state.v, forces)
-        tau = body.generalised(state.q, state.v, a, forces)
-        at_origin = wrenches.reading(state.q, forces[-FEET:], np.zeros((2, 3)))
-        if body.loads_given:
-            spread = np.where(np.isnan(state.given), np.nan, 0.0)
-        else:
-            every = np.arange(len(state.P))
-            columns = np.concatenate([every[: body.nv], every[-FEET:]])
-            H = np.hstack([at_origin.by_q, at_origin.by_state])
-            spread = ((H @ state.P[np.ix_(columns, columns)]) * H).sum(axis=1)
-        tau_sd = np.full(body.nv, np.nan)
-        torque = body.joint_forces(state.q, state.v, forces)
-        T = np.hstack([torque.by_q, torque.by_v, torque.by_u])
-        tau_sd[body.torque_dofs] = root(((T @ state.P) * T).sum(axis=1))
-        tau_sd[body.fixed] = np.nan
-        if np.isnan(state.given).any():
-            tau_sd[:] = np.nan
-        found = at_origin.wrench.reshape(2, 6), tau_sd, root(spread).reshape(2, 6)
-        return cls(state.q, state.v, a, tau, *found)
+        q, v, u, P, nv, feet = (
+            state.q,
+            state.v,
+            state.forces,
+            state.P,
+            body.nv,
+            0 if body.loads_given else FEET,
+        )
+        a, torque = body.acceleration(q, v, u), body.joint_forces(q, v, u)
+        tau = body.generalised(q, v, a, u)
+        at_origin = wrenches.reading(q, u[-FEET:], np.zeros((2, 3)))
+        dofs = len(body.torque_dofs)
+        T = np.zeros((dofs + feet, len(P)))
+        T[:dofs] = np.concatenate([torque.by_q, torque.by_v, torque.by_u], axis=1)
+        if feet:
+            T[dofs:, :nv], T[dofs:, -FEET:] = at_origin.by_q, at_origin.by_state
+        sd, tau_sd = root(np.einsum("ij,ij->i", T @ P, T)), np.full(nv, np.nan)
+        unknown = np.isnan(state.given)
+        if not unknown.any():
+            tau_sd[body.torque_dofs] = sd[:dofs]
+            tau_sd[body.fixed] = np.nan
+        wrench_sd = sd[dofs:] if feet else np.where(unknown, np.nan, 0.0)
+        return cls(q, v, a, tau, at_origin.wrench.reshape(2, 6), tau_sd, wrench_sd.reshape(2, 6))
 
 
 class TorqueReport(StateReport[ForcedState]):

@@ -91,5 +91,5 @@ class TorqueStart:
 
     def _plain_covariance(self, motion: KinematicState, u: Array) -> Array:
         """Forces known as well as a second of their own noise leaves them."""
-        own = self.plant.density(ForcedState(motion.q, motion.v, u, motion.P))
+        own = self.plant.spectral_density(ForcedState(motion.q, motion.v, u, motion.P))
         return scipy.linalg.block_diag(motion.P, own[self.plant.layout["u"], self.plant.layout["u"]])

@@ -43,7 +43,7 @@ def test_consistent_noise_leaves_accelerations_and_loads_their_own(force_state):
     """Through M⁻¹ the forces' noise becomes that of the accelerations; the pelvis's is bound where the residual is."""
     settings = TorqueSettings(force_state=force_state)
     body, state, noise = made(settings)
-    nv, density = body.nv, noise(state)
+    nv, density = body.nv, noise(state).matrix()
     by_u = body.linearise(state.q, state.v, state.u).by_u
     caused = np.sqrt(np.diag(by_u @ density[2 * nv :, 2 * nv :] @ by_u.T))
     jerk = np.where(body.kinematic, 0.0, settings.jerk_scale * body.model.acceleration_sd)
@@ -66,7 +66,7 @@ def test_independent_noise_is_the_table_scaled_by_mass():
     """Thesis Table 4.3 and thesis eq. 4.18."""
     body, state, noise = made(preset("FD", literal=True))
     nv, model, scale = body.nv, body.model, body.model.mass_kg / 100.0
-    density = noise(state)
+    density = noise(state).matrix()
     sd = np.sqrt(np.diag(density)) / scale
     assert_near(density, np.diag(np.diag(density)), 0.0)
     torque = dict(zip(body.torque_dofs.tolist(), sd[2 * nv :], strict=False))
@@ -85,13 +85,13 @@ def test_noise_per_frame_is_what_a_frame_adds():
     literal = preset("FD", literal=True)
     _, state, noise = made(literal)
     _, _, per_frame = made(replace(literal, per_frame=True))
-    forces = np.diag(noise(state))[-12:]
-    assert_near(np.diag(per_frame(state))[-12:] * DT, forces, 1e-9)
+    forces = np.diag(noise(state).forces)[-12:]
+    assert_near(np.diag(per_frame(state).forces)[-12:] * DT, forces, 1e-9)
 
 
 def test_fixed_dofs_receive_none():
     fixed = (9, 10)
     body, state, noise = made(TorqueSettings(), fixed=fixed)
     by_u = body.linearise(state.q, state.v, state.u).by_u
-    caused = by_u @ noise(state)[2 * body.nv :, 2 * body.nv :] @ by_u.T
+    caused = by_u @ noise(state).forces @ by_u.T
     assert not caused[list(fixed)].any()

@@ -1,13 +1,16 @@
 """The torque plant: F along the manifold, the linear case against the exact Kalman filter, sub-steps."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 
 from benchmarks.double_pendulum.forced_bodies import WithIdleStates
 from mbkf.filters.torque.integrators import INTEGRATORS, Motion
+from mbkf.filters.torque.noise import ForceNoise
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
+from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS
 from mbkf.numerics.kalman import correct, information
@@ -237,3 +240,37 @@ def test_the_transition_is_that_of_the_prediction():
     np.testing.assert_array_equal(
         plant.transition(state), plant.predict(state, plant.noise(plant.begin())).phi
     )
+
+
+SCHEMES = [
+    (integrator, propagation, covariance, complete)
+    for integrator, (propagation, covariance), complete in product(
+        ("FE", "TN"), product(PROPAGATIONS, COVARIANCES), (True, False)
+    )
+] + [(name, "second", "series", False) for name in ("HE", "TF", "RK4")]
+
+
+@pytest.mark.parametrize("force_state", FORCE_STATES)
+def test_blocks_and_the_kernel_predict_what_the_textbook_s_form_does(force_state):
+    """Every scheme, with noise as the filter has it; entries of P against the deviations of both."""
+    body, now, u = loaded_body(force_state)
+    plain = HumanDynamics(body.model, force_state=force_state)
+    plain.compiled = None
+    noises = [ForceNoise(one, DT, TorqueSettings(force_state=force_state)) for one in (body, plain)]
+    A = 1e-2 * np.random.default_rng(5).normal(size=(2 * body.nv + body.nu,) * 2)
+    state = ForcedState(now.q, now.v, u, A @ A.T)
+    for integrator, propagation, covariance, complete in SCHEMES:
+        scheme = Scheme(
+            integrator, propagation, covariance, complete, mean_slope=integrator == "TN", substeps=2
+        )
+        found, expected = (
+            TorquePlant(one, DT, noise, scheme).predict(state)
+            for one, noise in zip((body, plain), noises, strict=True)
+        )
+        assert_near(found.q, expected.q, 1e-11)
+        assert worst(found.v - expected.v) < 1e-10 * worst(expected.v)
+        scale = np.maximum(np.abs(expected.phi).max(axis=1, keepdims=True), 1.0)
+        assert worst((found.phi - expected.phi) / scale) < 1e-10
+        sd = np.sqrt(np.diag(expected.P))
+        assert worst((found.P - expected.P) / np.outer(sd, sd)) < 1e-9
+        np.testing.assert_array_equal(found.P, found.P.T)
