@@ -18,6 +18,7 @@ EXTRAS: Mapping[str, str] = {
     "biorbd": "peers",
     "distributed": "cluster",
     "matplotlib": "figures",
+    "mujoco": "test",
     "opensim": "peers",
     "playwright": "test",
     "pylsl": "lsl",
@@ -145,6 +146,7 @@ NEEDS: Mapping[str, Needs] = {
     "misuse": Needs(("playwright", "pylsl")),
     "movement": Needs(captures=(*_NOISE, *_STRANGERS, "fukuchi_run", "judgement", "ric_run")),
     "mutants": Needs(("pytest",)),
+    "packages": Needs(some_rows=("mujoco", "playwright")),
     "peers": Needs(
         ("ahrs", "biorbd", "opensim", "vqf"), ("gait2354_walk", "imu_broad", "rajagopal_walk_run")
     ),

@@ -20,8 +20,11 @@ from mbkf.model.human import HumanModel
 CELL_HEIGHT_PX = 480
 """Height of the viewer in a notebook."""
 
-FROM_M = (1.7, -2.2, 0.5)
-"""Place of the camera from the point that it looks at."""
+FROM_M = (2.0, -2.6, 1.1)
+"""Place of the camera for a person at the origin."""
+
+NEAR_M, DISTANCE_M, HIGHEST_M = 1.0, 3.2, 2.0
+"""Persons within the first distance count as at the origin; the camera's distance from others, and its most height."""
 
 BACKGROUND = {"top_color": (0.93, 0.95, 0.97), "bottom_color": (1.0, 1.0, 1.0)}
 """Colours of the sky and below, as on mbkf's own page."""
@@ -53,11 +56,11 @@ class BodyVisualiser(MeshcatVisualizer):
         server.communicate()
 
     def look_at(self, point_m: Array) -> None:
-        """Turns the camera to a point (3,) in the world, m, from the front and the right."""
-        place = np.eye(4)
-        place[:3, 3] = point_m
-        x, y, z = FROM_M
-        self.viewer["/Cameras/default"].set_transform(place)
+        """Places the camera so that a person at a point (3,) in the world, m, is in the middle of the picture.
+
+        MeshCat's camera always looks at the world's origin: it is placed on the line from there through the point.
+        """
+        x, y, z = camera_place(point_m)
         self.viewer["/Cameras/default/rotated/<object>"].set_property("position", [x, z, -y])
 
     def _repr_html_(self) -> str:
@@ -94,6 +97,15 @@ def show(
     shown.display(q)
     shown.look_at(model.centre_of_mass(q))
     return opened(shown, open)
+
+
+def camera_place(point_m: Array) -> Array:
+    """(3,) place from which a camera that looks at the origin sees a point (3,) in its middle, or a little above."""
+    away = float(np.hypot(*point_m[:2]))
+    if away < NEAR_M:
+        return np.array(FROM_M)
+    farther = (away + DISTANCE_M) / away
+    return np.array([*(farther * point_m[:2]), np.clip(farther * point_m[2], 0.5 * HIGHEST_M, HIGHEST_M)])
 
 
 def markers_of(subject: Subject | HumanModel) -> tuple[SubjectMarker, ...]:

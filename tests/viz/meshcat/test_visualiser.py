@@ -5,7 +5,7 @@ import pytest
 
 import mbkf
 from mbkf.errors import InvalidInput, ShapeError
-from mbkf.viz.meshcat.visualiser import BodyVisualiser, show
+from mbkf.viz.meshcat.visualiser import DISTANCE_M, FROM_M, BodyVisualiser, camera_place, show
 from tests.recordings import walker
 from tests.viz.browsing import until
 from tests.viz.meshcat.recorded import path, viewer
@@ -48,7 +48,7 @@ def test_segments_and_markers_stand_where_forward_kinematics_has_them(person, mo
         joint = model.joint(marker.segment).joint_id
         place = p[joint] + R[joint] @ marker.position_m
         np.testing.assert_allclose(placed[node(f"marker_{marker.name}")][:3, 3], place, atol=1e-12)
-    assert set(shown.viewer.window.objects) == set(placed) - {"/Cameras/default"}
+    assert set(shown.viewer.window.objects) == set(placed)
     shown.display(model.neutral())
     np.testing.assert_array_equal(placed[node("pelvis")], np.eye(4))
 
@@ -83,6 +83,19 @@ def test_a_browser_opens_outside_notebooks_or_where_it_is_asked_for(
     shell = type("ZMQInteractiveShell", (), {})() if notebook else None
     monkeypatch.setattr("IPython.get_ipython", lambda: shell)
     assert show(model, open=asked, viewer=viewer()).viewer.window.opened == opens
+
+
+@pytest.mark.parametrize("point", [(2.0, -1.0, 0.9), (-40.0, 9.0, 1.0), (0.0, 1.5, 0.4)])
+def test_the_camera_sees_a_person_between_itself_and_the_origin(point):
+    point, place = np.array(point), camera_place(np.array(point))
+    assert np.linalg.norm(place[:2] - point[:2]) == pytest.approx(DISTANCE_M)
+    np.testing.assert_allclose(np.cross([*place[:2], 0], [*point[:2], 0]), 0.0, atol=1e-12)
+    towards = (place - point) / np.linalg.norm(place - point)
+    assert towards @ place / np.linalg.norm(place) > np.cos(np.deg2rad(25))
+
+
+def test_a_person_at_the_origin_is_seen_obliquely():
+    np.testing.assert_array_equal(camera_place(np.array([0.1, 0.2, 0.9])), FROM_M)
 
 
 @pytest.mark.slow
