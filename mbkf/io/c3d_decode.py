@@ -2,8 +2,8 @@
 
 A frame is four numbers per point (x, y, z, and the residual with the cameras' mask) and then the analog samples, as
 16-bit integers or floats, in the byte order and float format of the processor that wrote them (Intel, DEC, SGI-MIPS).
-Integers are scaled: points by POINT:SCALE, analog samples by (sample − OFFSET) · SCALE · GEN_SCALE. Source: The C3D
-File Format (c3d.org).
+Points in integers are scaled by POINT:SCALE; analog samples as :mod:`mbkf.io.c3d_scaling` states. Source: The C3D File
+Format (c3d.org).
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_records import ParameterRecord
+from mbkf.io.c3d_scaling import scaled_samples
 from mbkf.io.files_read import opened
 
 EVENTS_KEY = 12345
@@ -31,11 +32,6 @@ MOST_EVENTS, EVENT_TIMES, EVENT_LABELS = 18, 304, 396
 
 MOST_SAMPLES = 1000
 """Bound of analog samples per frame."""
-
-_UNSIGNED_OFFSET = -16384
-"""An analog offset below this, read with a sign, is the middle of an unsigned range."""
-
-TAKEN_AS_UNSIGNED = "analog samples are taken as numbers without a sign, since their OFFSET is that of such"
 
 
 class Processor(Enum):
@@ -108,18 +104,18 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         data = file.read(frames * width * layout.bytes_per_number)
     whole = layout.bytes_per_number == 2
     numbers = (processor.integers(data) if whole else processor.floats(data)).reshape(frames, width)
-    unsigned = whole and (_says_unsigned(parameters) or _looks_unsigned(parameters))
     corners = numbers[:, : 4 * layout.points].reshape(frames, layout.points, 4)
     scale = abs(parameters.number("POINT", "SCALE") or float(processor.floats(header[12:16])[0]))
+    analogs, remarks = scaled_samples(numbers[:, 4 * layout.points :], shape.channels, parameters, whole)
     return C3dContent(
         parameters,
         corners[:, :, :3] * scale if whole else corners[:, :, :3],
         corners[:, :, 3],
-        _analogs(numbers[:, 4 * layout.points :], shape.channels, parameters, unsigned),
+        analogs,
         float(processor.floats(header[20:24])[0]),
         _first_frame(layout, parameters),
         _header_events(header, processor),
-        (*shape.notes, *((TAKEN_AS_UNSIGNED,) if unsigned and not _says_unsigned(parameters) else ())),
+        (*shape.notes, *remarks),
     )
 
 
@@ -260,35 +256,6 @@ def _two_words(value: Array) -> int | None:
 def _samples_per_frame(parameters: C3dParameters) -> int:
     ratio = parameters.number("ANALOG", "RATE") / (parameters.number("POINT", "RATE") or np.nan)
     return round(ratio) if 0.0 < ratio < MOST_SAMPLES else 0
-
-
-def _says_unsigned(parameters: C3dParameters) -> bool:
-    return parameters.text("ANALOG", "FORMAT").upper().startswith("UNSIGNED")
-
-
-def _looks_unsigned(parameters: C3dParameters) -> bool:
-    """True where an offset is the middle of an unsigned range."""
-    return bool((parameters.all_numbers("ANALOG", "OFFSET") < _UNSIGNED_OFFSET).any())
-
-
-def _analogs(samples: Array, channels: int, parameters: C3dParameters, unsigned: bool) -> Array:
-    """(C, S) scaled channels of stored samples (T, C · samples per frame); a missing OFFSET is 0, a missing SCALE 1."""
-    if not channels or not samples.size:
-        return np.zeros((0, 0))
-    raw = samples.reshape(-1, channels).T
-    offset = _filled(parameters.all_numbers("ANALOG", "OFFSET"), channels, 0.0)
-    scale = _filled(parameters.all_numbers("ANALOG", "SCALE"), channels, 1.0)
-    if unsigned:
-        raw, offset = raw % 65536, offset % 65536
-    with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
-        gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)
-        scaled: Array = (raw - offset[:, None]) * gain[:, None]
-    return scaled
-
-
-def _filled(values: Array, count: int, default: float) -> Array:
-    """The first ``count`` values, defaults after them where there are fewer."""
-    return np.concatenate([values[:count], np.full(max(count - len(values), 0), default)])
 
 
 def _header_events(header: bytes, processor: Processor) -> tuple[tuple[str, float], ...]:

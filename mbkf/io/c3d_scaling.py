@@ -1,0 +1,59 @@
+"""Scaled analog samples of a C3D file: (sample − OFFSET) · SCALE · GEN_SCALE, with samples and offsets with a sign or not.
+
+OFFSET is stored as a 16-bit number with a sign. Where the samples have none (ANALOG:FORMAT UNSIGNED, or an offset that
+is the middle of such a range), an offset of −32768 stands for 32768. Floats keep whatever range they were converted
+from, so their own size decides.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.io.c3d_parameters import C3dParameters
+
+_UNSIGNED_OFFSET = -16384
+"""An analog offset below this, read with a sign, is the middle of an unsigned range."""
+
+TAKEN_AS_UNSIGNED = "analog samples are taken as numbers without a sign, since their OFFSET is that of such"
+
+
+def scaled_samples(
+    samples: Array, channels: int, parameters: C3dParameters, integers: bool
+) -> tuple[Array, tuple[str, ...]]:
+    """(C, S) scaled channels and remarks; a missing OFFSET is 0, a missing SCALE 1.
+
+    Args:
+        samples: (T, C · samples per frame) numbers as they are stored.
+        channels: Number of channels C.
+        parameters: The file's parameters.
+        integers: True for 16-bit integers, False for floats.
+    """
+    if not channels or not samples.size:
+        return np.zeros((0, 0)), ()
+    offset = _filled(parameters.all_numbers("ANALOG", "OFFSET"), channels, 0.0)
+    scale = _filled(parameters.all_numbers("ANALOG", "SCALE"), channels, 1.0)
+    stated = parameters.text("ANALOG", "FORMAT").upper().startswith("UNSIGNED")
+    likely = stated or bool((parameters.all_numbers("ANALOG", "OFFSET") < _UNSIGNED_OFFSET).any())
+    raw = samples.reshape(-1, channels).T
+    unsigned = likely and (integers or _fit_unsigned(raw, offset))
+    if unsigned:
+        raw, offset = raw % 65536 if integers else raw, offset % 65536
+    with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
+        gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)
+        scaled: Array = (raw - offset[:, None]) * gain[:, None]
+    return scaled, (TAKEN_AS_UNSIGNED,) if unsigned and not stated else ()
+
+
+def _fit_unsigned(raw: Array, offset: Array) -> bool:
+    """True where floats (C, S) lie nearer to the offsets (C,) without a sign than to those with one."""
+    differ = offset < 0.0
+    with np.errstate(all="ignore"):
+        typical = np.median(raw[differ], axis=1)
+        nearer = np.abs(typical - offset[differ] % 65536) < np.abs(typical - offset[differ])
+    return bool(differ.any() and nearer.mean() > 0.5)
+
+
+def _filled(values: Array, count: int, default: float) -> Array:
+    """The first ``count`` values, defaults after them where there are fewer."""
+    return np.concatenate([values[:count], np.full(max(count - len(values), 0), default)])

@@ -1,0 +1,49 @@
+"""Analog samples with a sign or without one are scaled to the same, as integers and as floats."""
+
+import numpy as np
+import pytest
+
+from mbkf.io.capture import read_capture
+from mbkf.io.c3d_decode import decode
+from mbkf.io.c3d_layout import check_layout
+from mbkf.io.c3d_scaling import TAKEN_AS_UNSIGNED
+from tests.io.c3d_builder import standing_points
+from tests.io.c3d_bytes import c3d_bytes
+
+POINTS = standing_points(12, 5)
+ANALOGS = np.round(np.random.default_rng(0).normal(0.0, 50.0, (12, 3, 2)))
+UNSIGNED = ((2, "FORMAT", -1, (8,), b"UNSIGNED"),)
+
+
+@pytest.mark.parametrize("stated", [True, False])
+@pytest.mark.parametrize("scale", [None, 0.1])
+@pytest.mark.parametrize("stored", ["unsigned", "signed"])
+def test_an_offset_beyond_the_signed_range(tmp_path, scale, stated, stored):
+    """Floats may have been converted with a sign (samples near −32768) or without one (near 32768)."""
+    path = tmp_path / "x.c3d"
+    offset = 32768 if stored == "unsigned" else -32768
+    path.write_bytes(c3d_bytes(POINTS, ANALOGS, scale=scale, offset=offset, extra=UNSIGNED if stated else ()))
+    found = decode(path, check_layout(path))
+    np.testing.assert_allclose(found.analogs, ANALOGS.reshape(-1, 2).T, atol=1e-2)
+    integers = scale is not None
+    assert (TAKEN_AS_UNSIGNED in found.notes) is (not stated and (integers or stored == "unsigned"))
+
+
+def test_offsets_inside_the_signed_range_keep_their_sign(tmp_path):
+    path = tmp_path / "x.c3d"
+    path.write_bytes(c3d_bytes(POINTS, ANALOGS, offset=-7))
+    np.testing.assert_allclose(
+        decode(path, check_layout(path)).analogs, ANALOGS.reshape(-1, 2).T, atol=1e-4
+    )
+
+
+@pytest.mark.parametrize("name", ["signed_real", "unsigned16_real", "unsigned16_integer"])
+def test_three_encodings_of_one_standing_load(real_data, name):
+    plates = read_capture(real_data / "strangers3" / f"{name}.c3d").plates
+    for plate in plates:
+        np.testing.assert_allclose(plate.force_n[:, 2], 300.0, atol=0.1)
+
+
+def test_a_standing_person_on_plates_of_unsigned_floats(real_data):
+    plates = read_capture(real_data / "functional_walk" / "FunctionalStatic.c3d", tare=False).plates
+    np.testing.assert_allclose([p.force_n[:, 2].mean() for p in plates], [287.0, 309.0, -11.0], atol=1.5)
