@@ -145,7 +145,8 @@ def run(args: argparse.Namespace) -> int:
 
     hide = tuple(parse_hide(text) for text in args.hide)
     subject = read_subject(args.subject)
-    capture = read_capture(args.trial, forces=args.forces, **axes_options(args))
+    without = tuple(args.without_plate)
+    capture = read_capture(args.trial, forces=args.forces, unneeded_plates=without, **axes_options(args))
     truth = truth_beside(args.trial)
     folder, imus = check_folder(args.out, RESULT_FILES), _imus(args)
     settings = ReconstructSettings(
@@ -155,7 +156,7 @@ def run(args: argparse.Namespace) -> int:
         correct_markers=not args.keep_markers,
         other_contacts=not args.feet_only,
         hide=hide,
-        without_plates=tuple(args.without_plate),
+        without_plates=without,
         pelvis=args.pelvis,
         angles=args.angles,
         angles_zero=args.angles_zero,

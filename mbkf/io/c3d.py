@@ -26,6 +26,7 @@ from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.marker_capture import StatedUnit
 from mbkf.io.plate_corners import plate_normal
 from mbkf.io.plausible import MASSES_KG
+from mbkf.io.readable_plates import readable_plates
 from mbkf.io.records import AxesSource, Capture
 
 
@@ -35,11 +36,12 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     Positions, forces and moments come out in SI units and world axes (z up), forces as those of the plate on
     the body. Derived points and analog channels stay in the file's own units and axes. Times are the file's own
     (frame 1 at 0 s). Without an axis in the options the normal of the force plates points up, else POINT:Y_SCREEN,
-    else z; without a unit POINT:UNITS holds, mm where that is empty.
+    else z; without a unit POINT:UNITS holds, mm where that is empty. A plate that cannot be read is left out, with a
+    remark.
 
     Raises:
-        FileFormatError: The file is missing, no C3D file, cut short, or a plate is not usable.
-        InvalidInput: A force is not a number, or the length unit cannot be right.
+        FileFormatError: The file is missing, no C3D file, or cut short.
+        InvalidInput: The length unit cannot be right.
         UnknownName: Unknown axis or unit.
     """
     path = Path(path)
@@ -51,7 +53,7 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     notes = list(content.notes)
     stated = StatedUnit("POINT:UNITS", parameters.text("POINT", "UNITS"), "mm")
     unit = stated.of(path, options, notes)
-    raw = raw_plates(path, content, unit, notes) if options.plates else []
+    raw = raw_plates(path, content, unit, options) if options.plates else []
     if options.up is None:
         up, source = _up_axis(parameters, raw, notes)
     else:
@@ -59,11 +61,17 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     markers, derived = read_points(content, up, unit, rate_hz, start_s, notes)
     if options.unit is None:
         notes += check_body_size(markers.positions_m, unit, str(path))
-    plates = tuple(plate_readings(plate, path, unit, up, start_s, options, notes) for plate in raw)
+    plates = readable_plates(
+        ((str(plate.number), plate) for plate in raw),
+        lambda plate: plate_readings(plate, path, unit, up, start_s, options, notes),
+        options,
+        str(path),
+        needs_one=False,
+    )
     return Capture(
         path=str(path),
         markers=markers,
-        plates=plates,
+        plates=tuple(plates),
         derived=derived,
         analog=analog_channels(content),
         events=events(content),

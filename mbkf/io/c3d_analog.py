@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
@@ -14,10 +15,10 @@ from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import CALIBRATION_OF_TYPE, RawPlate, check_geometry, wrench_at_surface
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.plate_table import plate_with_corners
+from mbkf.io.readable_plates import NO_CHANNELS, readable_plates
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import require_finite
 
-_NAMED = 6
 _OFF_PLATE_M = 0.1
 _OFF_PLATE_SHARE = 0.5
 
@@ -48,54 +49,56 @@ def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
     )
 
 
-def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> list[RawPlate]:
+def raw_plates(path: Path, content: C3dContent, unit: str, options: CaptureOptions) -> list[RawPlate]:
     """The force plates a file declares, checked but not yet converted; empty where the file has none.
 
     Args:
         path: The file, for messages.
         content: The decoded file.
         unit: The file's length unit.
-        notes: Receives the plates that are skipped, because no channel belongs to them.
-
-    Raises:
-        FileFormatError: A plate is not usable: type, channels, corners or calibration.
+        options: Plates to withhold; receives those that cannot be read, or to which no channel belongs.
     """
     analog, parameters = content.analogs, content.parameters
-    used = int(parameters.number("FORCE_PLATFORM", "USED"))
-    kinds = parameters.numbers("FORCE_PLATFORM", "TYPE").ravel()
     channels = parameters.per_plate("CHANNEL", (-1,))
-    corners = parameters.per_plate("CORNERS", (3, 4))
-    origins = parameters.per_plate("ORIGIN", (3,))
-    units = parameters.texts("ANALOG", "UNITS") + [""] * len(analog)
-    plates, silent = [], []
-    for i in range(used):
+    wired = []
+    for i in range(int(parameters.number("FORCE_PLATFORM", "USED"))):
         indices = channels[i].astype(int) - 1 if i < len(channels) else np.zeros(0, dtype=int)
         indices = indices[indices >= 0]
-        if not analog.size or not indices.size:
-            silent.append(i + 1)
-            continue
-        if indices.max() >= len(analog):
-            reason = f"force plate {i + 1} names channel {indices.max() + 1}, the file has {len(analog)}"
-            raise FileFormatError(path, f"{reason}; export it again or use --forces")
-        kind = int(kinds[i]) if i < len(kinds) else 0
-        plate = RawPlate(
-            number=i + 1,
-            kind=kind,
-            corners=corners[i] if i < len(corners) else np.zeros((3, 4)),
-            origin=origins[i] if i < len(origins) else np.zeros(3),
-            readings=np.asarray(analog[indices], dtype=np.float64).T,
-            units=tuple(units[k] for k in indices),
-            rate_hz=analog_rate_hz(content),
-            calibration=_calibration(parameters, i, kind),
-        )
-        check_geometry(plate, str(path), unit)
-        plates.append(plate)
-    if len(silent) == 1:
-        notes.append(f"force plate {silent[0]} has no analog channels and is left out")
-    elif silent:
-        named = ", ".join(map(str, silent[:_NAMED])) + (" …" if len(silent) > _NAMED else "")
-        notes.append(f"{len(silent)} force plates have no analog channels and are left out: {named}")
-    return plates
+        if analog.size and indices.size:
+            wired.append((str(i + 1), (i, indices)))
+        else:
+            options.left_out[str(i + 1)] = NO_CHANNELS
+    return readable_plates(
+        wired, lambda one: _raw_plate(path, content, unit, *one), options, str(path), needs_one=False
+    )
+
+
+def _raw_plate(path: Path, content: C3dContent, unit: str, i: int, indices: NDArray[np.int_]) -> RawPlate:
+    """A plate by its place among the plates, from 0, and those of its channels.
+
+    Raises:
+        FileFormatError: The plate is not usable: type, channels, corners or calibration.
+    """
+    analog, parameters = content.analogs, content.parameters
+    if indices.max() >= len(analog):
+        reason = f"force plate {i + 1} names channel {indices.max() + 1}, the file has {len(analog)}"
+        raise FileFormatError(path, f"{reason}; export it again or use --forces")
+    kinds = parameters.numbers("FORCE_PLATFORM", "TYPE").ravel()
+    corners, origins = parameters.per_plate("CORNERS", (3, 4)), parameters.per_plate("ORIGIN", (3,))
+    units = parameters.texts("ANALOG", "UNITS") + [""] * len(analog)
+    kind = int(kinds[i]) if i < len(kinds) else 0
+    plate = RawPlate(
+        number=i + 1,
+        kind=kind,
+        corners=corners[i] if i < len(corners) else np.zeros((3, 4)),
+        origin=origins[i] if i < len(origins) else np.zeros(3),
+        readings=np.asarray(analog[indices], dtype=np.float64).T,
+        units=tuple(units[k] for k in indices),
+        rate_hz=analog_rate_hz(content),
+        calibration=_calibration(parameters, i, kind),
+    )
+    check_geometry(plate, str(path), unit)
+    return plate
 
 
 def _calibration(parameters: C3dParameters, plate: int, kind: int) -> Array | None:

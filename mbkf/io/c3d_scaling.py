@@ -1,4 +1,4 @@
-"""Scaled analog samples of a C3D file: (sample − OFFSET) · SCALE · GEN_SCALE, with samples and offsets with a sign or not.
+"""Scaled analog samples of a C3D file: (sample − OFFSET) · SCALE · GEN_SCALE, of numbers with or without a sign.
 
 OFFSET is stored as a 16-bit number with a sign. Where the samples have none (ANALOG:FORMAT UNSIGNED, or an offset that
 is the middle of such a range), an offset of −32768 stands for 32768. Floats keep whatever range they were converted

@@ -8,7 +8,7 @@ A reader of one's own joins the built-in ones by a decorator (docs/own_reader.md
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,10 +18,14 @@ from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.files_read import check_regular, files_read
 from mbkf.io.plausible import plausible
+from mbkf.io.readable_plates import left_out_notes
 from mbkf.io.readers import FileFormat, FormatRegistry, either, lazily
 from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.turning import turned
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
+
+_SAME_FRAMES = 2.5
+"""Difference of durations, in frames, that recordings of one trial show."""
 
 Read = Callable[[Path, CaptureOptions], Capture]
 Write = Callable[[Capture, Path], None]
@@ -123,6 +127,7 @@ def read_capture(
     cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
     tare: bool = True,
     axes: str | None = None,
+    unneeded_plates: Sequence[str] = (),
 ) -> Capture:
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
@@ -137,14 +142,16 @@ def read_capture(
         tare: Remove the offset that an unloaded plate shows.
         axes: Axes of the file that point forward, left and up, as ``"x,-z,y"``, instead of ``up``; a left-handed
             choice mirrors the file. They hold, whatever the body of the person looks like in them.
+        unneeded_plates: Names of plates that will be withheld; a file of ground reactions may hold only those that
+            cannot be read among them.
 
     Returns:
-        The capture in SI units and world axes.
+        The capture in SI units and world axes. A plate that cannot be read is left out, with a remark.
 
     Raises:
         FileFormatError: A file is missing, of an unknown kind, or broken.
-        InvalidInput: A force is not a number or impossible, the length unit or a rate cannot be right, ``axes`` name
-            no axes, or contradict ``up``.
+        InvalidInput: No set of ``forces`` can be read, the length unit or a rate cannot be right, ``axes`` name no
+            axes, or contradict ``up``.
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
     path = _input(Path(path))
@@ -158,12 +165,17 @@ def read_capture(
             )
         up = vertical
     options = CaptureOptions(
-        up=up, unit=unit, cop_threshold_n=cop_threshold_n, tare=tare, plates=forces is None
+        up=up,
+        unit=unit,
+        cop_threshold_n=cop_threshold_n,
+        tare=tare,
+        plates=forces is None,
+        unneeded_plates=tuple(unneeded_plates),
     )
     capture = _declared(kind.read(path, options), up)
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
-    capture = plausible(capture, None if forces is None else Path(forces))
+    capture = plausible(_with_left_out(capture, options), None if forces is None else Path(forces))
     if matrix is None:
         return capture
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)
@@ -172,6 +184,14 @@ def read_capture(
 def _input(path: Path) -> Path:
     """The file, checked if it is there; a reader states which kind of file is missing."""
     return check_regular(path) if path.exists() and not path.is_dir() else path
+
+
+def _with_left_out(capture: Capture, options: CaptureOptions) -> Capture:
+    """The capture with remarks on the plates that were left out."""
+    if not options.left_out:
+        return capture
+    notes = (*capture.notes, *left_out_notes(options.left_out))
+    return replace(capture, plates_left_out=dict(options.left_out), notes=notes)
 
 
 def _declared(capture: Capture, up: str | None) -> Capture:
@@ -194,8 +214,36 @@ def _with_forces(capture: Capture, forces: Path, kind: CaptureFormat, options: C
     )
     plates = FORCES.format_of(_input(forces)).read(forces, options)
     notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]
+    plates = _on_time_of(plates, markers, notes)
     notes += [*_coverage(plates, markers), *offset_remarks(plates)]
     return replace(capture, plates=plates, notes=tuple(notes))
+
+
+def _on_time_of(
+    plates: tuple[PlateReadings, ...], markers: MarkerTrajectories, notes: list[str]
+) -> tuple[PlateReadings, ...]:
+    """Ground reactions that last as long as the markers, on another clock, moved to the time of the markers.
+
+    One of the two counts time from the beginning of the recording, the other from that of the exported part. Times that
+    overlap are moved only if one of them begins at 0 and the other at a later frame of its own file.
+    """
+    starts = {plate.start_time_s for plate in plates}
+    if len(starts) != 1 or not markers.frames:
+        return plates
+    start_s, frame_s = starts.pop(), 1.0 / markers.rate_hz
+    lasting_s = markers.frames * frame_s
+    begins_s = markers.start_time_s
+    if any(abs(len(plate.force_n) / plate.rate_hz - lasting_s) > _SAME_FRAMES * frame_s for plate in plates):
+        return plates
+    apart = abs(start_s - begins_s) >= lasting_s
+    rebased = abs(start_s) < 0.5 * frame_s and begins_s > _SAME_FRAMES * frame_s
+    if not apart and not rebased:
+        return plates
+    notes.append(
+        f"ground reactions begin at {start_s:.4g} s, the markers at {begins_s:.4g} s, and both last {lasting_s:.4g} s; "
+        f"they are taken as simultaneous: the ground reactions are moved by {begins_s - start_s:+.4g} s"
+    )
+    return tuple(replace(plate, start_time_s=begins_s) for plate in plates)
 
 
 def _coverage(plates: tuple[PlateReadings, ...], markers: MarkerTrajectories) -> list[str]:

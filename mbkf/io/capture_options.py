@@ -17,9 +17,11 @@ class CaptureOptions:
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Remove the offset of unloaded plates.
         plates: Read the file's own force plates.
+        unneeded_plates: Names of plates that will be withheld, and need not be readable.
         trial_end_s: Time that ground reactions have to reach to last as long as the trial, None where not known.
         shared_up: Axis with which markers were read that share their axes with the ground reactions; None otherwise.
         notes: Receives the remarks of a reader of ground reactions.
+        left_out: Receives the plates that cannot be read, with the reason.
     """
 
     up: str | None = None
@@ -27,6 +29,8 @@ class CaptureOptions:
     cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N
     tare: bool = True
     plates: bool = True
+    unneeded_plates: tuple[str, ...] = ()
     trial_end_s: float | None = None
     shared_up: str | None = None
     notes: list[str] = field(default_factory=list, compare=False)
+    left_out: dict[str, str] = field(default_factory=dict, compare=False)

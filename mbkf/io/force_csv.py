@@ -26,7 +26,7 @@ from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_names import ForceSet, force_column, force_sets
 from mbkf.io.force_table import ForceTable, plates_of_table
 from mbkf.io.numbered_files import numbered_files
-from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
+from mbkf.io.plate_table import PlateTable, faced_axes, plates_with_corners
 from mbkf.io.records import PlateReadings
 from mbkf.io.text import TextFile, check_order, csv_rows, even_rate, number, numbers, read_text
 
@@ -84,7 +84,11 @@ def read_forces_csv(path: str | Path, options: CaptureOptions) -> tuple[PlateRea
             found = (replace(found[0], name=match["plate"]),)
         plates += found
     if cornered:
-        plates += plates_with_corners(cornered, options.up or faced_axis(cornered[0]), options)
+        faced = [
+            *faced_axes(cornered),
+            "z",
+        ]  # the last without usable corners, so that each plate is left out
+        plates += plates_with_corners(cornered, options.up or faced[0], options)
     return tuple(plates)
 
 
@@ -233,7 +237,7 @@ def _plate(table: ForceTable, one: ForceSet, corners_m: Array, name: str) -> Pla
             table.path, f"plate '{name}' has neither centre of pressure nor moments; export them"
         )
     moment = [index for index in one.moment if index is not None]
-    plate = PlateTable(
+    return PlateTable(
         table.path,
         name,
         corners_m,
@@ -244,5 +248,3 @@ def _plate(table: ForceTable, one: ForceSet, corners_m: Array, name: str) -> Pla
         table.start_time_s,
         in_plate_axes=True,
     )
-    check_corners(plate)
-    return plate

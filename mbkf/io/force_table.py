@@ -18,11 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import finite, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_names import ForceSet, force_sets
+from mbkf.io.readable_plates import readable_plates
 from mbkf.io.records import PlateReadings
 from mbkf.io.turning import rotated
 from mbkf.io.wrench import LARGEST, centre_of_pressure, find_tare, remove_tare, require_finite
@@ -34,6 +35,10 @@ _VERTICAL_SHARE = 0.9
 _LABORATORY_M = 50.0
 _LARGEST_TILT_M = 0.02
 """Horizontal torque over force that a torque at the centre of pressure may show, RMS."""
+_EXACT_TILT_M = 0.002
+"""Horizontal torque over force, RMS, beyond the rounding of a torque at the centre of pressure."""
+_EXACT_SHARE = 0.1
+"""Share of the horizontal torque that remains about the centre of pressure, where it is one about the origin."""
 _LARGEST_FREE_M = 0.2
 """Vertical torque over force of one foot, RMS; feet reach 0.02 to 0.05."""
 
@@ -96,26 +101,44 @@ def plates_of_table(table: ForceTable, options: CaptureOptions) -> tuple[PlateRe
     columns = [_columns(table, one, standing, notes) for one in sets]
     sign = 1.0 if table.on_body else reaction_sign([one.force for one in columns], notes)
     metres = _metres(table, columns, threshold_n, notes)
-    readings = []
-    for one in columns:
-        force, moment, point = sign * one.force, sign * one.moment, metres * one.point
-        loaded = force[:, 2] >= threshold_n
-        point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
-        where = f"{table.path}, set '{one.name}'"
-        require_finite(np.hstack([force, point]), moment, table.rate_hz, table.start_time_s, where)
-        factor, origin = _moment_reference(table, force[loaded], point[loaded], moment[loaded], one.name)
-        about = factor * moment
-        if origin is None:
-            origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
-            with np.errstate(
-                all="ignore"
-            ):  # impossible points give impossible moments, which are refused later
-                about = about + np.cross(point - origin, force)
-        elif not table.at_point:
-            place = ", ".join(f"{value:.3f}" for value in origin)
-            notes.append(f"set '{one.name}': moments refer to ({place}) m, as its centres of pressure show")
-        readings.append(_readings(table, one.name, np.hstack([force, about]), point, origin, options))
+    readings = readable_plates(
+        ((one.name, one) for one in columns),
+        lambda one: _set_readings(table, one, (sign, metres), options),
+        options,
+        table.path,
+    )
     return into_axes(readings, standing, up, notes)
+
+
+def _set_readings(
+    table: ForceTable, one: _Columns, factors: tuple[float, float], options: CaptureOptions
+) -> PlateReadings:
+    """Readings of a set, with the factors of its forces (their sign) and of its points (metres).
+
+    Raises:
+        FileFormatError: The moments do not agree with the points of application.
+        InvalidInput: A force, point or torque is not a number.
+    """
+    sign, metres = factors
+    force, moment, point = sign * one.force, sign * one.moment, metres * one.point
+    loaded = force[:, 2] >= options.cop_threshold_n
+    point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
+    where = f"{table.path}, set '{one.name}'"
+    require_finite(np.hstack([force, point]), moment, table.rate_hz, table.start_time_s, where)
+    factor, origin = _moment_reference(table, force[loaded], point[loaded], moment[loaded], one.name)
+    about = factor * moment
+    if origin is None:
+        origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
+        with np.errstate(all="ignore"):  # impossible points give impossible moments, which are refused later
+            about = about + np.cross(point - origin, force)
+    else:
+        place = ", ".join(f"{value + 0.0:.3f}" for value in np.round(origin, 3))
+        found = f"set '{one.name}': moments refer to ({place}) m, as its centres of pressure show"
+        if table.at_point:
+            found += "; they are moved to the centre of pressure, about which such a file should state them"
+            about = _with_vertical(about, np.cross(point - origin, force), loaded)
+        options.notes.append(found)
+    return _readings(table, one.name, np.hstack([force, about]), point, origin, options)
 
 
 def vertical_axis(forces: Sequence[Array]) -> str | None:
@@ -188,6 +211,20 @@ def _forces(table: ForceTable, sets: Sequence[ForceSet]) -> list[Array]:
     return [table.values[:, list(one.force)] for one in sets]
 
 
+def _with_vertical(about: Array, lever: Array, loaded: BoolArray) -> Array:
+    """Moments (S, 3) about an origin, whose vertical part a file may state as the free torque nevertheless.
+
+    Args:
+        about: Moments as they are stated, N m.
+        lever: (S, 3) moments of the forces at their points about the origin.
+        loaded: (S,) samples with a load.
+    """
+    stated, free = about[loaded, 2], about[loaded, 2] - lever[loaded, 2]
+    if (stated**2).sum() >= (free**2).sum():
+        return about
+    return about + lever * [0.0, 0.0, 1.0]
+
+
 def _columns(table: ForceTable, one: ForceSet, up: str, notes: list[str]) -> _Columns:
     """A set's vectors in world axes; missing columns are completed."""
     rotation = rotation_to_world(up)
@@ -239,19 +276,15 @@ def _moment_reference(
     unit.
     """
     factors = (1.0, 1e-3) if table.newton_metres is None else (table.newton_metres,)
-    if table.at_point or len(force) == 0 or not moment.any():
+    if len(force) == 0 or not moment.any():
         return factors[0], None
-    size = float(np.sqrt((force**2).sum(axis=1).mean()))
-
-    def lever(torque: Array) -> tuple[float, float]:
-        rms = np.sqrt((torque**2).mean(axis=0)) / size
-        return float(np.hypot(rms[0], rms[1])), float(rms[2])
-
+    if table.at_point:
+        return factors[0], _stated_origin(force, point, factors[0] * moment)
     for factor in factors:
         origin = _origin(force, point, factor * moment)
-        ways: list[tuple[tuple[float, float], Array | None]] = [(lever(factor * moment), None)]
+        ways: list[tuple[tuple[float, float], Array | None]] = [(_levers(force, factor * moment), None)]
         if np.abs(origin).max() <= _LABORATORY_M:
-            ways.append((lever(factor * moment - np.cross(point - origin, force)), origin))
+            ways.append((_levers(force, factor * moment - np.cross(point - origin, force)), origin))
         possible = [way for way in ways if way[0][0] <= _LARGEST_TILT_M and way[0][1] <= _LARGEST_FREE_M]
         if possible:
             return factor, min(possible, key=lambda way: way[0][0])[1]
@@ -259,6 +292,23 @@ def _moment_reference(
         table.path,
         f"set '{name}': moments do not agree with the points of application; export it again",
     )
+
+
+def _stated_origin(force: Array, point: Array, moment: Array) -> Array | None:
+    """The laboratory's origin where torques refer to it, which should act at the point of application p; else None.
+
+    At the centre of pressure a torque has no horizontal part; about the origin it has that of p × F. Arrays as in
+    :func:`_moment_reference`, in m, N and N m.
+    """
+    tilt, _ = _levers(force, moment)
+    left, _ = _levers(force, moment - np.cross(point, force))
+    return np.zeros(3) if tilt > _EXACT_TILT_M and left < _EXACT_SHARE * tilt else None
+
+
+def _levers(force: Array, torque: Array) -> tuple[float, float]:
+    """RMS of horizontal and of vertical torque (S, 3), over that of the force (S, 3), m."""
+    rms = np.sqrt((torque**2).mean(axis=0) / (force**2).sum(axis=1).mean())
+    return float(np.hypot(rms[0], rms[1])), float(rms[2])
 
 
 def _origin(force: Array, point: Array, moment: Array) -> Array:

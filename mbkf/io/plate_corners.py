@@ -39,8 +39,14 @@ def upward_normal(corners: Array) -> Array:
 
 
 def has_area(corners_m: Array, farthest_m: float = np.inf) -> bool:
-    """True where corners (4, 3) enclose a surface and lie within a distance of the origin along each axis."""
+    """True where corners (4, 3) enclose a convex surface, within a distance of the origin along each axis.
+
+    Corners that coincide, or whose order crosses the surface (0, 2, 1, 3), enclose none.
+    """
     if not (np.abs(corners_m) <= min(farthest_m, np.finfo(float).max)).all():
         return False
-    sides = np.diff(corners_m[:3], axis=0)
-    return bool(np.linalg.norm(np.cross(*sides)) > LEAST_SIDE_M**2)
+    sides = np.roll(corners_m, -1, axis=0) - corners_m
+    turns = np.cross(sides, np.roll(sides, -1, axis=0))  # twice the area of the triangle at each corner
+    whole = np.cross(corners_m[2] - corners_m[0], corners_m[3] - corners_m[1])
+    size = float(np.linalg.norm(whole))
+    return size > LEAST_SIDE_M**2 and bool((turns @ whole > size * LEAST_SIDE_M**2).all())

@@ -19,6 +19,7 @@ from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_table import into_axes, reaction_sign
 from mbkf.io.plate_corners import has_area, plate_axes, plate_normal, upward_normal
 from mbkf.io.plausible import FARTHEST_M
+from mbkf.io.readable_plates import readable_plates
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import Tare, centre_of_pressure, find_tare, remove_tare, require_finite
 
@@ -71,27 +72,33 @@ class _Reading:
 
 
 def plates_with_corners(
-    tables: Sequence[PlateTable], up: str, options: CaptureOptions
+    tables: Sequence[PlateTable], up: str, options: CaptureOptions, *, needs_one: bool = True
 ) -> tuple[PlateReadings, ...]:
     """Readings of plates in SI units and world axes, about the centres of their surfaces.
 
     Args:
         tables: The plates of one trial.
         up: Axis of the laboratory that points up.
-        options: Removal of offsets, threshold of the centres of pressure, and the list that receives remarks.
+        options: Removal of offsets, threshold of the centres of pressure, and the lists that receive remarks and plates
+            that cannot be read.
+        needs_one: True where no readable plate is an error.
 
     Raises:
-        FileFormatError: A plate has no usable corners.
-        InvalidInput: A force or moment is not a number.
+        FileFormatError: No plate can be read: the first has no usable corners, or its axes are not clear.
+        InvalidInput: As before, for a force or moment that is not a number.
     """
     if not tables:
         return ()
-    read = [_best(table, options) for table in tables]
-    standing, up = faced_axis(tables[0]), up_axis(up)
+    where = f"{tables[0].path}"
+    named = ((one.name, one) for one in tables)
+    read = readable_plates(named, lambda one: (one, _best(one, options)), options, where, needs_one=needs_one)
+    if not read:
+        return ()
+    standing, up = faced_axis(read[0][0]), up_axis(up)
     rotation = rotation_to_world(standing)
-    sign = reaction_sign([one.force_n @ rotation.T for one in read], options.notes)
+    sign = reaction_sign([one.force_n @ rotation.T for _, one in read], options.notes)
     readings = []
-    for table, one in zip(tables, read, strict=True):
+    for table, one in read:
         wrench = sign * np.hstack([one.force_n @ rotation.T, one.moment_nm @ rotation.T])
         corners_m = table.corners_m @ rotation.T
         plate = table.name, table.rate_hz, table.start_time_s
@@ -135,6 +142,12 @@ def plate_with_corners(
 def faced_axis(table: PlateTable) -> str:
     """The axis of the laboratory that a plate's surface faces, "z" or "-y" for instance."""
     return nearest_axis(plate_normal(table.corners_m))
+
+
+def faced_axes(tables: Sequence[PlateTable]) -> list[str]:
+    """The axes of the laboratory that plates with usable corners face, without repetition, in the plates' order."""
+    usable = [table for table in tables if has_area(table.corners_m, FARTHEST_M)]
+    return list(dict.fromkeys(faced_axis(table) for table in usable))
 
 
 def check_corners(table: PlateTable) -> None:

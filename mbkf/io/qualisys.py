@@ -26,7 +26,7 @@ from mbkf.io.force_names import force_sets
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.marker_capture import marker_capture
 from mbkf.io.numbered_files import numbered_files, plate_files
-from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
+from mbkf.io.plate_table import PlateTable, faced_axes, plates_with_corners
 from mbkf.io.records import AxesSource, Capture, CaptureEvent, PlateReadings
 from mbkf.io.text import TextFile, check_order, compare_count, compare_rate, number, numbers, read_text
 from mbkf.io.wrench import offset_remarks
@@ -112,7 +112,7 @@ def read_qualisys(path: str | Path, options: CaptureOptions) -> Capture:
         notes.append(f"ground reactions from {', '.join(one.name for one in beside)}")
     unit = length_unit(options.unit or "mm")
     capture = marker_capture(path, names, values, rate_hz, start_s, axis, unit, options, notes, source)
-    readings = plates_with_corners(tables, axis, options)
+    readings = plates_with_corners(tables, axis, options, needs_one=False)
     notes = [*capture.notes, *options.notes, *offset_remarks(readings)]
     return replace(capture, plates=readings, events=_events(table), notes=tuple(notes))
 
@@ -237,7 +237,7 @@ def _plate(path: Path, notes: list[str]) -> PlateTable:
     if times and np.isfinite(table.values[:, times[0]]).all():
         check_order(path, table.values[:, times[0]], "the time")
     match = PLATE_FILE.fullmatch(path.stem)
-    plate = PlateTable(
+    return PlateTable(
         str(path),
         match["plate"] if match else (table.header.get("FORCE_PLATE_NAME") or ["1"])[0],
         _corners(table),
@@ -248,8 +248,6 @@ def _plate(path: Path, notes: list[str]) -> PlateTable:
         float(table.values[0, times[0]]) if times else 0.0,
         _in_plate_axes(" ".join(table.header.get("DESCRIPTION", []))),
     )
-    check_corners(plate)
-    return plate
 
 
 def _in_plate_axes(description: str) -> bool | None:
@@ -272,8 +270,8 @@ def _up(given: str | None, plates: list[PlateTable], notes: list[str]) -> str:
     """The axis that points up: the one given, else the one all plates face, else z."""
     if given is not None:
         return up_axis(given)
-    found = {faced_axis(plate) for plate in plates}
+    found = faced_axes(plates)
     if len(found) == 1:
-        return found.pop()
+        return found[0]
     notes.append("no plate shows which axis points up; taken as z (--up changes it)")
     return "z"

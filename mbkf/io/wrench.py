@@ -89,7 +89,7 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
         first = start_time_s + np.argmax(bad) / rate_hz
         raise InvalidInput(
             f"{where}: {bad.sum()} of {len(bad)} samples of force or moment {fault}, the first at "
-            f"{first:.3f} s; cut these samples or leave the plate out"
+            f"{first:.3f} s; repair these samples, or cut the trial before or after them"
         )
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import rotation_to_world
 from mbkf.io.c3d import read_c3d
 from mbkf.io.capture_options import CaptureOptions
@@ -42,6 +41,8 @@ def test_force_on_the_body_at_its_place_with_its_times(tmp_path):
     assert {channel.rate_hz for channel in capture.analog} == {1000.0}
 
 
+BROKEN = channels()
+BROKEN[420, 2] = np.nan
 OFFSET = (2.0, -3.0, -32.0, 4.0, -2.0, 1.0)
 
 
@@ -93,34 +94,35 @@ def test_several_plates_of_different_kinds(tmp_path):
     ("plate", "reason"),
     [
         (Plate(2, channels(), corners=np.zeros((3, 4))), "CORNERS"),
+        (Plate(2, channels(), corners=CORNERS_MM[:, [0, 0, 2, 3]]), "CORNERS"),
+        (Plate(2, channels(), corners=CORNERS_MM[:, [0, 2, 1, 3]]), "CORNERS"),
+        (Plate(3, channels()), "type 3 needs 8 channels, it has 6"),
+        (Plate(3, np.zeros((1000, 8)), units=("N",) * 8), "places of its sensors"),
+        (Plate(2, BROKEN), "1 of 1000 samples of force or moment are not numbers, the first at 0.420 s"),
         (Plate(4, channels(), units=("V",) * 6), "CAL_MATRIX"),
         (Plate(7, channels()), "type 7"),
     ],
 )
-def test_unusable_plates_are_an_error_unless_not_wanted(tmp_path, plate, reason):
-    path = made(tmp_path / "a.c3d", plate)
-    with pytest.raises(FileFormatError, match=reason):
-        read_c3d(path, CaptureOptions())
-    assert read_c3d(path, CaptureOptions(plates=False)).plates == ()
+def test_unusable_plates_are_left_out_with_the_reason_and_the_others_are_used(tmp_path, plate, reason):
+    path = made(tmp_path / "a.c3d", plate, Plate(2, channels()))
+    options = CaptureOptions()
+    (read,) = read_c3d(path, options).plates
+    assert read.name == "2" and list(options.left_out) == ["1"] and reason in options.left_out["1"]
+    np.testing.assert_allclose(read.force_n[500], FORCE_N, rtol=1e-6)
+    none = CaptureOptions(plates=False)
+    assert read_c3d(path, none).plates == () and none.left_out == {}
 
 
-def test_forces_that_are_no_numbers_are_refused(tmp_path):
-    broken = channels()
-    broken[420, 2] = np.nan
-    with pytest.raises(InvalidInput, match=r"force plate 1: 1 of 1000 samples .* 0\.420 s"):
-        read_c3d(made(tmp_path / "a.c3d", Plate(2, broken)), CaptureOptions())
-
-
-def test_plates_without_channels_are_left_out_and_absent_channels_an_error(tmp_path):
+def test_plates_without_channels_or_with_absent_ones_are_left_out(tmp_path):
     path = made(
         tmp_path / "a.c3d", Plate(2, channels()), extra={("FORCE_PLATFORM", "CHANNEL"): np.zeros((6, 1))}
     )
     capture = read_c3d(path, CaptureOptions())
     assert capture.plates == ()
-    assert any("left out" in note for note in capture.notes)
     far = {("FORCE_PLATFORM", "CHANNEL"): np.arange(3.0, 9.0)[:, None]}
-    with pytest.raises(FileFormatError, match="names channel 8, the file has 6"):
-        read_c3d(made(tmp_path / "b.c3d", Plate(2, channels()), extra=far), CaptureOptions())
+    beyond = CaptureOptions()
+    assert read_c3d(made(tmp_path / "b.c3d", Plate(2, channels()), extra=far), beyond).plates == ()
+    assert "names channel 8, the file has 6" in beyond.left_out["1"]
 
 
 def test_doubtful_plates_are_remarked(tmp_path):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from mbkf.io.capture import read_capture
 from mbkf.io.c3d_decode import decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_scaling import TAKEN_AS_UNSIGNED
+from mbkf.io.capture import read_capture
 from tests.io.c3d_builder import standing_points
 from tests.io.c3d_bytes import c3d_bytes
 
@@ -32,9 +32,7 @@ def test_an_offset_beyond_the_signed_range(tmp_path, scale, stated, stored):
 def test_offsets_inside_the_signed_range_keep_their_sign(tmp_path):
     path = tmp_path / "x.c3d"
     path.write_bytes(c3d_bytes(POINTS, ANALOGS, offset=-7))
-    np.testing.assert_allclose(
-        decode(path, check_layout(path)).analogs, ANALOGS.reshape(-1, 2).T, atol=1e-4
-    )
+    np.testing.assert_allclose(decode(path, check_layout(path)).analogs, ANALOGS.reshape(-1, 2).T, atol=1e-4)
 
 
 @pytest.mark.parametrize("name", ["signed_real", "unsigned16_real", "unsigned16_integer"])

@@ -16,8 +16,7 @@ from tests.io.true_capture import made_truth
 from tests.mot_files import write_forces_mot
 
 
-def forces_file(path, start_s=0.0):
-    samples = 500
+def forces_file(path, start_s=0.0, samples=500):
     force = np.zeros((samples, 3))
     force[100:400] = [10.0, 20.0, 600.0]
     point = np.where(force[:, 2:] > 0, [0.3, -0.4, 0.0], np.nan)
@@ -78,17 +77,32 @@ def test_forces_keep_to_the_axes_of_markers_that_share_them(tmp_path):
 
 def test_forces_replace_unusable_plates_of_a_c3d_file(tmp_path):
     path = build_c3d(tmp_path / "a.c3d", standing_points(50), plates=(Plate(4, np.zeros((500, 6))),))
-    with pytest.raises(FileFormatError, match="CAL_MATRIX"):
-        read_capture(path)
+    found = read_capture(path)
+    assert found.plates == () and "left out: it is of type 4 without CAL_MATRIX" in found.notes[-1]
     capture = read_capture(path, forces=forces_file(tmp_path / "a.mot"))
     assert [plate.name for plate in capture.plates] == ["r"]
     np.testing.assert_allclose(capture.plates[0].force_n[200], [10.0, 20.0, 600.0])
 
 
 def test_forces_keep_their_times_and_a_mismatch_is_remarked(tmp_path):
-    capture = read_capture(trc_file(tmp_path / "a.trc"), forces=forces_file(tmp_path / "a.mot", start_s=7.0))
+    forces = forces_file(tmp_path / "a.mot", start_s=7.0, samples=600)  # longer than the markers
+    capture = read_capture(trc_file(tmp_path / "a.trc"), forces=forces)
     assert capture.plates[0].start_time_s == 7.0
     assert any("outside the time of the markers" in note for note in capture.notes)
+
+
+@pytest.mark.parametrize(
+    ("first_frame", "start_s", "begins_s"),
+    [(0, 12.4, 0.0), (619, 0.0, 6.19), (20, 0.0, 0.2), (619, 6.19, 6.19)],
+)
+def test_forces_on_another_clock_that_last_as_long_as_the_markers_are_aligned(
+    tmp_path, first_frame, start_s, begins_s
+):
+    path = build_c3d(tmp_path / "a.c3d", standing_points(50), first_frame=first_frame)
+    capture = read_capture(path, forces=forces_file(tmp_path / "a.mot", start_s=start_s))
+    assert capture.plates[0].start_time_s == pytest.approx(begins_s)
+    assert any("taken as simultaneous" in note for note in capture.notes) == (start_s != begins_s)
+    assert not any("outside the time" in note for note in capture.notes)
 
 
 @pytest.mark.parametrize(("start_s", "told"), [(0.0, False), (0.01, False), (0.2, True), (-0.2, True)])

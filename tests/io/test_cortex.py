@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.any_capture.dialects import write_cortex
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import FileFormatError
 from mbkf.io.capture import read_capture
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.cortex import read_forces_cortex
@@ -67,12 +67,12 @@ def test_damaged_files_give_one_clear_error(tmp_path, change, reason):
         read_forces_cortex(path, CaptureOptions(tare=False))
 
 
-def test_a_force_that_is_no_number_is_refused(tmp_path):
-    path = tmp_path / "a.forces"
+def test_a_set_with_a_force_that_is_no_number_is_left_out(tmp_path):
+    path, options = tmp_path / "a.forces", CaptureOptions(tare=False)
     written(path)
     path.write_text(path.read_text().replace("\n9\t0", "\n9\tnan"))
-    with pytest.raises(InvalidInput, match="set '1': 1 of 300 samples"):
-        read_forces_cortex(path, CaptureOptions(tare=False))
+    (read,) = read_forces_cortex(path, options)
+    assert read.name == "2" and "set '1': 1 of 300 samples" in options.left_out["1"]
 
 
 def test_reference_forces(real_data):

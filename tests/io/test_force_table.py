@@ -73,12 +73,42 @@ def test_the_unit_of_points(length, stated):
     assert any("taken as mm" in note for note in notes) == (stated is None and length > 1.0)
 
 
-def test_moments_that_no_point_explains_are_refused():
-    one = table(at_point=False)
+def test_a_set_with_moments_that_no_point_explains_is_left_out_or_refused():
+    one, options = table(at_point=False), CaptureOptions(up="z", tare=False)
     values = np.array(one.values)
     values[:, 6] += 0.3 * values[:, 2] * np.sin(np.arange(len(values)))
+    (other,) = plates_of_table(replace(one, values=values), options)
+    assert other.name == "2" and "moments do not agree" in options.left_out["1"]
+    alone = without(replace(one, values=values), *(name for name in one.names if name.endswith("2")))
     with pytest.raises(FileFormatError, match="set '1': moments do not agree"):
-        read(replace(one, values=values))
+        read(alone)
+    assert plates_of_table(alone, CaptureOptions(up="z", unneeded_plates=("1",))) == ()
+
+
+@pytest.mark.parametrize("vertical", ["of all", "free"])
+@pytest.mark.parametrize("up", ["y", "z"])
+def test_torques_about_the_origin_that_should_act_at_the_point_are_moved_there(up, vertical):
+    one, notes = table(up, about=np.zeros(3)), []
+    if vertical == "free":
+        values = np.array(one.values)
+        column = "z" if up == "z" else "y"
+        for k, plate in enumerate(TRUE.plates, start=1):
+            values[:, one.names.index(f"M{column}{k}")] = plate.torque_nm
+        one = replace(one, values=values)
+    check_plates(TRUE, read(one, up, notes))
+    assert len([note for note in notes if "moments refer to (0.000, 0.000, 0.000) m" in note]) == 2
+
+
+def test_torques_at_a_point_beside_the_centre_of_pressure_stay_there():
+    """A force and a torque at any point are one wrench; only torques about the origin contradict their point."""
+    moved = table()
+    values, arm, notes = np.array(moved.values), np.array([0.02, -0.03, 0.0]), []
+    for k, plate in enumerate(TRUE.plates):
+        loaded = plate.force_n[:, 2:] > 0.0
+        values[:, 9 * k + 3 : 9 * k + 6] += loaded * arm
+        values[:, 9 * k + 6 : 9 * k + 9] -= np.cross(arm, plate.force_n)
+    read(replace(moved, values=values), notes=notes)
+    assert not [note for note in notes if "refer to" in note]
 
 
 def test_a_lone_moment_is_the_free_one_whatever_its_axis():

@@ -27,10 +27,16 @@ def test_the_normal_is_against_the_plates_own_z_and_upward_whatever_the_order():
 
 @pytest.mark.parametrize(
     "corners",
-    [np.zeros((4, 3)), np.full((4, 3), np.nan), np.full((4, 3), np.inf), CORNERS_M * [1.0, 0.0, 0.0]],
-)
+    [np.zeros((4, 3)), np.full((4, 3), np.nan), np.full((4, 3), np.inf), CORNERS_M * [1.0, 0.0, 0.0],
+     CORNERS_M[[0, 0, 2, 3]], CORNERS_M[[0, 1, 2, 2]], CORNERS_M[[0, 2, 1, 3]], CORNERS_M[[0, 1, 3, 2]]],
+)  # fmt: skip
 def test_corners_of_no_plate(corners):
     assert not has_area(corners)
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2, 3], [3, 2, 1, 0], [2, 3, 0, 1]])
+def test_corners_around_a_plate_in_either_sense(order):
+    assert has_area(CORNERS_M[order] + np.random.default_rng(1).normal(0.0, 0.01, (4, 3)))
 
 
 def test_corners_farther_than_a_laboratory_reaches():

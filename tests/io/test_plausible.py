@@ -1,6 +1,8 @@
-"""Impossible places are missing and told, impossible forces and rates are refused; what is measured stays as it is."""
+"""Far markers are missing, plates of impossible forces left out, impossible rates refused; the rest stays."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,11 +36,16 @@ def test_far_samples_are_missing_and_told():
 
 
 @pytest.mark.parametrize("what", ["force_n", "moment_nm"])
-def test_impossible_loads_are_refused(what):
+def test_a_plate_with_impossible_loads_is_left_out(what):
     values = np.zeros((50, 3))
     values[7, 1] = -1.3e6
-    with pytest.raises(InvalidInput, match=r"force plate 1 reads a (force|moment) of 1.3e\+06"):
-        plausible(Capture("x", MARKERS, (replace(PLATE, **{what: values}),)))
+    wrong, right = replace(PLATE, **{what: values}), replace(PLATE, name="2")
+    found = plausible(Capture("x", MARKERS, (wrong, right), plates_left_out={"3": "silent"}))
+    assert found.plates == (right,) and list(found.plates_left_out) == ["3", "1"]
+    assert len(found.notes) == 1
+    assert re.match(r"force plate 1 is left out: it reads a (force|moment) of 1.3e\+06", found.notes[0])
+    with pytest.raises(InvalidInput, match=r"grf\.mot: force plate 1 reads"):
+        plausible(Capture("x", MARKERS, (wrong,)), Path("grf.mot"))
 
 
 @pytest.mark.parametrize("rate_hz", [1e-3, 1e7])
@@ -56,5 +63,5 @@ def test_a_file_is_read_that_way(tmp_path):
     channels = np.zeros((20, 6))
     channels[5, 2] = -2e6
     path = build_c3d(tmp_path / "y.c3d", standing_points(20), plates=(Plate(2, channels),))
-    with pytest.raises(InvalidInput, match="--forces"):
-        read_capture(path)
+    found = read_capture(path)
+    assert found.plates == () and "--forces" in found.notes[-1]

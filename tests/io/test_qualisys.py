@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.any_capture.dialects import write_qualisys
-from mbkf.errors import FileFormatError, InvalidInput, UnknownName
+from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.capture import read_capture
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.numbered_files import plate_files
@@ -141,11 +141,6 @@ def test_damaged_trajectories_give_one_clear_error(tmp_path, change, reason):
     [
         (lambda text: text.replace("NO_OF_SAMPLES", "NO_OF"), FileFormatError, "not a TSV file of Qualisys"),
         (
-            lambda text: text.replace("CORNER_POSX", "CORNER"),
-            FileFormatError,
-            "plate '1' has no usable corners",
-        ),
-        (
             lambda text: text.replace("Moment_", "Other_"),
             FileFormatError,
             "columns of the moment are missing",
@@ -153,7 +148,6 @@ def test_damaged_trajectories_give_one_clear_error(tmp_path, change, reason):
         (lambda text: text.replace("Force_Y", "Y"), FileFormatError, "column Force_Y of set '0' is missing"),
         (lambda text: text.replace("Force_", "Other_"), UnknownName, "unknown ground reaction columns"),
         (lambda text: text[: -len(text) // 3], FileFormatError, "cut short"),
-        (lambda text: text.replace("\n9\t0.016\t0", "\n9\t0.016\tnan"), InvalidInput, "plate '1': 1 of 300"),
     ],
 )
 def test_damaged_plates_give_one_clear_error(tmp_path, change, error, reason):
@@ -171,3 +165,19 @@ def test_trajectories_are_no_plate(tmp_path):
         plate.unlink()
     with pytest.raises(FileFormatError, match="holds no force plate"):
         read_forces_qualisys(path, CaptureOptions())
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda text: text.replace("CORNER_POSX", "CORNER"), "it has no usable corners"),
+        (lambda text: text.replace("\n9\t0.016\t0", "\n9\t0.016\tnan"), "1 of 300 samples"),
+    ],
+)
+def test_a_plate_that_cannot_be_read_is_left_out_and_the_others_are_used(tmp_path, change, reason):
+    true = written(tmp_path / "walk.tsv")
+    changed(tmp_path / "walk_f_1.tsv", change)
+    found = read_capture(tmp_path / "walk.tsv")
+    names = [plate.name for plate in found.plates]
+    assert "1" not in names and len(names) == len(true.plates) - 1
+    assert any("force plate 1 is left out: " in note and reason in note for note in found.notes)

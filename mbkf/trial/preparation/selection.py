@@ -50,13 +50,13 @@ def hidden_samples(markers: MarkerTrajectories, hide: Sequence[Hidden]) -> BoolA
 
 
 def plates_without(capture: Capture, without: Sequence[str]) -> tuple[PlateReadings, ...]:
-    """Plates of the capture, except those named.
+    """Plates of the capture, except those named; those that the reader left out may be named, too.
 
     Raises:
         UnknownName: The capture has no plate of that name.
     """
     names = [plate.name for plate in capture.plates]
     for name in without:
-        if name not in names:
+        if name not in names and name not in capture.plates_left_out:
             raise UnknownName("plate", name, names or ["(the capture has none)"], "--without-plate")
     return tuple(plate for plate in capture.plates if plate.name not in without)

@@ -83,6 +83,9 @@ CASES = {
     "POINT:RATE negative": c3d_bytes(POINTS, rate_hz=-100.0),
     "POINT:RATE of 1e9 Hz": c3d_bytes(POINTS, rate_hz=1e9),
     "UNITS of nobody": with_bytes(AT[b"UNITS"] + 10, b"??"),
+}
+
+UNREADABLE = {
     "force of 1e7 N": c3d_bytes(POINTS, ANALOGS * 1e5, extra=plate()),
     "force not a number": c3d_bytes(POINTS, ANALOGS * np.nan, extra=plate()),
     "plate of type 99": made(plate={"TYPE": (2, (1,), integers([99], INTEL))}),
@@ -102,16 +105,28 @@ def test_damage_is_refused(tmp_path, case):
     refusal(read_capture, tmp_path / "a.c3d", CASES[case])
 
 
+@pytest.mark.parametrize("case", UNREADABLE)
+def test_a_plate_that_cannot_be_read_is_left_out_and_named(tmp_path, case):
+    (tmp_path / "a.c3d").write_bytes(UNREADABLE[case])
+    found = read_capture(tmp_path / "a.c3d")
+    np.testing.assert_allclose(found.markers.positions_m, POINTS * 1e-3, atol=1e-6)
+    assert found.plates == () and list(found.plates_left_out) == ["1"]
+    assert [note for note in found.notes if note.startswith("force plate 1 is left out: ")]
+
+
 @pytest.mark.parametrize(
     ("content", "note"),
     [
         (c3d_bytes(POINTS * 1e6), "more than 1000 m away"),
         (made(plate={"ORIGIN": (4, (3, 1), floats([0.0, 0.0, 40.0], INTEL))}), "opposite sign"),
         (made(plate={"ORIGIN": (4, (3, 1), floats([0.0, 0.0, -40000.0], INTEL))}), "40 m below"),
-        (made(plate={"CHANNEL": (2, (6, 1), integers([-1] * 6, INTEL))}), "force plate 1 has no analog"),
+        (
+            made(plate={"CHANNEL": (2, (6, 1), integers([-1] * 6, INTEL))}),
+            "force plate 1 is left out: no analog",
+        ),
         (
             made(plate={"USED": (2, (), integers([30000], INTEL))}),
-            "29999 force plates have no analog channels",
+            "29999 force plates are left out (2, 3, 4, 5, 6, 7 …): no analog channels",
         ),
     ],
     ids=["far points", "sign of ORIGIN", "depth of ORIGIN", "channel -1", "30000 plates"],

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
-from mbkf.io.records import MarkerTrajectories, PlateReadings
+from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.trial.preparation.selection import hidden_samples, plates_without, subject_markers
 from mbkf.trial.preparation.settings import Hidden
 from tests.motions import capture_of, random_model, subject_of
@@ -65,3 +65,10 @@ def test_a_withheld_plate_is_left_out_by_its_name():
     assert plates_without(capture, ()) == plates
     with pytest.raises(UnknownName, match="unknown plate '3'"):
         plates_without(capture, ("3",))
+
+
+def test_a_plate_that_the_reader_left_out_may_be_withheld():
+    capture = Capture("a.c3d", trajectories(["A"]), plates_left_out={"2": "it is of type 9"})
+    assert plates_without(capture, ["2"]) == ()
+    with pytest.raises(UnknownName, match="unknown plate '3'"):
+        plates_without(capture, ["3"])
