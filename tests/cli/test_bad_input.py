@@ -138,28 +138,39 @@ def test_unit_given_wrongly(person, refuse_scale, refuse_reconstruct):
     refuse_reconstruct([person.trial, "--up", "w"], "unknown", "'w'", "z")
 
 
-def test_plate_without_calibration(tmp_path, everywhere):
+def told(capsys, *words):
+    """Output of a call that succeeds, in one line."""
+    assert main([str(word) for word in words]) == 0
+    return " ".join(capsys.readouterr().out.split())
+
+
+def test_a_plate_that_cannot_be_read_is_left_out_and_named(tmp_path, capsys):
     markers = made_markers(20)
     for plate, words in (
         (Plate(4, np.ones((20, 6))), "without CAL_MATRIX"),
-        (Plate(2, np.ones((20, 6)), corners=np.zeros((3, 4))), "CORNERS"),
+        (Plate(2, np.ones((20, 6)), corners=np.zeros((3, 4))), "no usable CORNERS"),
     ):
         path = build_c3d(tmp_path / "p.c3d", MM * markers.positions_m, list(markers.names), (plate,))
-        everywhere(path, path, "force plate 1", words, "calibrate it", "--forces")
+        shown = told(capsys, "info", path)
+        assert "force plate 1 is left out" in shown and words in shown and "--forces" in shown
 
 
-def test_nan_forces(person, tmp_path, everywhere, refused, refuse_reconstruct):
+def test_nan_forces(person, tmp_path, capsys, refused, refuse_reconstruct):
     first, second = made_plates()
     broken = np.array(second.force_n)
     broken[300:310] = np.nan
     path = tmp_path / "nan.c3d"
     write_c3d(made_capture(plates=(first, replace(second, force_n=broken))), path)
-    everywhere(path, path, "plate 2", "not numbers", "0.300 s", "leave the plate out")
+    assert "force plate 2 is left out: 10 of" in told(capsys, "info", path)
     table = read_storage(person.forces)
     columns = np.array(table.columns)
     columns[300, 1] = np.nan
     write_storage(replace(table, columns=columns), tmp_path / "nan.mot")
     words = [person.trial_trc, "--forces", tmp_path / "nan.mot"]
+    shown = told(capsys, "info", *words)
+    assert "force plate 1 is left out: 1 of" in shown and "0.300 s" in shown
+    columns[300, :] = np.nan
+    write_storage(replace(table, columns=columns), tmp_path / "nan.mot")
     refuse_reconstruct(words, "nan.mot", "set '1'", "not numbers", "0.300 s")
     refused(["info", *words], "nan.mot", "set '1'", "not numbers")
 
