@@ -105,7 +105,7 @@ NEEDS: Mapping[str, Needs] = {
         captures=("biomechzoo_walk_turn", "gait2354_walk", "rajagopal_walk_run"), synthetic=True
     ),
     "inertial": Needs(
-        ("ahrs", "matplotlib", "vqf"),
+        ("ahrs", "vqf"),
         (*_SENSORS, "biomechzoo_walk_turn", "imu_qmt_fullbody", "rajagopal_walk_run"),
     ),
     "intervals": Needs(captures=("synthetic_exact_truth",), synthetic=True),
@@ -181,6 +181,7 @@ NEEDS: Mapping[str, Needs] = {
             "unipd_walk",
         )
     ),
+    "stride_paper": Needs(("matplotlib",), ("imu_gaitmap_foot",), synthetic=True),
     "verdict": Needs(
         captures=(
             *_PLATES,

@@ -1,6 +1,7 @@
-"""Stride lengths: the study's simulated walk over the phase of its windows, and strides measured by cameras.
+"""Strides measured by cameras, by the Kalman filter and by key points.
 
-Part of the benchmark ``inertial``. Alone: ``python -m benchmarks.inertial.stride``. Writes ``stride.html``.
+Part of the benchmark ``inertial``. Alone: ``python -m benchmarks.inertial.stride``. The paper that the key points come
+from is redone by the benchmark ``stride_paper``.
 """
 
 from __future__ import annotations
@@ -13,61 +14,15 @@ from pathlib import Path
 
 from benchmarks.checks import Check, Context, within
 from benchmarks.inertial.stride_measured import FILTER, FOLDER, SMOOTHER, Compared, compare
-from benchmarks.inertial.stride_page import write_page
-from benchmarks.inertial.stride_study import (
-    ALIGNED,
-    DELAYS_S,
-    FINAL_M,
-    KALMAN,
-    KEY_POINTS,
-    KEY_POINTS_WITH_BIAS,
-    MEAN_M,
-    PHASES,
-    STUDY_FINAL_M,
-    STUDY_MEAN_M,
-    Study,
-    measure_study,
-)
 from mbkf.errors import MbkfError
 
-SEEDS, QUICK_SEEDS = 10, 2
-
-KALMAN_FINAL_M, KALMAN_MEAN_M = 0.03, 0.015
 SMOOTHER_MM, FILTER_MM, OFFSET_MM = 52.0, 85.0, 25.0
 SPREAD = 0.7, 1.3
 
 
 def rows(context: Context) -> list[Check]:
-    """All rows of the stride table; writes the page."""
-    seeds = range(QUICK_SEEDS if context.quick else SEEDS)
-    study = measure_study(seeds)
-    folder = context.require_data() / FOLDER
-    compared = compare(folder)
-    checks = [*study_rows(study, len(seeds)), *measured_rows(compared)]
-    write_page(context.out, study, compared, checks)
-    return checks
-
-
-def study_rows(study: Study, seeds: int) -> Iterator[Check]:
-    """The simulated walk: largest errors over the seeds, and for the Kalman filter over all phases."""
-    for case in study.cases:
-        final, mean = study.largest(KEY_POINTS, case, PHASES.index(ALIGNED))
-        head = f"key points, {case}, aligned, {seeds} seeds"
-        yield Check(f"{head}: final (study {STUDY_FINAL_M[case]})", final, FINAL_M, "<=", "m")
-        yield Check(f"{head}: mean (study {STUDY_MEAN_M[case]})", mean, MEAN_M, "<=", "m")
-    for case in study.cases:
-        final, mean = study.largest(KEY_POINTS_WITH_BIAS, case, PHASES.index(ALIGNED))
-        head = f"key points, {case}, aligned, gyroscope's bias left in"
-        yield Check(f"{head}: final", final, math.inf, "<=", "m")
-        yield Check(f"{head}: mean", mean, math.inf, "<=", "m")
-    for case in study.cases:
-        worst = [study.largest(KEY_POINTS, case, k) for k in range(len(PHASES))]
-        yield Check(f"key points, {case}, worst phase: final", max(f for f, _ in worst), math.inf, "<=", "m")
-    for case in study.cases:
-        worst = [study.largest(KALMAN, case, k) for k in range(len(DELAYS_S))]
-        head = f"Kalman, {case}, {len(DELAYS_S)} phases, {seeds} seeds"
-        yield Check(f"{head}: final", max(f for f, _ in worst), KALMAN_FINAL_M, "<=", "m")
-        yield Check(f"{head}: mean", max(m for _, m in worst), KALMAN_MEAN_M, "<=", "m")
+    """All rows of the measured strides."""
+    return list(measured_rows(compare(context.require_data() / FOLDER)))
 
 
 def measured_rows(compared: Sequence[Compared]) -> Iterator[Check]:
@@ -90,13 +45,11 @@ def measured_rows(compared: Sequence[Compared]) -> Iterator[Check]:
 
 
 def main() -> int:
-    """Runs these rows alone; the page goes to results/inertial."""
-    out = Path("results/inertial")
-    out.mkdir(parents=True, exist_ok=True)
+    """Runs these rows alone."""
     data = os.environ.get("MBKF_DATA")
     try:
         checks = rows(
-            Context(data=None if data is None else Path(data), out=out, quick="--quick" in sys.argv)
+            Context(data=None if data is None else Path(data), out=Path(), quick="--quick" in sys.argv)
         )
     except MbkfError as error:
         print(f"inertial.stride: error: {error}", file=sys.stderr)

@@ -90,9 +90,19 @@ class Compared:
 
 def compare(folder: Path) -> list[Compared]:
     """Every variant on the measured strides."""
-    readings = read_imu_csv(folder / "imu_sample.csv", units={"acc": "m/s2", "gyr": "deg/s"}, rate_hz=RATE_HZ)
+    readings = read_feet(folder)
     reference = reference_strides(folder)
     return [compare_one(name, settings, readings, reference) for name, settings in VARIANTS.items()]
+
+
+def read_feet(folder: Path) -> list[ImuReadings]:
+    """Readings of the sensors on both feet.
+
+    Args:
+        folder: The capture's.
+    """
+    units = {"acc": "m/s2", "gyr": "deg/s"}
+    return list(read_imu_csv(folder / "imu_sample.csv", units=units, rate_hz=RATE_HZ))
 
 
 def compare_one(

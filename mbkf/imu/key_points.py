@@ -58,6 +58,7 @@ class KeyPointSettings:
         still_s: The mean angular velocity of the first rest, at most this long, is the gyroscope's bias; 0 leaves it.
         bias_from: "rest", or "start": the bias is the mean over the first ``still_s`` of the readings, as printed.
         zero_velocity: The velocity is zero at key points; False: stride eq. 6 as printed, which integrates over them.
+        backwards: Gravity is carried from the key point after as well (stride eq. 3); False: from the one before alone.
         middle: Constant c of stride eq. 4 as a share of the gap between two key points.
         loss: α of stride eq. 2, the share of gravity lost per step from a key point; the study sets it by trial.
         by_sample: Carry gravity and integrate sample by sample between key windows, not window by window (ours).
@@ -72,6 +73,7 @@ class KeyPointSettings:
     still_s: float = 1.0
     bias_from: Literal["rest", "start"] = "rest"
     zero_velocity: bool = True
+    backwards: bool = True
     middle: float = 0.5
     loss: float = 0.0
     by_sample: bool = False
@@ -270,7 +272,7 @@ def _between_key_points(gravity: Array, key: BoolArray, angle: Array, settings: 
             for k in range(stop - 1, start - 1, -1):
                 backwards[k] = (1.0 - loss) * rotate(back[k], backwards[k + 1])
         inside = slice(start, stop)
-        if start == 0 or stop == len(key):
+        if start == 0 or stop == len(key) or not settings.backwards:
             found[inside] = (backwards if start == 0 else forwards)[inside]
             continue
         W = blend_weight(np.arange(1, stop - start + 1) / (stop - start + 1), settings.middle)[:, None]

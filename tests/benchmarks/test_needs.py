@@ -145,6 +145,7 @@ def test_every_benchmark_can_be_imported_after_a_plain_installation_and_says_wha
 
 
 def test_a_missing_library_is_one_line_with_its_extra_before_any_work(monkeypatch, tmp_path, capsys):
+    monkeypatch.setitem(NEEDS, "inertial", needs.Needs(("matplotlib", "vqf")))
     monkeypatch.setattr(needs, "installed", lambda module: module not in {"vqf", "matplotlib"})
     monkeypatch.setattr(runner.importlib, "import_module", lambda name: pytest.fail(f"{name} has begun"))
     assert runner.main(["inertial", "--data", str(tmp_path), "--out", str(tmp_path / "out")]) == 2

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.cli.imu_stride import _settings, options
 from mbkf.cli.main import main
 from mbkf.imu.key_points import NOISY_WEIGHTS, KeyPointSettings, as_printed
-from tests.foot_walks import foot_walk
 
 pytestmark = pytest.mark.slow
 

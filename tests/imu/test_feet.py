@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.imu.feet import placements
-from tests.foot_walks import foot_walk
 
 
 def turned(points, angle):

@@ -7,10 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.errors import InvalidInput
 from mbkf.imu.foot_filter import LEVER, SIZE, FootFilterSettings, FootState, V, _stance, follow_foot, predict
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
-from tests.foot_walks import foot_walk
 
 SETTINGS = FootFilterSettings()
 

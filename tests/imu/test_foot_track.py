@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.imu.foot_filter import (
     READ,
     SIZE,
@@ -16,7 +17,6 @@ from mbkf.imu.foot_filter import (
 from mbkf.imu.foot_track import filtered_track, rest_middles, smoothed_track
 from mbkf.imu.strides import find_strides
 from mbkf.numerics.runs import runs
-from tests.foot_walks import foot_walk
 
 pytestmark = pytest.mark.slow
 

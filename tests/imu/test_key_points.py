@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.key_points import (
@@ -18,7 +19,6 @@ from mbkf.imu.key_points import (
     follow_key_points,
     stability,
 )
-from tests.foot_walks import foot_walk
 
 
 def path_of(walk, **changes):
@@ -88,6 +88,18 @@ def test_a_biased_gyroscope_does_least_harm_near_the_key_points():
     # Forwards and backwards drift in opposite directions and cancel in the middle.
     assert off[10] < off[5] < 0.6
     assert off == pytest.approx(off[::-1], abs=1e-9)
+
+
+def test_forwards_alone_drift_grows_up_to_the_key_point_after():
+    angle = np.tile([0.02, 0.0, 0.0], (21, 1))
+    true = np.tile([0.0, 0.0, GRAVITY_M_S2], (21, 1))
+    key = np.zeros(21, dtype=bool)
+    key[[0, 20]] = True
+    off = np.linalg.norm(
+        _between_key_points(true, key, angle, KeyPointSettings(backwards=False)) - true, axis=1
+    )
+    assert off[:20] == pytest.approx(2.0 * GRAVITY_M_S2 * np.sin(0.01 * np.arange(20)))
+    assert off[20] == 0.0
 
 
 def test_loss_shortens_gravity_away_from_key_points():

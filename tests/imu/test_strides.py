@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from benchmarks.inertial.foot_walks import REST_S, SWING_S, foot_walk
 from mbkf.errors import InvalidInput
 from mbkf.imu.strides import find_strides
-from tests.foot_walks import REST_S, SWING_S, foot_walk
 
 
 def strides_of(walk, **options):

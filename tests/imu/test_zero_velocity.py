@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput
 from mbkf.imu.zero_velocity import StillnessSettings, stance_statistic, still_samples
 from mbkf.numerics.runs import runs
-from tests.foot_walks import foot_walk
 from tests.motions import assert_near
 
 SETTINGS = StillnessSettings()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, cubic_steps
+from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, SHAPES, cubic_steps
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput, UnknownName
 
@@ -56,8 +56,22 @@ def test_a_delay_moves_the_motion_and_not_the_samples():
     assert np.array_equal(late.time_s, cubic_steps().time_s)
 
 
+@pytest.mark.parametrize("shape", SHAPES)
+def test_every_shape_is_a_cubic_step_of_one_metre(shape):
+    walk = cubic_steps(shape=shape)
+    assert np.allclose(walk.position_m[[50, 100, 150, 200, 249], 0], [0.0, 1.0, 1.0, 2.0, 2.0])
+    assert np.allclose(np.diff(walk.position_m[51:100, 0], 4), 0.0, atol=1e-12)
+
+
+def test_the_gyroscopes_constant_has_a_direction():
+    walk = cubic_steps("drift", direction=(0.0, -1.0, 0.5))
+    assert np.allclose(walk.angular_velocity_rad_s, [0.0, -0.1, 0.05])
+
+
 def test_bad_requests_are_refused():
     with pytest.raises(UnknownName, match="nois"):
         cubic_steps("nois")
+    with pytest.raises(UnknownName, match="round"):
+        cubic_steps(shape="round")
     with pytest.raises(InvalidInput, match="delay"):
         cubic_steps(delay_s=1.0)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.inertial.foot_walks import foot_walk
 from benchmarks.inertial.stride import SMOOTHER_MM
 from benchmarks.inertial.stride_measured import compare_one, reference_strides
 from mbkf.errors import InvalidInput, UnknownName
@@ -14,7 +15,6 @@ from mbkf.imu.key_points import KeyPointSettings
 from mbkf.imu.zero_velocity import StillnessSettings
 from mbkf.io.imu.table import read_imu_csv
 from mbkf.trial.inertial.stride import METHODS, StrideSettings, measure_strides, stride_summary
-from tests.foot_walks import foot_walk
 
 pytestmark = pytest.mark.slow
 

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.errors import FileFormatError
 from mbkf.trial.inertial.stride import StrideSettings, measure_strides
 from mbkf.trial.inertial.stride_folder import (
@@ -16,7 +17,6 @@ from mbkf.trial.inertial.stride_folder import (
     TRAJECTORY_FILE,
     write_strides,
 )
-from tests.foot_walks import foot_walk
 
 
 @pytest.fixture(scope="module")

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from benchmarks.inertial.foot_walks import foot_walk
 from mbkf.numerics.runs import runs
 from mbkf.trial.inertial.stride import measure_strides
 from mbkf.viz.imu.foot_path import foot_path_figure, write_foot_path
-from tests.foot_walks import foot_walk
 
 
 @pytest.fixture(scope="module")

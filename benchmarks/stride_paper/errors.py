@@ -1,40 +1,28 @@
-"""Errors on the stride-length study's simulated walk, by method, case, seed and phase of windows or samples."""
+"""Errors on the paper's simulated walk, by method, case, seed and phase of windows or samples."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, CubicSteps, cubic_steps
+from benchmarks.stride_paper import printed
 from mbkf.conventions import Array
 from mbkf.imu.foot_filter import FootFilterSettings, follow_foot
 from mbkf.imu.foot_track import smoothed_track
-from mbkf.imu.key_points import (
-    NOISY_WEIGHTS,
-    USUAL_WEIGHTS,
-    KeyPointPath,
-    KeyPointSettings,
-    follow_key_points,
-)
+from mbkf.imu.key_points import KeyPointPath, KeyPointSettings, StabilityMeasure, follow_key_points
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
 
-KEY_POINTS, KEY_POINTS_WITH_BIAS, KALMAN = "key points", "key points, bias left in", "Kalman"
-
-STUDY_FINAL_M = {"clean": 0.32, "noise": 0.49, "drift": 0.47, "noise and drift": 0.64}
-STUDY_MEAN_M = {"clean": 0.06, "noise": 0.14, "drift": 0.12, "noise and drift": 0.32}
-"""What the study found on its one signal per case."""
-
-FINAL_M, MEAN_M = 0.15, 0.08
-"""Bounds for windows aligned with the motion."""
+PRINTED, KEY_POINTS, KALMAN = "as printed", "key points", "Kalman"
 
 PHASES = tuple(range(10))
 """Sample at which the first window begins."""
 
-ALIGNED, AS_STUDIED = 0, 1
-"""Windows that begin with the motion; and where the study's windows lie: its second differences of 250 positions leave
-248 samples, the first of which belongs to the second position."""
+DIRECTIONS = tuple((x, y, z) for x, y, z in product((1.0, -1.0), repeat=3))
+"""Signs of the gyroscope's constant on its axes; the paper does not state them."""
 
 DELAYS_S = tuple(0.021 * k for k in range(10))
 """Starts of the motion against the samples, for the Kalman filter, which has no windows."""
@@ -42,17 +30,20 @@ DELAYS_S = tuple(0.021 * k for k in range(10))
 
 @dataclass(frozen=True)
 class Study:
-    """Absolute errors along x: per method and case (phases, seeds, 2), last the final and the mean one, m."""
+    """Absolute errors along x: per method and case (phases, draws, 2), last the final and the mean one, m.
+
+    Draws are seeds of the noise and, for the method as printed, directions of the gyroscope's constant.
+    """
 
     errors: dict[tuple[str, str], Array]
 
     @property
     def cases(self) -> tuple[str, ...]:
-        """The study's cases."""
+        """The paper's cases."""
         return tuple(CASES)
 
     def largest(self, method: str, case: str, phase: int) -> tuple[float, float]:
-        """Largest final and largest mean error over the seeds.
+        """Largest final and largest mean error over the draws.
 
         Args:
             method: Name of the method.
@@ -63,7 +54,7 @@ class Study:
         return float(final), float(mean)
 
     def typical(self, method: str, case: str, phase: int) -> tuple[float, float]:
-        """Median final and median mean error over the seeds.
+        """Median final and median mean error over the draws.
 
         Args:
             method: Name of the method.
@@ -73,19 +64,32 @@ class Study:
         final, mean = np.median(self.errors[method, case][phase], axis=0)
         return float(final), float(mean)
 
+    def worst_phase(self, method: str, case: str) -> tuple[float, float]:
+        """Largest final and largest mean error over phases and draws.
 
-def measure_study(seeds: Sequence[int]) -> Study:
-    """Every method on every case."""
+        Args:
+            method: Name of the method.
+            case: Name of the simulated case.
+        """
+        final, mean = self.errors[method, case].max(axis=(0, 1))
+        return float(final), float(mean)
+
+
+def measure(seeds: Sequence[int]) -> Study:
+    """Every method on every case.
+
+    Args:
+        seeds: Of the noise.
+    """
     errors: dict[tuple[str, str], Array] = {}
     for case, sensor in CASES.items():
         seen = seeds if sensor.noise_m_s2 > 0.0 else seeds[:1]
-        for method in (KEY_POINTS, KEY_POINTS_WITH_BIAS):
+        turned = DIRECTIONS if sensor.bias_rad_s > 0.0 else DIRECTIONS[:1]
+        for method, directions in ((PRINTED, turned), (KEY_POINTS, DIRECTIONS[:1])):
+            walks = [cubic_steps(case, seed, direction=one) for seed in seen for one in directions]
             errors[method, case] = np.array(
                 [
-                    [
-                        key_point_errors(cubic_steps(case, seed), settings_of(method, case, first))
-                        for seed in seen
-                    ]
+                    [key_point_errors(walk, settings_of(method, case, first)) for walk in walks]
                     for first in PHASES
                 ]
             )
@@ -96,34 +100,57 @@ def measure_study(seeds: Sequence[int]) -> Study:
 
 
 def settings_of(method: str, case: str, first: int) -> KeyPointSettings:
-    """The study's weights for a case.
+    """Settings of a method that works on windows, with the paper's weights for a case.
 
     Args:
         method: Name of the method.
         case: Name of the simulated case.
         first: First sample of the windows.
     """
-    weights = NOISY_WEIGHTS if case == "noise and drift" else USUAL_WEIGHTS
-    settings = KeyPointSettings(first=first, weights=weights)
-    return replace(settings, still_s=0.0) if method == KEY_POINTS_WITH_BIAS else settings
+    if method == PRINTED:
+        return printed.simulated(case, first)
+    return KeyPointSettings(first=first, weights=printed.weights(case))
 
 
-def key_points(walk: CubicSteps, settings: KeyPointSettings) -> KeyPointPath:
-    """The study's algorithm on a walk."""
-    return follow_key_points(walk.specific_force_mps2, walk.angular_velocity_rad_s, RATE_HZ, settings)
+def key_points(
+    walk: CubicSteps, settings: KeyPointSettings, measure: StabilityMeasure | None = None
+) -> KeyPointPath:
+    """The paper's algorithm on a walk.
+
+    Args:
+        walk: The walk.
+        settings: Windows, weights and equations.
+        measure: Stability of windows, where it is another one than stride eq. 1 with lengths of vectors.
+    """
+    f, w = walk.specific_force_mps2, walk.angular_velocity_rad_s
+    return follow_key_points(f, w, 1.0 / float(walk.time_s[1] - walk.time_s[0]), settings, measure=measure)
 
 
 def window_truth(walk: CubicSteps, settings: KeyPointSettings) -> Array:
-    """(K,) the true x, averaged over each window as the study does."""
+    """(K,) the true x, averaged over each window as the paper does."""
     K = (len(walk.time_s) - settings.first) // settings.window
     used = slice(settings.first, settings.first + K * settings.window)
     truth: Array = walk.position_m[used, 0].reshape(K, settings.window).mean(axis=1)
     return truth
 
 
+def signed_errors(
+    walk: CubicSteps, settings: KeyPointSettings, measure: StabilityMeasure | None = None
+) -> Array:
+    """(K,) estimated minus true x of each window, m.
+
+    Args:
+        walk: The walk.
+        settings: Windows, weights and equations.
+        measure: Stability of windows; stride eq. 1 when None.
+    """
+    off: Array = key_points(walk, settings, measure).position_m[:, 0] - window_truth(walk, settings)
+    return off
+
+
 def key_point_errors(walk: CubicSteps, settings: KeyPointSettings) -> tuple[float, float]:
     """Final and mean absolute error along x, m."""
-    off = np.abs(key_points(walk, settings).position_m[:, 0] - window_truth(walk, settings))
+    off = np.abs(signed_errors(walk, settings))
     return float(off[-1]), float(off.mean())
 
 
