@@ -14,6 +14,7 @@ from benchmarks.checks import Check, Context, left_out
 from benchmarks.dynamic.captures import present
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.full_body.accuracy import accuracy_findings, lost_by_fdmc, trial_count
+from benchmarks.full_body.beyond import claims_beyond_reach
 from benchmarks.full_body.claims import survey_claims
 from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
 from benchmarks.full_body.filters import FCDI
@@ -21,6 +22,7 @@ from benchmarks.full_body.observability import observability_findings
 from benchmarks.full_body.occlusion import bands_left_out, measured, occlusion_findings
 from benchmarks.full_body.occlusion_drawings import occlusion_drawings
 from benchmarks.full_body.persons import PERSONS
+from benchmarks.full_body.placement import placement_findings
 from benchmarks.full_body.real import captures, real_findings, real_scores
 from benchmarks.full_body.single_markers import (
     measure_single_markers,
@@ -43,6 +45,7 @@ def run(context: Context) -> list[Check]:
         real = real_scores(data, mapper, quick=quick)
         hidden = measured(data, mapper, quick=quick)
         sliding = measure_single_markers(mapper, quick=quick)
+        placed = placement_findings(mapper, quick=quick)
         drawings = list(thesis_drawings(mapper, (JUMP,)) if quick else thesis_drawings(mapper))
     parts = [
         accuracy_findings(found),
@@ -50,10 +53,15 @@ def run(context: Context) -> list[Check]:
         real_findings(real),
         single_marker_findings(sliding),
         observability_findings(),
+        placed,
         speed_findings(speed),
     ]
     bands = [band for part in parts for band in part.bands]
-    claims = [*survey_claims(found), *(claim for part in parts for claim in part.claims)]
+    claims = [
+        *survey_claims(found),
+        *(claim for part in parts for claim in part.claims),
+        *claims_beyond_reach(),
+    ]
     sheets = [sheet for part in parts for sheet in part.sheets]
     pictures = [
         *drawings,

@@ -117,6 +117,10 @@ def judged(holds: bool, partly: bool = False) -> str:
     return "holds" if holds else "partly" if partly else "does not hold"
 
 
+CANNOT_BE_HAD = "cannot be had"
+"""The verdict on a statement that nothing here can test; the reason stands in place of a measurement."""
+
+
 def redone(same: bool) -> str:
     """The verdict on a published result that was redone."""
     return "reproduced" if same else "differs"

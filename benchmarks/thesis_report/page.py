@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from benchmarks.thesis_report.contents import Band, Claim, Sheet
+from benchmarks.thesis_report.contents import CANNOT_BE_HAD, Band, Claim, Sheet
 from benchmarks.thesis_report.figures import Drawing
 
 _STYLE = """
@@ -41,7 +41,7 @@ _MARKS = {
     "does not hold": "bad",
     "reproduced": "good",
     "differs": "half",
-    "cannot be had": "soft",
+    CANNOT_BE_HAD: "soft",
 }
 
 
@@ -138,10 +138,12 @@ class Report:
 
 def _count(verdicts: Sequence[str], source: str) -> tuple[str, str]:
     """Number of the claims that hold out of all, and the words for it, in the words of the verdicts."""
+    missing = verdicts.count(CANNOT_BE_HAD)
     if "reproduced" not in verdicts:
         words = f"claims of the {source} hold, {verdicts.count('partly')} partly"
+        words += f", {missing} cannot be had" if missing else ""
         return f"{verdicts.count('holds')} of {len(verdicts)}", words
-    differ, missing = verdicts.count("differs"), verdicts.count("cannot be had")
+    differ = verdicts.count("differs")
     words = f"claims of the {source} reproduced, {differ} differ, {missing} cannot be had"
     return f"{verdicts.count('reproduced')} of {len(verdicts)}", words
 
