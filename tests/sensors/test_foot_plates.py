@@ -51,6 +51,17 @@ def test_noise_by_what_a_foot_stands_on(scene):
     assert np.isinf(block.sd(FootReading.of(contact(Contact.UNMEASURED, Contact.SHARED, wrench)))).all()
 
 
+def test_vertical_forces_of_plates_have_their_own_noise(scene):
+    block = FootPlates(
+        scene[0].dynamics, scene[0].detector, DT, FootPlateSettings(plate_vertical_force_n=9.0)
+    )
+    sd = block.sd(FootReading.of(contact(Contact.AIR, Contact.MEASURED, np.ones((2, 6)))))
+    np.testing.assert_array_equal(sd[6:], [5.0, 5.0, 9.0, 2.0, 2.0, 2.0])
+    np.testing.assert_array_equal(
+        sd[:6], scene[0].sd(FootReading.of(contact(Contact.AIR, Contact.AIR, np.ones((2, 6)))))[:6]
+    )
+
+
 def test_true_plates_leave_no_innovation(scene):
     block, state, wrench = scene
     decision = block.decide(prepared_at(block, state), Frame(NO_MARKERS, wrench), block.begin(), Notes())

@@ -44,7 +44,7 @@ def kinematic_blocks(
         min_markers=s.min_markers,
     )
     return [
-        Markers(sensor, noise_m, dt_s, unobservable, markers, inflate=False),
+        Markers(sensor, s.noise(noise_m), dt_s, unobservable, markers, inflate=False),
         UnobservedJoints(np.full(model.nv, s.velocity_sd)),
         PosturePrior(PostureSensor(model), unobservable, PostureSettings(s.posture_scale)),
     ]
@@ -88,7 +88,7 @@ class KinematicFilter(Filter[KinematicState]):
             kinematic_blocks(sensor, noise_m, dt_s, unobservable, settings),
         )
         self.sensor, self.settings, self.unobservable = sensor, settings, unobservable
-        self.noise_m, self.model = noise_m * settings.marker_noise_scale, model
+        self.noise_m, self.model = settings.noise(noise_m) * settings.marker_noise_scale, model
         self.posture = PostureSensor(model)
 
     def start(self, measured_m: Array, guess: Array | None = None) -> KinematicState | None:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mbkf.conventions import Array
 
 
 @dataclass(frozen=True)
@@ -12,6 +16,7 @@ class KinematicSettings:
     Attributes:
         acceleration_scale: Factor on the body's table of typical accelerations (σ_a per dof).
         marker_noise_scale: Factor on the markers' own noise.
+        marker_noise_m: One noise for all markers in place of their own, m, as in the thesis; None: their own.
         gate: Squared Mahalanobis distance (3 readings) above which a marker is refused.
         gate_radius_m: Distance below which no marker is refused, m.
         posture_scale: The posture prior's spread is the body's table times this, per reading.
@@ -24,6 +29,7 @@ class KinematicSettings:
 
     acceleration_scale: float = 1.0
     marker_noise_scale: float = 1.0
+    marker_noise_m: float | None = field(default=None, metadata={"absent": "own"})
     gate: float = 60.0
     gate_radius_m: float = 0.03
     posture_scale: float = 10.0
@@ -31,3 +37,11 @@ class KinematicSettings:
     restart_rms_m: float = 0.05
     restart_after_s: float = 0.2
     min_markers: int = 6
+
+    def noise(self, own_m: Array) -> Array:
+        """(M,) noise of the markers before the factor on it, m.
+
+        Args:
+            own_m: (M,) their own.
+        """
+        return own_m if self.marker_noise_m is None else np.full_like(own_m, self.marker_noise_m)

@@ -74,7 +74,7 @@ def torque_blocks(
         # The literal presets amplify roundings: the Jacobian's own keep the figures that were measured with them.
         Markers(
             sensor,
-            noise_m,
+            weak.noise(noise_m),
             dt_s,
             body.fixed,
             markers,
@@ -153,7 +153,7 @@ class TorqueFilter(Filter[ForcedState]):
         )
         super().__init__(plant, blocks, positive_informed)
         self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
-        self.noise_m = noise_m * settings.tracking.marker_noise_scale
+        self.noise_m = settings.tracking.noise(noise_m) * settings.tracking.marker_noise_scale
         self.unobservable = body.fixed
         self._start = TorqueStart(body, plant, settings, residual_sd(body, settings))
 

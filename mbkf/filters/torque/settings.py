@@ -92,9 +92,9 @@ class TorqueSettings:
     plate_moment_nm: float = field(default=2.0, metadata=SENSED)
     unloaded_force_n: float = field(default=0.1, metadata=SENSED)
     unloaded_moment_nm: float = field(default=0.02, metadata=SENSED)
-    residual_force_n: float = 10.0
-    residual_vertical_force_n: float | None = field(default=None, metadata={"absent": "same"})
-    residual_moment_nm: float = 5.0
+    residual_force_n: float = field(default=10.0, metadata={"zero": True})
+    residual_vertical_force_n: float | None = field(default=None, metadata={"absent": "same", "zero": True})
+    residual_moment_nm: float = field(default=5.0, metadata={"zero": True})
     residual_spread_force_n: float = field(default=10.0, metadata={"infinite": True})
     residual_spread_moment_nm: float = field(default=5.0, metadata={"infinite": True})
     upper_torque_nm: float = field(default=5.0, metadata={"only_with": ("noise", "independent")})

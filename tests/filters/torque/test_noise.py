@@ -8,7 +8,7 @@ import pytest
 from mbkf.filters.torque.noise import ForceNoise, condition
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.filters.torque.settings import TorqueSettings, preset
-from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
+from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics
 from tests.motions import assert_near, moderate_pose, random_model, worst
 
 DT = 0.01
@@ -60,6 +60,45 @@ def test_consistent_noise_leaves_accelerations_and_loads_their_own(force_state):
         assert (residual <= own * (1 + 1e-6)).all()
     np.testing.assert_array_equal(density, density.T)
     assert np.linalg.eigvalsh(density).min() > -1e-9 * worst(density)
+
+
+def test_a_covariance_of_readings_is_that_of_their_joint_gaussian():
+    rng = np.random.default_rng(3)
+    B, A, R = rng.normal(size=(4, 4)), rng.normal(size=(2, 4)), np.array([[0.5, 0.2], [0.2, 1.0]])
+    C = B @ B.T
+    gain = C @ A.T @ np.linalg.inv(A @ C @ A.T + R)
+    assert_near(condition(C, A, R, np.zeros(2)).covariance, C - gain @ A @ C, 1e-10)
+
+
+def test_vertical_forces_have_their_own_noise_in_the_world():
+    """In whatever axes a force stands in the state: those of the pelvis, of the foot, of the world."""
+    apart = {"residual_vertical_force_n": 30.0, "load_vertical_force_n": 60.0}
+    for frame in WRENCH_FRAMES:
+        settings = replace(preset("FD", literal=True), wrench_frame=frame, **apart)
+        body, state, noise = made(settings)
+        forces, rotations = (
+            noise(state).matrix()[2 * body.nv :, 2 * body.nv :],
+            body.model.placements(state.q)[0],
+        )
+        root, feet = body.model.joint("pelvis").joint_id, body.model.roles.feet
+        scale = (body.model.mass_kg / 100.0) ** 2
+        pelvis = rotations[root] @ forces[:3, :3] @ rotations[root].T
+        assert_near(pelvis, scale * np.diag([10.0, 10.0, 30.0]) ** 2, 1e-9)
+        for k, name in enumerate(feet):
+            first = body.nu - 12 + 6 * k
+            axes = rotations[body.model.joint(name).joint_id] if frame == "foot" else np.eye(3)
+            load = axes @ forces[first : first + 3, first : first + 3] @ axes.T
+            assert_near(load, scale * np.diag([20.0, 20.0, 60.0]) ** 2, 1e-9)
+
+
+def test_given_loads_have_no_noise():
+    settings = replace(TorqueSettings(), plates="inputs")
+    body, state, _ = made(settings)
+    given = HumanDynamics(body.model, loads_given=True)
+    whole, known = (ForceNoise(one, DT, settings)(state).matrix() for one in (body, given))
+    at = 2 * body.nv + given.nu
+    assert known.shape == (at, at)
+    assert_near(known, whole[:at, :at], 1e-12)
 
 
 def test_independent_noise_is_the_table_scaled_by_mass():
