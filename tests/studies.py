@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -9,6 +10,7 @@ from tempfile import mkdtemp
 import pyarrow as pa
 import pytest
 
+from mbkf.scaling.records import ScalingSettings
 from mbkf.study.batch.progress import Progress
 from mbkf.study.batch.run import follow, plan_of
 from mbkf.study.scaling.session import scale_from_session
@@ -56,17 +58,19 @@ def batch_here(
 
 @contextmanager
 def runs_here() -> Iterator[None]:
-    """Runs of the laboratory's page do their work in a thread of this process; bodies are those of the static."""
+    """Runs of the laboratory's page are quick, in a thread of this process; bodies are those of the static."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("mbkf.app.runs.LocalWorkers", ThisProcess)
+        patch.setattr("mbkf.app.runs.ReconstructSettings", lambda: QUICK)
         patch.setattr("mbkf.study.batch.person.scale_from_session", from_standing)
         yield
 
 
-def from_standing(static, others, *how):
-    """The body of a session by its standing trial, whatever else it holds."""
+def from_standing(static, others, scaling, settings=None, progress=None):
+    """The body of a session by its standing trial under the names in the file, whatever else the session holds."""
     del others
-    return scale_from_session(static, (), *how)
+    named = replace(settings or ScalingSettings(), correct_names=False)
+    return scale_from_session(static, (), scaling, named, progress)
 
 
 def study(folder: Path, persons: int = 1, trials: int = 1) -> Path:

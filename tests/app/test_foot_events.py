@@ -12,7 +12,6 @@ from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, Trial
 from mbkf.study.batch.curves import curves_of, read_curves
 from mbkf.study.batch.inputs import RECORD
 from mbkf.study.batch.trial import CURVES_FILE
-from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.app.asking import asked, changed, plain
 from tests.studies import batch_here
 from tests.waiting import PATIENCE_S
@@ -68,7 +67,7 @@ def test_events_by_hand_cut_the_curves_and_a_batch_keeps_them(server, cookie, ru
         one["time_s"] for one in moved
     ]
     cut = read_curves(folder / CURVES_FILE)
-    table = batch_here(server.workspace.root, server.workspace.out, ReconstructSettings()).to_pylist()
+    table = batch_here(server.workspace.root, server.workspace.out).to_pylist()
     assert {row["trial"]: row["status"] for row in table}["walk1"] == "unchanged"
     by_hand = read_session(file).trial("walk1").events
     assert read_curves(folder / CURVES_FILE).equals(cut)

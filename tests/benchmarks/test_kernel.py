@@ -2,7 +2,7 @@
 
 import os
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -45,11 +45,12 @@ def test_the_environment_is_left_as_it_was(monkeypatch, before):
     assert os.environ.get(SWITCH) == before
 
 
-def half_a_second(motion, seconds, seed):
-    """The beginning of a synthetic trial."""
+@cache
+def the_beginning(motion, seconds, seed):
+    """The first fifth of a second of a synthetic trial."""
     subject, made = synthesise(motion, seconds=1.0, seed=seed)
     markers = made.trial.markers
-    short = replace(markers, positions_m=markers.positions_m[:50])
+    short = replace(markers, positions_m=markers.positions_m[:20])
     return subject, replace(made, trial=replace(made.trial, markers=short))
 
 
@@ -57,7 +58,7 @@ def test_every_motion_is_followed_causally_and_smoothed(monkeypatch, tmp_path):
     if library() is None:
         pytest.skip("the kernel is not compiled here")
     monkeypatch.setattr(kernel, "QUICK_MOTIONS", ("squat",))
-    monkeypatch.setattr(kernel, "synthesise", half_a_second)
+    monkeypatch.setattr(kernel, "synthesise", the_beginning)
     monkeypatch.setattr(kernel, "ReconstructSettings", partial(ReconstructSettings, correct_markers=False))
     rows = kernel.run(kernel.Context(None, tmp_path, quick=True))
     names = [row.name.partition(": ") for row in rows]

@@ -16,12 +16,14 @@ pytestmark = pytest.mark.slow
 
 
 def made_once(function):
-    """Gives its first answer again: what no setting changes is not computed for every run of the gate."""
-    answers = []
+    """Gives its first answer to the same settings again: the gate is asked, not the filter."""
+    answers = {}
 
-    def answer(*words, **named):
-        answers[:] = answers or [function(*words, **named)]
-        return answers[0]
+    def answer(*words, settings=None, **named):
+        if settings not in answers:
+            given = {} if settings is None else {"settings": settings}
+            answers[settings] = function(*words, **given, **named)
+        return answers[settings]
 
     return answer
 
@@ -34,7 +36,7 @@ def short(monkeypatch, tmp_path):
     monkeypatch.setattr(
         metrics, "variants", lambda *made: {name: every(*made)[name] for name in ("smoothed", "hidden")}
     )
-    for name in ("synthesise", "scale", "label"):
+    for name in ("synthesise", "scale", "label", "reconstruct"):
         monkeypatch.setattr(metrics, name, made_once(getattr(metrics, name)))
     monkeypatch.delenv("CI", raising=False)
     monkeypatch.setattr(measured, "library", lambda: None)  # times of steps are no metrics then

@@ -11,7 +11,7 @@ from benchmarks.misuse.injected import ERRORS, HIT, MODES, OTHER, Places
 from mbkf.app.runs import FAILED, FINISHED, RunState
 from tests.studies import from_standing
 
-SECONDS = 1.5
+SECONDS = 1.0
 """Length of the walk."""
 
 

@@ -3,11 +3,14 @@
 import errno
 import os
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
+from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.subject import read_subject
 from mbkf.study.batch import trial as module
 from mbkf.study.batch.curves import read_curves
 from mbkf.study.batch.inputs import RECORD
@@ -15,10 +18,26 @@ from mbkf.study.batch.plan import Person, Trial
 from mbkf.study.batch.trial import CURVES_FILE, curves_anew, trial_done
 from mbkf.trial.gait.events import foot_events, plain_found
 from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.captures import snapshot
 from tests.studies import walk_folder
 
 SETTINGS = ReconstructSettings(filter="kinematic", smooth=False)
+
+
+@cache
+def walk():
+    """The walk, followed once."""
+    folder = walk_folder()
+    return reconstruct(
+        read_capture(folder / "trial.c3d"), read_subject(folder / "subject.toml"), settings=SETTINGS
+    )
+
+
+@pytest.fixture
+def followed(monkeypatch):
+    """Every run has the results of the walk that was followed once: the test asks what becomes of the files."""
+    monkeypatch.setattr(module, "reconstruct", lambda capture, person, **how: walk())
 
 
 @pytest.fixture
@@ -39,6 +58,7 @@ def test_a_trial_is_done_once_from_the_same(task, tmp_path):
     assert [path.name for path in (tmp_path / "P").iterdir()] == ["walk"]
 
 
+@pytest.mark.usefixtures("followed")
 @pytest.mark.parametrize("fails", ["write_result_files", "write_curves", "write_record"])
 @pytest.mark.parametrize("earlier", [False, True])
 def test_a_full_disk_leaves_nothing_half_written(task, tmp_path, monkeypatch, fails, earlier):
@@ -65,6 +85,7 @@ def assert_same(table, other):
         np.testing.assert_array_equal(table[name].to_numpy(), other[name].to_numpy())
 
 
+@pytest.mark.usefixtures("followed")
 def test_events_by_hand_are_noticed_and_only_the_curves_are_made_again(task, tmp_path):
     trial, subject, out = task
     folder = tmp_path / "P" / "walk"
