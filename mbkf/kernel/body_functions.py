@@ -123,40 +123,6 @@ class BodyFunctions(Protocol):
             wrenches: w_f of the right, the left foot.
         """
 
-    def mass_inverse(
-        self, tree: Tree, q: In[Array, "nq"], moving: In[BoolArray, "nv"], /
-    ) -> tuple[int, Made[Array, "mass: nv nv"], Made[Array, "inverse: nv nv"]]:
-        """0, or 1 where the mass matrix is not positive; mass matrix M, and the inverse of its part of the moving dofs.
-
-        Args:
-            tree: The body.
-            q: Configuration.
-            moving: True for dofs that forces move; rows and columns of the others are 0 in the inverse.
-        """
-
-    def foot_wrenches(
-        self,
-        tree: Tree,
-        q: In[Array, "nq"],
-        joint_ids: In[Int32Array, "2 in 1:joints"],
-        levers: In[Array, "2 3"],
-        own_axes: bool,
-        state: In[Array, "12"],
-        points: In[Array, "2 3"],
-        /,
-    ) -> tuple[Made[Array, "wrench: 12"], Made[Array, "by_state: 12 12"], Made[Array, "by_q: 12 nv"]]:
-        """Wrenches of the feet about points in the world, and derivatives by their states and the configuration.
-
-        Args:
-            tree: The body.
-            q: Configuration.
-            joint_ids: Joints of right and left foot.
-            levers: Where a force acts, in the foot's axes, m.
-            own_axes: The states' forces are in the foot's axes, else in the world's; moments are in the foot's.
-            state: Force N and moment N m of right and left foot.
-            points: Points in the world about which the moments are taken, m.
-        """
-
     def height_jacobian(
         self, tree: Tree, q: In[Array, "nq"], joint_ids: In[Int32Array, "n in 1:joints"], /
     ) -> Made[Array, "heights: n nv"]:

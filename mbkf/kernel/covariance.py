@@ -9,7 +9,6 @@ import numpy as np
 from mbkf.conventions import Array, Int32Array
 from mbkf.kernel.loading import library
 from mbkf.numerics import information_update
-from mbkf.numerics.forced_error import ForceDensity, LightStep
 
 
 def joint_ranges(joints: Iterable[slice]) -> Int32Array:
@@ -70,23 +69,3 @@ def positive_informed(covariance: Array, matrix: Array, rows: Array) -> Array:
         if kernel.add_information(covariance, matrix, np.ascontiguousarray(rows), informed) == 0:
             return informed.T
     return information_update.positive_informed(covariance, matrix, rows)
-
-
-def propagated_forces(P: Array, step: LightStep, joints: Int32Array, density: ForceDensity) -> Array:
-    """(n, n) Φ P Φᵀ + Q of a state (q, v, u), Q by the series of thesis eq. 2.45, by the compiled kernel.
-
-    Args:
-        P: (n, n) covariance, symmetric.
-        step: Φ.
-        joints: (J, 2) first dof and end of each joint.
-        density: Plant noise.
-
-    Raises:
-        LookupError: The kernel was not built.
-    """
-    kernel = library()
-    if kernel is None:
-        raise LookupError("the covariance of forces is propagated by the compiled kernel alone")
-    A, B, by_u, dt, push = step
-    U = np.asfortranarray(by_u)
-    return kernel.propagate_forces(P, A, B, U, joints, dt, push, density.velocities, density.forces)

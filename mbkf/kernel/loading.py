@@ -12,6 +12,7 @@ from mbkf.errors import InvalidInput
 from mbkf.kernel.body_functions import BodyFunctions
 from mbkf.kernel.contact_functions import ContactFunctions
 from mbkf.kernel.declaration import fingerprint
+from mbkf.kernel.force_functions import ForceFunctions
 from mbkf.kernel.state_functions import StateFunctions
 
 SWITCH = "MBKF_KERNEL"
@@ -20,7 +21,7 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(BodyFunctions, ContactFunctions, StateFunctions, Protocol):
+class Library(BodyFunctions, ContactFunctions, ForceFunctions, StateFunctions, Protocol):
     """The functions of the compiled kernel."""
 
 

@@ -106,34 +106,6 @@ class StateFunctions(Protocol):
             noise: Diagonals of the blocks of Q.
         """
 
-    @requires("2*nv + nu == N")
-    @unlocked
-    def propagate_forces(
-        self,
-        P: In[Array, "N N symmetric"],
-        A: In[Array, "nv nv"],
-        B: In[Array, "nv nv"],
-        by_u: In[Array, "nv nu fortran"],
-        joints: In[Int32Array, "J 2 in 0:nv+1"],
-        dt: float,
-        push: float,
-        own: In[Array, "nv"],
-        forces: In[Array, "nu nu symmetric"],
-        /,
-    ) -> Made[Array, "after: N N"]:
-        """Φ P Φᵀ + Q of a state (q, v, u) with Φ = [[A, B, p U], [0, 1, Δt U], [0, 0, 1]], Q of thesis eq. 2.45.
-
-        Args:
-            P: Covariance.
-            A, B: Derivatives of the next configuration by this one and by the velocity; zero between joints.
-            by_u: U, accelerations by forces.
-            joints: First dof and end of each joint.
-            dt: Δt, s.
-            push: p, s².
-            own: Spectral density of the accelerations' own noise.
-            forces: Spectral density of the forces.
-        """
-
     @requires("n <= N")
     @unlocked
     def add_information(

@@ -108,7 +108,7 @@ class CompiledTree:
     def foot_wrenches(
         self, q: Array, joint_ids: Int32Array, levers: Array, own_axes: bool, state: Array, points: Array
     ) -> tuple[Array, Array, Array]:
-        """(12,) wrenches and derivatives (12, 12), (12, nv). Args: as :meth:`BodyFunctions.foot_wrenches`."""
+        """(12,) wrenches and derivatives (12, 12), (12, nv). Args: as :meth:`ForceFunctions.foot_wrenches`."""
         return self.kernel.foot_wrenches(
             self.handle, _read(q), joint_ids, levers, own_axes, _read(state), _read(points)
         )

@@ -9,7 +9,7 @@ for a fraction of its products. Noise is white: a density per velocity, and one 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -23,9 +23,20 @@ TERMS, ROUNDING = 40, 1e-15
 LARGEST = 5.0
 """Size of A Δt up to which the series is taken of a whole step; beyond, steps are halved (:func:`van_loan`)."""
 
-_GAUSS = {
-    n: ((x + 1.0) / 2.0, w / 2.0) for n in range(2, 17) for x, w in [np.polynomial.legendre.leggauss(n)]
-}
+_MOST = TERMS // 3 + 1
+
+
+def _rules() -> Array:
+    """Gauss's rules of 1 to so many points, one a row: points in 0 … 1 and weights, 0 behind them."""
+    rules = np.zeros((_MOST, _MOST, 2))
+    for points in range(1, _MOST + 1):
+        nodes, weights = np.polynomial.legendre.leggauss(points)
+        rules[points - 1, :points] = np.stack([(nodes + 1.0) / 2.0, weights / 2.0], axis=1)
+    return rules
+
+
+GAUSS_RULES = _rules()
+"""(most, most, 2) rules of integrals over a step."""
 
 
 class ForcedRates(NamedTuple):
@@ -42,10 +53,10 @@ class ForcedRates(NamedTuple):
     by_v: Array | None
     by_u: Array
 
-    def motion(self) -> Array:
-        """(2 nv, 2 nv) A."""
+    def motion(self, order: Literal["C", "F"] = "C") -> Array:
+        """(2 nv, 2 nv) A, in numpy's order of memory."""
         nv = len(self.turning)
-        A = np.zeros((2 * nv, 2 * nv))
+        A = np.zeros((2 * nv, 2 * nv), order=order)
         A[:nv, :nv] = self.turning
         A[np.arange(nv), nv + np.arange(nv)] = 1.0
         if self.by_q is not None:
@@ -82,6 +93,20 @@ class ForceDensity(NamedTuple):
         return np.asarray(scipy.linalg.block_diag(np.zeros((nv, nv)), np.diag(self.velocities), self.forces))
 
 
+class MotionStep(NamedTuple):
+    """Φ of a step: ``motion`` E (2 nv, 2 nv) and ``push`` G (2 nv, nu); forces stay."""
+
+    motion: Array
+    push: Array
+
+    def transition(self) -> Array:
+        """(n, n) Φ."""
+        m, nu = self.push.shape
+        phi = np.eye(m + nu)
+        phi[:m, :m], phi[:m, m:] = self.motion, self.push
+        return phi
+
+
 class ForcedStep(NamedTuple):
     """A step of the error.
 
@@ -101,10 +126,7 @@ class ForcedStep(NamedTuple):
 
     def transition(self) -> Array:
         """(n, n) Φ."""
-        m, nu = self.push.shape
-        phi = np.eye(m + nu)
-        phi[:m, :m], phi[:m, m:] = self.motion, self.push
-        return phi
+        return MotionStep(self.motion, self.push).transition()
 
     def covariance(self) -> Array:
         """(n, n) Q."""
@@ -254,7 +276,7 @@ def _terms(A: Array, dt_s: float) -> Array | None:
     """(k, nv, 2 nv) transposed terms Aʲ [0; 1] Δtʲ⁺¹/(j + 1)! of W; None where A Δt is too large for one series."""
     nv, rows = len(A) // 2, np.abs(A).reshape(len(A), 2, -1).sum(axis=2)
     # Positions in units that make the norm least: [[T, 1], [K, D]] becomes [[T, s], [K / s, D]].
-    size = dt_s * max(rows[:nv, 0].max() + 1.0, rows[nv:, 1].max(), np.sqrt(rows[nv:, 0].max()))
+    size = dt_s * np.max([rows[:nv, 0].max() + 1.0, rows[nv:, 1].max(), np.sqrt(rows[nv:, 0].max())])
     if not size <= LARGEST:
         return None
     term = np.zeros((nv, 2 * nv))
@@ -271,7 +293,8 @@ def _terms(A: Array, dt_s: float) -> Array | None:
 
 def _gauss(terms: int, dt_s: float) -> tuple[Array, Array]:
     """Nodes in 0 … 1 and weights, s, of the integral over a step: so many that the error is rounding."""
-    nodes, weights = _GAUSS[terms // 3 + 1]
+    points = terms // 3 + 1
+    nodes, weights = GAUSS_RULES[points - 1, :points].T
     return nodes, dt_s * weights
 
 

@@ -13,13 +13,10 @@ from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.kernel.covariance import (
     correction,
     informed_with_rows,
-    joint_ranges,
     positive_informed,
-    propagated_forces,
 )
 from mbkf.kernel.loading import library
 from mbkf.numerics import information_update
-from mbkf.numerics.forced_error import ForceDensity, ForcedRates, LightStep, forced_step
 from tests.dynamics import DT, singer
 from tests.motions import random_model, reference_model, worst
 
@@ -107,27 +104,6 @@ def test_information_without_a_factor_and_covariances_spoilt_by_rounding_are_the
         found = informed_with_rows(prior, H.T @ H, rows)
         expected = information_update.informed_with_rows(prior, H.T @ H, rows)
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * worst(P))
-
-
-@pytest.mark.usefixtures("products")
-@pytest.mark.parametrize("second", [True, False])
-@pytest.mark.parametrize("order", ["C", "F"])
-def test_forces_that_last_move_a_covariance_by_the_textbook_s_series(second, order):
-    """Φ P Φᵀ + Q of a body's joints and forces, some of which push nothing."""
-    rng, model = np.random.default_rng(6), MODELS["random"]
-    nv, nu = model.nv, 13
-    ranges, turning = joint_ranges(joint.v for joint in model.joints.values()), np.zeros((nv, nv))
-    for first, end in ranges:
-        turning[first:end, first:end] = rng.normal(size=(end - first, end - first))
-    U = rng.normal(size=(nv, nu))
-    U[:, 3] = 0.0
-    rates, density = ForcedRates(turning, None, None, U), ForceDensity(rng.random(nv), covariance(rng, nu))
-    P = np.array(covariance(rng, 2 * nv + nu), order=order)
-    found = propagated_forces(P, LightStep.of(rates, DT, second), ranges, density)
-    expected = forced_step(rates, density, DT, "second" if second else "first", "series").propagated(P)
-    scale = np.sqrt(np.diag(expected))
-    assert (np.abs(found - expected) <= 1e-13 * np.outer(scale, scale)).all()
-    np.testing.assert_array_equal(found, found.T)
 
 
 def test_a_covariance_that_must_not_be_mended_is_refused(either_kernel):

@@ -19,7 +19,8 @@ import scipy.linalg
 from mbkf.conventions import Array
 from mbkf.filters.plant import Plant
 from mbkf.filters.torque.integrators import INTEGRATORS, Motion, integrator
-from mbkf.kernel.covariance import joint_ranges, propagated_forces
+from mbkf.kernel.covariance import joint_ranges
+from mbkf.kernel.forces import exact_step, light_step
 from mbkf.model.body import Body
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.human_dynamics import HumanDynamics
@@ -86,6 +87,9 @@ class ForcedPrediction(ForcedState):
 
 LIGHT = (("first", "series"), ("second", "series"))
 """Propagations and covariances of a :class:`LightStep`."""
+
+EXACT = ("exponential", "van_loan")
+"""Propagation and covariance to rounding."""
 
 
 @dataclass(frozen=True)
@@ -225,14 +229,18 @@ class TorquePlant(Plant[ForcedState, None, None]):
     ) -> tuple[ErrorStep, Array]:
         """A step of the error, and the covariance after it.
 
-        The whole body's goes by its blocks, and by the compiled kernel where these are few; the textbook's dense form
-        serves all else.
+        The whole body's goes by its blocks, and by the compiled kernel in FD's and FDMC's schemes; the textbook's
+        dense form serves all else.
         """
         scheme = self.scheme
         if self._compiled and isinstance(density, ForceDensity):
             if rates.by_q is None and (scheme.propagation, scheme.covariance) in LIGHT:
                 light = LightStep.of(rates, h, second=scheme.propagation == "second")
-                return light, propagated_forces(P, light, self._joints, density)
+                return light, light_step(P, light, self._joints, density)
+            if (scheme.propagation, scheme.covariance) == EXACT:
+                exact = exact_step(P, rates, self._joints, density, h)
+                if exact is not None:
+                    return exact
             by_blocks = forced_step(rates, density, h, scheme.propagation, scheme.covariance)
             return by_blocks, by_blocks.propagated(P)
         step = discretise(self._whole(rates), _matrix(density), h, scheme.propagation, scheme.covariance)
