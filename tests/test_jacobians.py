@@ -115,6 +115,7 @@ ELSEWHERE = {
     "numerics.forced_error.ForcedRates.by_v": "numerics/test_forced_error.py by_q",
     "numerics.forced_error.ForcedRates.by_u": "numerics/test_forced_error.py matrix",
     "numerics.forced_error.ForcedStep.transition": "numerics/test_forced_error.py",
+    "numerics.forced_error.MotionStep.transition": "numerics/test_forced_error.py transition",
     "numerics.forced_error.LightStep.by_u": "numerics/test_forced_error.py LightStep",
     "numerics.forced_error.LightStep.transition": "numerics/test_forced_error.py",
     "numerics.information_update.positive_informed": "numerics/test_kalman.py",
