@@ -94,7 +94,7 @@ def read_urdf_tree(path: Path) -> UrdfTree:
 
 
 def _robot(path: Path) -> yourdfpy.Robot:
-    """The file's elements as yourdfpy reads them."""
+    """The file's links and joints as yourdfpy reads them; what is drawn is left out."""
     import yourdfpy
 
     content = read_bytes(path, SETTINGS_BYTES, "name a URDF file")
@@ -102,13 +102,17 @@ def _robot(path: Path) -> yourdfpy.Robot:
         raise FileFormatError(path, "a URDF file has no document type; delete its <!DOCTYPE …>")
     try:
         element = ET.fromstring(content)
-    except (ET.ParseError, ValueError) as error:
+    except (ET.ParseError, LookupError, ValueError) as error:
         raise FileFormatError(path, f"not XML ({error}); a URDF file is XML with a root <robot>") from error
     for fault in _missing(element):
         raise FileFormatError(path, fault)
+    for link in element.findall("link"):
+        for drawn in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(drawn)
+    plain = io.BytesIO(ET.tostring(element))
     try:
-        return yourdfpy.URDF.load(io.BytesIO(content), build_scene_graph=False, load_meshes=False).robot
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        return yourdfpy.URDF.load(plain, build_scene_graph=False, load_meshes=False).robot
+    except (AttributeError, LookupError, SyntaxError, TypeError, ValueError) as error:
         raise FileFormatError(path, f"not a valid URDF: {error}") from error
 
 

@@ -83,3 +83,16 @@ def test_what_cannot_be_read_or_written_is_told(result, tmp_path, capsys):
         assert main(["export", str(source), "--to", kind, "--out", str(tmp_path / out)]) == 2
         assert said in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["empty"]
+
+
+def test_a_urdf_file_and_its_side_file_are_written_together_or_not_at_all(tmp_path, capsys):
+    write_subject(Subject("human18", 70.0, FACTORS, (), "reference36"), tmp_path / "s.toml")
+    out, side = tmp_path / "s.urdf", tmp_path / "s.urdf.toml"
+    side.write_text("feet = 2", "utf-8")
+    words = ["export", str(tmp_path / "s.toml"), "--to", "urdf", "--out", str(out)]
+    assert main(words) == 2
+    assert "s.urdf.toml" in capsys.readouterr().err
+    assert not out.exists() and side.read_text("utf-8") == "feet = 2"
+    assert main([*words, "--overwrite"]) == 0
+    assert capsys.readouterr().out.split() == [str(out), str(side)]
+    assert load_body(out).reference_mass_kg == pytest.approx(70.0)

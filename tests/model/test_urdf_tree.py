@@ -31,6 +31,7 @@ def test_links_and_joints_are_read_with_their_frames(tmp_path):
         (biped(joint("tie", "right_foot", "left_foot")), "child of the joints left_ankle, tie: a closed loop"),
         ([link("a"), link("b"), joint("x", "a", "b"), joint("y", "b", "a")], "form a closed loop"),
         ([link("r"), link("a"), link("b"), joint("x", "a", "b"), joint("y", "b", "a")], "links a, b form a closed"),
+        ([link("a"), joint("x", "a", "a")], "form a closed loop"),
         (biped(link("stray")), "2 roots .pelvis, stray."),
         (biped(link("p"), joint("rail", "pelvis", "p", "prismatic")), "joint rail is prismatic; a body's joints are"),
         (biped(link("p"), joint("rail", "pelvis", "p", "magic")), "joint rail is magic"),
@@ -65,6 +66,7 @@ def test_a_tree_that_is_none_is_refused(tmp_path, parts, said):
         ("<!DOCTYPE r [<!ENTITY a 'aa'>]><robot name='a'/>", "no document type"),
         ("<robot name='a' xmlns:xacro='http://x.org/xacro'><xacro:leg/></robot>", "macros of xacro"),
         ("\0\1\2", "not XML"),
+        ("<?xml version='1.0' encoding='foo'?><robot name='a'/>", "not XML"),
     ],
 )
 def test_a_file_that_is_no_urdf_is_refused_in_one_line(tmp_path, text, said, capsys):
@@ -74,3 +76,11 @@ def test_a_file_that_is_no_urdf_is_refused_in_one_line(tmp_path, text, said, cap
         read_urdf_tree(path)
     assert "\n" not in str(caught.value)
     assert capsys.readouterr().err == ""
+
+
+def test_what_is_drawn_is_not_read(tmp_path):
+    shapes = (
+        '<visual><geometry/></visual><collision><geometry><mesh filename="none.stl"/></geometry></collision>'
+    )
+    drawn = f'<link name="a">{shapes}</link>'
+    assert read_urdf_tree(written(tmp_path, [drawn])).root == "a"
