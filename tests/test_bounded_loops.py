@@ -32,6 +32,10 @@ BOUNDS = {
     "trial/live/labels.py LiveLabels._unnamed": "each round takes one frame that waits",
     "trial/protocol/from_osim.py _Skeleton._in_segment": "goes up a tree, which check_body has checked",
     "trial/protocol/osim_bodies.py poses_at_zero": "each round places one body",
+    "model/urdf_segments.py _chain": "three joints at most",
+    "model/urdf_segments.py _grow": "each link of a tree comes once",
+    "model/urdf_segments.py urdf_segments": "each joint of a tree comes once",
+    "model/urdf_tree.py read_urdf_tree": "no link has two parents, so that each link below the root comes once",
     "model/skeleton.py joint_origin": "goes up a tree, which check_body has checked",
     "trial/results/validity.py joints_to_root": "goes up a tree, which check_body has checked",
 }
