@@ -18,7 +18,7 @@ from typing import TypeVar, cast
 
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.settings import changed, flat, leaf_fields
-from mbkf.io.preset import Value
+from mbkf.io.preset import Value, value_of
 
 SettingsT = TypeVar("SettingsT")
 
@@ -118,8 +118,16 @@ def _read(name: str, field: Field[object], start: object, value: Value, where: s
         read = _number(value, field, whole=isinstance(start, int))
     if read is None:
         front = f"{where}: " if where else ""
-        raise InvalidInput(f"{front}{name} must be {possible(field, start)}, got {_shown(value)}")
+        raise InvalidInput(
+            f"{front}{name} must be {possible(field, start)}, got {_shown(value)}{_mend(name, value)}"
+        )
     return read
+
+
+def _mend(name: str, value: Value) -> str:
+    """Advice where a number or a truth stands in quotation marks; empty for other values."""
+    meant = value_of(value) if isinstance(value, str) else None
+    return "" if meant is None or isinstance(meant, str) else f"; write {name} = {_shown(meant)}"
 
 
 def _number(value: Value, field: Field[object], whole: bool) -> float | None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mbkf.cli.main import main
-from mbkf.cli.reconstruct import parse_hide
+from mbkf.cli.reconstruct import parse_hide, settings_line
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture_options import CaptureOptions
@@ -302,3 +302,8 @@ def test_ignored_markers_stand_in_summary_and_table(causal, tmp_path, capsys):
     assert list(summary["markers_ignored"]) == [f"X{i}" for i in range(30, 36)]
     assert (summary["markers_used"], summary["markers_explained"]) == (30, pytest.approx(30 / 36))
     assert "X30, X31, X32, X33, X34, X35" in " ".join(capsys.readouterr().out.split())
+
+
+def test_the_settings_of_a_result_are_named():
+    assert settings_line({"preset": "", "given": {}}) == settings_line({}) == ""
+    assert settings_line({"preset": "FD", "given": {"integrator": "HE"}}) == "preset FD, integrator = HE"

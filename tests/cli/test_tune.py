@@ -107,6 +107,9 @@ def test_bad_usage(trial, person, tmp_path, refuse_tune, refuse_reconstruct):
     refuse_reconstruct([person.trial, "--preset", "none"], "--preset", "unknown preset 'none'", "FDMC")
     refuse_reconstruct([person.trial, "--preset", "FD", "--filter", "dynamic"], "torque filter", "--filter")
     refuse_reconstruct([person.trial, "--preset", trial], "long.c3d")
+    refuse_reconstruct([person.trial, "--preset", "FD", "--set", "integrater=HE"], "did you mean integrator")
+    refuse_tune([trial, *name, "--set", "gat=3"], "did you mean gate")
+    refuse_tune([trial, *name, "--preset", "FD"], "'torque'")
 
 
 def test_held_out_trials_are_found_by_any_of_their_names():

@@ -67,6 +67,8 @@ def test_zero_switches_off_where_it_may():
         ({"substeps": math.inf}, InvalidInput, "substeps must be a whole number"),
         ({"substeps": True}, InvalidInput, "substeps must be a whole number of one or more, got true"),
         ({"gate": 0.0}, InvalidInput, "gate must be a positive number, got 0"),
+        ({"gate": "5.0"}, InvalidInput, 'gate must be a positive number, got "5.0"; write gate = 5'),
+        ({"complete": "true"}, InvalidInput, 'complete must be true or false, got "true"; write complete = true'),
         ({"gate": math.inf}, InvalidInput, "gate must be a positive number, got inf"),
         ({"gate": (1.0, 2.0)}, InvalidInput, "gate must be a positive number, got [1, 2]"),
         ({"toe_acceleration": "tabel"}, InvalidInput, 'a positive number, or "table", got "tabel"'),

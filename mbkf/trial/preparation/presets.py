@@ -50,7 +50,7 @@ def with_preset(
             f"preset '{name}' is for the {found.filter} filter, not the {wanted_filter} one; leave --filter away"
         )
     own = with_given(getattr(settings, found.filter), found.values, str(path))
-    changes: dict[str, Any] = {"filter": found.filter, found.filter: own, "preset": name}
+    changes: dict[str, Any] = {"filter": found.filter, found.filter: own, "preset": Path(name).name}
     return replace(settings, **changes)
 
 

@@ -52,7 +52,7 @@ class ReconstructSettings:
         checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.trial.checks`).
         spreads: Standard deviations given besides those of configuration, velocity and wrenches: "torques" and
             "angles". Frames with an estimated load do not count as valid without those of the torques.
-        preset: Name or file of the preset that the filter's settings are of; empty without one. For the record.
+        preset: Name of the preset, or of its file, of the filter's settings; empty without one. For the record.
         given: Single settings of the filter that a command gave besides, by name. For the record.
     """
 

@@ -48,7 +48,7 @@ def test_every_preset_that_comes_along_can_be_used_and_has_a_source(name):
 def test_a_saved_preset_changes_its_filter_alone(wanted, folder):
     for name in ("lab", str(folder / "lab.toml")):
         found = with_preset(PLAIN, name, wanted)
-        assert found.filter == "dynamic"
+        assert (found.filter, found.preset) == ("dynamic", name.rpartition("/")[2])
         assert (found.dynamic.motion.acceleration_scale, found.dynamic.markers.innovation_share) == (0.4, 0.0)
         assert (found.kinematic, found.torque, found.smooth) == (PLAIN.kinematic, PLAIN.torque, True)
 
