@@ -38,7 +38,7 @@ BROAD = {
 SOURCE_RATE_HZ = 60.0
 SOURCE_GAINS = MadgwickSettings(0.35)
 """The source found zeta 0.07, too, but forgot to integrate what it multiplies, so that it had next to no effect."""
-MOVEMENTS = {"walking": "walk", "sitting down": "squat", "standing": "stand"}
+MOVEMENTS = {"walking": "walk", "sitting down": "sit_to_stand", "standing": "stand"}
 SEGMENTS = ("right_thigh", "right_foot")
 _TIMED = 5000
 _CLIPPED = 30
