@@ -142,6 +142,7 @@ NEEDS: Mapping[str, Needs] = {
         ),
     ),
     "loads": Needs(captures=(*_PLATES, "foreign_truth"), some_rows=("opensim",)),
+    "madgwick": Needs(("matplotlib",), ("imu_broad",), synthetic=True),
     "main_job": Needs(captures=(*_GAIT, "opensim_gappy_walk", "synthetic_exact_truth")),
     "misuse": Needs(("playwright", "pylsl")),
     "movement": Needs(captures=(*_NOISE, *_STRANGERS, "fukuchi_run", "judgement", "ric_run")),

@@ -75,7 +75,13 @@ OURS = OrientSettings("ekf", ekf=OrientationSettings(integrating=False))
 
 
 def pooled(trials: Sequence[Scene], estimate: Filter, sensors: Sequence[str] = (THIGH, FOOT)) -> float:
-    """Root mean square error over trials and sensors, degrees."""
+    """Root mean square error over trials and sensors, degrees.
+
+    Args:
+        trials: The trials.
+        estimate: The filter.
+        sensors: Names of the sensors that count.
+    """
     errors = []
     for one in trials:
         readings = [one.sensor(name) for name in sensors]

@@ -85,20 +85,37 @@ def measure_behaviour() -> Behaviour:
 
 
 def course(one: ImuReadings, beta: float, zeta: float = 0.0) -> Array:
-    """(T, 4) Madgwick's orientations from the true start."""
+    """(T, 4) Madgwick's orientations from the true start.
+
+    Args:
+        one: The sensor.
+        beta: Gain of the gradient step.
+        zeta: Gain of the gyroscope's bias.
+    """
     settings = OrientSettings("madgwick", madgwick=MadgwickSettings(beta, zeta))
     return filtered([one], settings)[0].quaternion
 
 
 def unknown_start(one: ImuReadings, beta: float, start: Array = IDENTITY) -> Array:
-    """(T, 4) Madgwick's orientations from a given start."""
+    """(T, 4) Madgwick's orientations from a given start.
+
+    Args:
+        one: The sensor.
+        beta: Gain of the gradient step.
+        start: (4,) orientation at the first sample.
+    """
     settings = OrientSettings("madgwick", madgwick=MadgwickSettings(beta))
     (found,) = orientations([one], frame="NWU", settings=settings, start=start[None])
     return found.quaternion
 
 
 def settling_s(one: ImuReadings, beta: float) -> float:
-    """Time after which the error from the start (1, 0, 0, 0) stays below 5°, s; inf where it never does."""
+    """Time after which the error from the start (1, 0, 0, 0) stays below 5°, s; inf where it never does.
+
+    Args:
+        one: The sensor.
+        beta: Gain of the gradient step.
+    """
     error = np.degrees(error_angles(unknown_start(one, beta), truth_of(one))[0])
     late = np.flatnonzero(error > NEAR_DEG)
     if not len(late):

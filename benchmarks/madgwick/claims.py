@@ -133,7 +133,7 @@ def _advantages(found: Measured) -> list[Claim]:
         Claim(
             "3.3.5",
             "Two gains are easy to adjust.",
-            "a judgement on people's work; measured are 3.3.3, and that tuning at rest gives gains that fail in "
+            "an opinion on people's work; measured are 3.3.3, and that tuning at rest gives gains that fail in "
             "movement (5.3.2)",
             NOT_HAD,
         ),

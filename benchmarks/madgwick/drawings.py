@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from benchmarks.madgwick.accuracy import DIRECTION_SDS, Accuracy
 from benchmarks.madgwick.behaviour import course, unknown_start, wrapped_euler_deg
@@ -15,6 +15,9 @@ from benchmarks.madgwick.third_base import Compared, Sweep
 from benchmarks.thesis_report.figures import BLUE, GREEN, GREY, ORANGE, TRUTH, Drawing, axes, labelled, legend
 from mbkf.conventions import Array
 from mbkf.imu.orientation import euler_angles
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 NAMES = ("roll", "pitch", "yaw")
 COLOURS = (BLUE, ORANGE, GREEN)

@@ -68,7 +68,12 @@ def measure_first_base(folder: Path) -> FirstBase:
 
 
 def skeleton_of(model: HumanModel, q: Array) -> tuple[Array, Array]:
-    """(T, 22, 3) joint rotations of SMPL and (T, 3) places of its root for configurations of our body."""
+    """(T, 22, 3) joint rotations of SMPL and (T, 3) places of its root for configurations of our body.
+
+    Args:
+        model: The body.
+        q: (T, nq) its configurations.
+    """
     poses = segment_poses(model, q)
     parts = {
         SEGMENTS[segment]: Rotation.from_quat(poses[:, k, 3:])
@@ -94,7 +99,13 @@ def skeleton_of(model: HumanModel, q: Array) -> tuple[Array, Array]:
 
 
 def write_amass(path: Path, rotations: Array, trans: Array) -> None:
-    """Writes an .npz as AMASS has it (SMPL-H, 52 joints)."""
+    """Writes an .npz as AMASS has it (SMPL-H, 52 joints).
+
+    Args:
+        path: The file.
+        rotations: (T, 22, 3) rotation vectors of the body's joints, rad.
+        trans: (T, 3) places of the root, m.
+    """
     poses = np.zeros((len(rotations), 156))
     poses[:, :66] = rotations.reshape(len(rotations), -1)
     np.savez(

@@ -84,7 +84,13 @@ def scene(
 def scenes(
     persons: Sequence[int], movements: Sequence[str] = tuple(MOVEMENTS), worse: bool = False
 ) -> list[Scene]:
-    """Every movement of every person."""
+    """Every movement of every person.
+
+    Args:
+        persons: Numbers of the persons.
+        movements: Names of the movements.
+        worse: Whether the sensors' errors are enlarged.
+    """
     return [scene(person, movement, worse) for movement in movements for person in persons]
 
 
@@ -100,12 +106,22 @@ def truth_of(one: ImuReadings) -> Array:
 
 
 def filtered(readings: Sequence[ImuReadings], settings: OrientSettings) -> tuple[Orientation, ...]:
-    """Orientations of sensors from their true first ones, as the source starts from those of the sensor."""
+    """Orientations of sensors from their true first ones, as the source starts from those of the sensor.
+
+    Args:
+        readings: The sensors.
+        settings: The filter.
+    """
     start = np.array([truth_of(one)[0] for one in readings])
     return orientations(readings, frame="NWU", settings=settings, start=start)
 
 
 def rms_deg(estimates: Sequence[Array], readings: Sequence[ImuReadings]) -> float:
-    """Root mean square of the total error over all samples of all sensors, degrees."""
+    """Root mean square of the total error over all samples of all sensors, degrees.
+
+    Args:
+        estimates: (T, 4) orientations of each sensor.
+        readings: The sensors with their true ones.
+    """
     errors = [error_angles(q, truth_of(one))[0] for q, one in zip(estimates, readings, strict=True)]
     return float(np.degrees(np.sqrt(np.mean(np.concatenate(errors) ** 2))))

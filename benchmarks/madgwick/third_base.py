@@ -127,7 +127,14 @@ def _letter(person: int, direction_sd: float) -> tuple[float, float]:
 
 
 def write_technaid(one: ImuReadings, own: Array, physical: Path, quaternions: Path) -> None:
-    """Writes both tables of a sensor, the physical quantities and the quaternions (T, 4) x, y, z, w of its filter."""
+    """Writes both tables of a sensor.
+
+    Args:
+        one: The sensor.
+        own: (T, 4) quaternions x, y, z, w of its own filter.
+        physical: File of the physical quantities.
+        quaternions: File of the quaternions.
+    """
     assert one.magnetic_field is not None
     names = ",".join(f" {kind} {axis} " for kind in ("Acc", "Gyro", "Mag") for axis in "XYZ")
     table = np.hstack([one.specific_force_mps2, one.angular_velocity_rad_s, one.magnetic_field])
