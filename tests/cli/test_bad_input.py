@@ -196,12 +196,11 @@ def test_legs_alone_are_followed(person, tmp_path, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", ["info", "scale", "reconstruct"])
+@pytest.mark.parametrize("command", ["scale", "reconstruct"])
 def test_from_the_shell(command, person, tmp_path):
     """Everything a person sees, in a process of its own."""
     missing = str(tmp_path / "none.c3d")
     more = {
-        "info": [],
         "scale": ["--mass", "75", "--out", str(tmp_path / "s.toml")],
         "reconstruct": ["--subject", str(person.subject), "--out", str(tmp_path / "out")],
     }[command]

@@ -148,7 +148,7 @@ def test_missing_file_and_unusable_folder_end_in_one_line(tmp_path):
         done = subprocess.run(
             [sys.executable, "-m", "mbkf", *words], capture_output=True, text=True, check=False, timeout=300
         )
-        assert done.returncode == 2, done.stderr
+        assert (done.returncode, done.stdout) == (2, ""), done.stderr
         assert done.stderr.startswith("mbkf: error: ")
         assert done.stderr.count("\n") == 1
 

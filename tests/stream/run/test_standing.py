@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import Capture
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
@@ -269,12 +269,21 @@ def test_what_is_waited_for_is_told_now_and_then(tmp_path, visit, monkeypatch):
     assert "waiting" in {event["kind"] for event in found.report["events"]}
 
 
-def test_the_share_of_standing_grows_while_somebody_is_still_and_begins_anew_after_a_failure(tmp_path, visit):
+def test_the_share_of_standing_grows_while_somebody_is_still_and_begins_anew_after_a_failure(
+    tmp_path, visit, monkeypatch
+):
     stream, frames = frames_of(replace(visit, plates=()))
     still = frames[COMES : COMES + STANDS]
-    wrong = [replace(frame, markers_m=frame.markers_m[::-1]) for frame in still]
+    failures = [NotConverged("the markers fit no one who stands")]
+
+    def scaled(capture, **known):
+        if failures:
+            raise failures.pop()
+        return scale(capture, mass_kg=known["mass_kg"])
+
+    monkeypatch.setattr(standing, "scale_standing", scaled)
     shares = []
-    found, _ = begin(tmp_path, ScriptedSource(stream, frames[:COMES] + wrong + still), progress=shares.append)
+    found, _ = begin(tmp_path, ScriptedSource(stream, frames[:COMES] + 2 * still), progress=shares.append)
     assert found.report["attempts"] == 2
     assert max(shares[: COMES - 5]) < 0.1, "who comes does not stand"
     full = shares.index(1.0)
