@@ -187,10 +187,10 @@ def test_points_that_are_nobody_are_told_and_it_keeps_trying(tmp_path, visit, mo
 
 
 def test_after_a_failure_the_next_second_of_standing_is_taken(tmp_path, visit):
-    """At first left and right are exchanged and half of the markers are elsewhere."""
+    """At first the person is three times as tall as anyone."""
     stream, frames = frames_of(replace(visit, plates=()))
     still = frames[COMES : COMES + STANDS]
-    wrong = [replace(frame, markers_m=frame.markers_m[::-1]) for frame in still]
+    wrong = [replace(frame, markers_m=3.0 * frame.markers_m) for frame in still]
     found, said = begin(tmp_path, ScriptedSource(stream, wrong + still))
     assert found.report["attempts"] == 2
     assert any("scaling failed" in line and "stand still once more" in line for line in said)
