@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from mbkf.cli.main import GARBAGE_AFTER
 from mbkf.io.capture import CAPTURES, FORCES
@@ -15,6 +16,9 @@ from mbkf.numerics.threads import single_threaded
 STUDIES = Path(__file__).parent / "benchmarks"
 # programs that tests start compute on one thread, too
 os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+# an example is judged by its result, not by how busy the computer is
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
 
 
 def pytest_configure(config: pytest.Config) -> None:

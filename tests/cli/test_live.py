@@ -107,7 +107,7 @@ def test_a_lag_is_followed_and_told_apart_from_the_latency(person, tmp_path, cap
 def test_a_replay_is_followed(person, tmp_path, capsys, protocol):
     out, name, port = tmp_path / "out", f"mbkf-test-{uuid.uuid4().hex[:8]}", free_port()
     live = ["live", "--from", protocol, "--subject", person.subject, "--seconds", 0.6, "--keep-log"]
-    replay = ["replay", person.trial, "--to", protocol, "--wait", 20]
+    replay = ["replay", person.trial, "--to", protocol, "--wait", PATIENCE_S]
     if protocol == "lsl":
         live, replay = [*live, "--stream", name], [*replay, "--name", name]
     else:
@@ -281,7 +281,7 @@ def test_a_page_that_nobody_is_scaled_at_is_closed(person, tmp_path, capsys, wat
     assert run([*words, "--out", tmp_path / "out"]) == 2
     assert watched[0].url in capsys.readouterr().err
     assert watched[0].handed is None
-    assert set(threading.enumerate()) <= before
+    until(lambda: set(threading.enumerate()) <= before, threading.enumerate)
 
 
 def test_a_known_subject_or_no_view_needs_no_waiting_page(person, visit, tmp_path, watched):

@@ -27,6 +27,7 @@ from mbkf.cli.protocol import SUBCOMMANDS
 from mbkf.model.protocol import load_protocol, protocol_names
 from mbkf.model.protocol_file import write_protocol
 from tests.osim_files import marker_set, osim_4, skeleton
+from tests.waiting import PATIENCE_S
 
 MARKERS = [
     ("R.ASIS", "pelvis", (0.01, 0.02, 0.13), True),
@@ -173,11 +174,11 @@ def test_edit_serves_until_its_page_is_done(words, person, tmp_path, capsys, mon
                 cookie = entered.headers["Set-Cookie"].partition(";")[0]
             address = f"ws{url[4:].partition('?')[0]}frames"
             with connect(address, additional_headers={"Cookie": cookie}) as page:
-                page.recv(5)
+                page.recv(PATIENCE_S)
                 for word in words:
                     page.send(json.dumps({"do": word, "choices": {"RASI": {"ignored": "loose"}}}))
                     with contextlib.suppress(ConnectionClosed):  # the server may be gone before it answers
-                        page.recv(5)
+                        page.recv(PATIENCE_S)
 
         threading.Thread(target=speak).start()
 

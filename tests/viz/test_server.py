@@ -60,10 +60,10 @@ def test_the_page_is_served_on_this_computer_alone(server):
 
 def test_a_socket_gets_the_greeting_and_then_the_newest_row(server, rows):
     with connect(socket_of(server.url)) as socket:
-        assert json.loads(socket.recv(5)) == {"hello": 1}
-        assert socket.recv(5) == b"first"
+        assert json.loads(socket.recv(PATIENCE_S)) == {"hello": 1}
+        assert socket.recv(PATIENCE_S) == b"first"
         rows += [(1, b"overtaken"), (2, b"second")]
-        assert socket.recv(5) == b"second"
+        assert socket.recv(PATIENCE_S) == b"second"
         with pytest.raises(TimeoutError):
             socket.recv(0.2)
 
@@ -72,17 +72,17 @@ def test_several_pages_and_reopened_ones(server):
     for _ in range(2):
         with connect(socket_of(server.url)) as one, connect(socket_of(server.url)) as two:
             for socket in (one, two):
-                socket.recv(5)
-                assert socket.recv(5) == b"first"
+                socket.recv(PATIENCE_S)
+                assert socket.recv(PATIENCE_S) == b"first"
 
 
 def test_no_row_yet_is_waited_for(rows):
     first = rows.pop()
     server = PageServer("", greeting="hello", newest=lambda: rows[-1] if rows else None)
     with connect(socket_of(server.url)) as socket:
-        assert socket.recv(5) == "hello"
+        assert socket.recv(PATIENCE_S) == "hello"
         rows.append(first)
-        assert socket.recv(5) == b"first"
+        assert socket.recv(PATIENCE_S) == b"first"
     server.close()
 
 
@@ -96,8 +96,8 @@ def test_without_the_token_nothing_is_shown(guarded):
         with pytest.raises(InvalidStatus), connect(socket_of(url)):
             pass
     with connect(socket_of(guarded.url)) as socket:
-        socket.recv(5)
-        assert socket.recv(5) == b"row"
+        socket.recv(PATIENCE_S)
+        assert socket.recv(PATIENCE_S) == b"row"
 
 
 def test_a_browser_gets_a_cookie_and_an_address_without_the_token(guarded):
@@ -111,7 +111,7 @@ def test_a_browser_gets_a_cookie_and_an_address_without_the_token(guarded):
         assert fetch(bare, Cookie=cookie[:-1])[0] == 403
         assert fetch(bare, Cookie=cookie, Origin="http://evil.example")[0] == 403
         with connect(socket_of(bare), additional_headers={"Cookie": cookie}) as socket:
-            socket.recv(5)
+            socket.recv(PATIENCE_S)
     assert used == [True] and fetch(url)[0] == 403
 
 
@@ -150,15 +150,15 @@ def test_closing_ends_the_thread_and_the_sockets(rows):
     before = set(threading.enumerate())
     server = PageServer("", greeting="hello", newest=lambda: rows[-1])
     with connect(socket_of(server.url)) as socket:
-        socket.recv(5)
+        socket.recv(PATIENCE_S)
         server.close()
         server.close()
         server.wait()
         with pytest.raises(Exception, match=r"1001|closed|going away"):
             for _ in range(5):
-                socket.recv(2)
+                socket.recv(PATIENCE_S)
     for thread in set(threading.enumerate()) - before:
-        thread.join(10.0)  # the client's own ends a moment after its socket
+        thread.join(PATIENCE_S)  # the client's own ends a moment after its socket
     assert set(threading.enumerate()) <= before
 
 
@@ -167,21 +167,21 @@ def test_a_page_that_speaks_is_answered_word_by_word_and_the_next_page_too():
     try:
         for words in (("a", "b"), ("c",)):
             with connect(socket_of(server.url)) as socket:
-                assert socket.recv(5) == "hello"
+                assert socket.recv(PATIENCE_S) == "hello"
                 for word in words:
                     socket.send(word)
-                    assert socket.recv(5) == word.upper()
+                    assert socket.recv(PATIENCE_S) == word.upper()
                 socket.send(b"no word")
                 socket.send("last")
-                assert socket.recv(5) == "LAST"
+                assert socket.recv(PATIENCE_S) == "LAST"
     finally:
         server.close()
 
 
 def test_a_page_that_only_looks_is_not_heard(server):
     with connect(socket_of(server.url)) as socket:
-        socket.recv(5)
-        assert socket.recv(5) == b"first"
+        socket.recv(PATIENCE_S)
+        assert socket.recv(PATIENCE_S) == b"first"
         socket.send("word")
         with pytest.raises(TimeoutError):
             socket.recv(0.3)

@@ -1,7 +1,6 @@
 """Through Lab Streaming Layer on this computer: what is sent arrives to the last digit, and lost streams come back."""
 
 import threading
-import time
 import uuid
 from dataclasses import replace
 from types import SimpleNamespace
@@ -24,7 +23,9 @@ from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.results.values import ResultValues
 from mbkf.stream.source import UNCOUNTED, StreamDescription
 from tests.captures import made_capture
+from tests.stream.reading import connected, events, read
 from tests.stream.results.test_websocket import shown_frame
+from tests.waiting import PATIENCE_S, until
 
 CAPTURE = made_capture(30)
 PYLSL = lsl()
@@ -38,28 +39,10 @@ def name():
 
 def play(player, made, speed=2.0):
     thread = threading.Thread(
-        target=replay, args=(made, player, ReplaySettings(speed, wait_s=10.0), threading.Event())
+        target=replay, args=(made, player, ReplaySettings(speed, wait_s=PATIENCE_S), threading.Event())
     )
     thread.start()
     return thread
-
-
-def connected(source):
-    until = time.monotonic() + 10.0
-    while time.monotonic() < until:
-        stream = source.connect(0.5)
-        if stream is not None:
-            return stream
-    raise AssertionError("no stream")
-
-
-def read(source, count, seconds=5.0):
-    frames, until = [], time.monotonic() + seconds
-    while len(frames) < count and time.monotonic() < until:
-        frame = source.read(0.1)
-        if frame is not None:
-            frames.append(frame)
-    return frames
 
 
 def test_what_is_sent_arrives_to_the_last_digit(name):
@@ -100,10 +83,13 @@ def test_plates_that_return_as_others_are_refused(name):
     other = replace(made.stream, plates=made.stream.plates[:1])
     outlet = PYLSL.StreamOutlet(plates_info(PYLSL, other, name))
     thread, news = play(player, made, 1.0), []
-    until = time.monotonic() + 10.0
-    while "plates refused" not in news and time.monotonic() < until:
+
+    def refused():
         source.read(0.05)
-        news += [kind for kind, _ in source.news()]
+        news.extend(kind for kind, _ in source.news())
+        return "plates refused" in news
+
+    until(refused, lambda: news)
     thread.join()
     assert news == ["plates gone", "plates refused"]
     source.close()
@@ -125,12 +111,10 @@ def test_plates_and_markers_that_return_in_reverse_order_are_mapped(name):
     plates = [replace(plate, name=own) for plate, own in zip(made.stream.plates[::-1], names, strict=True)]
     stream = replace(made.stream, plates=tuple(plates), marker_names=made.stream.marker_names[::-1])
     turned = replace(made, stream=stream, markers_m=made.markers_m[:, ::-1], wrench=made.wrench[:, ::-1])
-    again, back, until = LslPlayer(turned, name), [], time.monotonic() + 15.0
-    while {"markers back", "plates back"} - {kind for kind, _ in back} and time.monotonic() < until:
-        assert source.read(0.05) is None
-        back += source.news()
+    again = LslPlayer(turned, name)
+    back = events(source, "markers back", "plates back")
     thread = play(again, turned, 4.0)
-    frames = read(source, 30, 10.0)
+    frames = read(source, 30)
     thread.join()
     again.close()
     source.close()
@@ -168,6 +152,7 @@ def test_frames_that_come_twice_have_their_number_twice(name):
     outlet, source = PYLSL.StreamOutlet(info), LslSource(name)
     connected(source)
     assert source.read(0.1) is None
+    until(outlet.have_consumers)
     begin = PYLSL.local_clock()
     for number in (0, 1, 1, 2, 3, 3):
         outlet.push_sample([float(number), 0.0, 0.0], begin + number / 100.0)
@@ -243,10 +228,10 @@ def test_a_stream_that_dies_and_returns_is_taken_up_again(name):
     assert len(read(source, 30)) == 30
     thread.join()
     player.close()
-    assert read(source, 1, 0.3) == []
+    assert source.read(0.3) is None
     again = LslPlayer(made, name)
     thread = play(again, made, 4.0)
-    numbers = np.array([frame.number for frame in read(source, 30, 10.0)])
+    numbers = np.array([frame.number for frame in read(source, 30)])
     assert numbers[0] > 29 and (numbers - numbers[0]).tolist() == list(range(30))
     thread.join()
     again.close()
@@ -262,10 +247,7 @@ def test_a_stream_that_returns_with_other_markers_is_refused(name):
     player.close()
     other = MarkerTrajectories(("A", "B"), np.zeros((5, 2, 3)), 100.0)
     again = LslPlayer(played(replace(CAPTURE, markers=other, plates=())), name)
-    until, news = time.monotonic() + 10.0, []
-    while "refused" not in {kind for kind, _ in news} and time.monotonic() < until:
-        assert source.read(0.1) is None
-        news += source.news()
+    news = events(source, "refused")
     again.close()
     source.close()
     assert any("other markers" in what for _, what in news)
@@ -306,10 +288,11 @@ def test_another_programs_stream_is_numbered_by_its_stamps(name):
     stream = connected(source)
     assert stream.marker_names == ("A", "B")
     assert source.read(0.1) is None  # nothing is received before
+    until(outlet.have_consumers)
     begin = PYLSL.local_clock()
     for number in (0, 1, 2, 5, 6):
         outlet.push_sample([0.0, 1000.0, 0.0, 0.0, 0.0, 500.0 + number], begin + number / 100.0)
-    frames = read(source, 5, 10.0)
+    frames = read(source, 5)
     source.close()
     assert [frame.number for frame in frames] == [0, 1, 2, 5, 6]
     np.testing.assert_allclose(frames[3].markers_m, [[0.0, 0.0, 1.0], [0.0, -0.505, 0.0]], atol=1e-6)
@@ -330,22 +313,20 @@ def test_streams_that_cannot_be_used_are_refused(name):
 def test_results_are_published_with_names_and_units(name):
     model = HumanModel.scaled(mass_kg=75.0)
     results = LslResults(model, name, 100.0)
-    (info,) = PYLSL.resolve_byprop("name", name, 1, 5.0)
+    (info,) = until(lambda: PYLSL.resolve_byprop("name", name, 1, 5.0))
     inlet = PYLSL.StreamInlet(info, as_numpy=True)
-    inlet.open_stream(5.0)
-    entry = inlet.info(5.0).desc().child("channels").child("channel")
+    inlet.open_stream(PATIENCE_S)
+    entry = inlet.info(PATIENCE_S).desc().child("channels").child("channel")
     assert (entry.child_value("label"), entry.child_value("unit")) == ("pelvis_tilt", "rad")
     verdict = Verdict.of([Reason("pelvis", "look", "9 mm off", "it may be loose", "look at it")])
     frame = replace(shown_frame(model), judgement=Judgement(verdict, 1.5))
-    (told,) = PYLSL.resolve_byprop("name", name + VERDICT_SUFFIX, 1, 5.0)
+    (told,) = until(lambda: PYLSL.resolve_byprop("name", name + VERDICT_SUFFIX, 1, 5.0))
     words = PYLSL.StreamInlet(told)
-    words.open_stream(5.0)
-    until = time.monotonic() + 5.0
-    sample = None
-    while sample is None and time.monotonic() < until:
-        results.take(frame)
-        sample, _ = inlet.pull_sample(0.1)
-    assert words.pull_sample(5.0)[0] == [verdict.line]
+    words.open_stream(PATIENCE_S)
+    until(lambda: results._outlet.have_consumers() and results._verdicts.have_consumers())
+    results.take(frame)
+    sample, _ = inlet.pull_sample(PATIENCE_S)
+    assert words.pull_sample(PATIENCE_S)[0] == [verdict.line]
     results.close()
     np.testing.assert_array_equal(sample[:-3], ResultValues(model).row(frame))
     np.testing.assert_array_equal(sample[-3:], [frame.number, 1.0, frame.latency_s])

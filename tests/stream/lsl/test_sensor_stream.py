@@ -1,6 +1,5 @@
 """A stream of inertial sensors that breaks off and returns with its channels in another order, or as another one."""
 
-import time
 import uuid
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl.sensor_format import read_sensor_info
 from mbkf.stream.lsl.sensor_stream import SensorStream
+from tests import waiting
 
 PYLSL = lsl()
 
@@ -41,28 +41,26 @@ def name():
 
 
 def received(name, info, news, counted=False):
-    (found,) = PYLSL.resolve_byprop("name", name, 1, 5.0)
+    (found,) = waiting.until(lambda: PYLSL.resolve_byprop("name", name, 1, 5.0))
     layout = read_sensor_info(info, {})
     return SensorStream(PYLSL, found, layout, {}, counted, lambda kind, what: news.append((kind, what)))
 
 
 def until(news, kind, stream):
     """Reads until an event of a kind has come."""
-    end = time.monotonic() + 10.0
-    while kind not in [known for known, _ in news] and time.monotonic() < end:
-        stream.take(0.02)
-    assert kind in [known for known, _ in news]
+    waiting.until(lambda: stream.take(0.02) or kind in [known for known, _ in news], lambda: news)
 
 
 def test_samples_have_numbers_and_times_by_their_stamps(name):
     info, news = info_of(name, ("a", "b")), []
     outlet = PYLSL.StreamOutlet(info)
     stream = received(name, info, news)
+    waiting.until(outlet.have_consumers)
     begin = PYLSL.local_clock()
     for n in (0, 1, 2, 5, 6):
         outlet.push_sample(row((n, 1.0), (n, 2.0)), begin + n / 50.0)
-    time.sleep(0.2)
-    assert stream.take(0.1) is None  # they wait for more
+    # They wait for more, until a look finds no other.
+    waiting.until(lambda: stream.take(0.0) or stream._stamped.numbering.waiting == 5)
     found = stream.take(0.1)
     assert found.numbers.tolist() == [0, 1, 2, 5, 6]
     np.testing.assert_allclose(found.times_s - begin, found.numbers / 50.0, atol=2e-3)
@@ -74,14 +72,16 @@ def test_sensors_that_return_in_another_order_and_unit_are_found_by_name(name):
     info, news = info_of(name, ("a", "b"), counted=True), []
     outlet = PYLSL.StreamOutlet(info)
     stream = received(name, info, news, counted=True)
+    waiting.until(outlet.have_consumers)
     outlet.push_sample([*row((1.0, 10.0), (2.0, 20.0)), 4.0])
-    first = stream.take(5.0)
+    first = stream.take(waiting.PATIENCE_S)
     assert first.numbers.tolist() == [4] and first.values[0, :, 0].tolist() == [1.0, 2.0]
     del outlet
     again = PYLSL.StreamOutlet(info_of(name, ("b", "a"), unit="deg/s", counted=True))
     until(news, "sensors back", stream)
+    waiting.until(again.have_consumers)
     again.push_sample([*row((180.0, 20.0), (90.0, 10.0)), 9.0])
-    found = stream.take(5.0)
+    found = stream.take(waiting.PATIENCE_S)
     assert found.numbers.tolist() == [9]
     np.testing.assert_allclose(found.values[0, :, 0], [np.pi / 2.0, np.pi])
     np.testing.assert_allclose(found.values[0, :, 3], [10.0, 20.0])

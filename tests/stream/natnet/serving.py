@@ -7,6 +7,7 @@ import numpy as np
 
 from mbkf.stream.natnet import packets
 from tests.stream.natnet import layouts
+from tests.waiting import PATIENCE_S
 
 
 class Server:
@@ -20,7 +21,7 @@ class Server:
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", 0))
-        self._socket.settimeout(5.0)
+        self._socket.settimeout(PATIENCE_S)
         self.port = self._socket.getsockname()[1]
         self.client = None
 
@@ -39,7 +40,7 @@ class Server:
             while True:
                 numbers.append(struct.unpack_from("<H", self._socket.recv(65536))[0])
         except BlockingIOError:
-            self._socket.settimeout(5.0)
+            self._socket.settimeout(PATIENCE_S)
         return numbers
 
     def send(self, *sent):

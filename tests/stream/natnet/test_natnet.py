@@ -2,7 +2,6 @@
 
 import struct
 import threading
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +18,9 @@ from mbkf.stream.replay import ReplaySettings, replay
 from tests.captures import made_capture
 from tests.stream.natnet import layouts
 from tests.stream.natnet.serving import Server, described, frame, nonsense
+from tests.stream.reading import connected, read
 from tests.stream.scripted import frames_of
+from tests.waiting import PATIENCE_S, until
 
 CAPTURE = made_capture(30)
 
@@ -69,22 +70,10 @@ def served():
         player.close()
 
 
-def connected(source):
-    until = time.monotonic() + 10.0
-    while time.monotonic() < until:
-        stream = source.connect(0.5)
-        if stream is not None:
-            return stream
-    raise AssertionError("no stream")
-
-
-def read(source, count):
-    frames, until = [], time.monotonic() + 5.0
-    while len(frames) < count and time.monotonic() < until:
-        frame = source.read(0.2)
-        if frame is not None:
-            frames.append(frame)
-    return frames
+@pytest.fixture(autouse=True)
+def patient(monkeypatch):
+    """A computer that is busy for some seconds is no silence of the server."""
+    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", PATIENCE_S)
 
 
 def single(values):
@@ -138,7 +127,7 @@ def test_a_server_that_dies_and_returns_is_taken_up_again(served, monkeypatch):
     assert source.read(0.3) is None
     again = served(port=player.port)
     assert again.port == player.port
-    assert [frame.number for frame in read(source, 30)][-1] == 29
+    until(lambda: (frame := source.read(0.1)) is not None and frame.number == 29)
     source.close()
     assert {kind for kind, _ in source.news()} == {"connection"}
 
@@ -197,7 +186,7 @@ def test_an_address_that_is_gone_for_a_while_ends_nothing(server, monkeypatch):
         assert source.read(0.0) is None
         assert source.read(0.0) is None
     assert {what for _, what in source.news()} >= {"NatNet: the network is gone"}
-    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", 2.0)
+    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", PATIENCE_S)
     source._again()
     server.heard()
     server.hear(packets.CONNECT)
@@ -244,7 +233,7 @@ def test_a_description_that_changes_while_frames_come_is_asked_for_and_followed(
     assert np.isnan(unsure.markers_m).all() and not len(unsure.plates.index)
     server.hear(packets.REQUEST_DESCRIPTIONS)
     server.send(layouts.descriptions((4, 1), [("one", ("B", "A"))], ()))
-    assert source._client.described.wait(5.0)
+    assert source._client.described.wait(PATIENCE_S)
     server.send(sent(11, 2.0, 1.0, flags=2))
     assert read(source, 1)[0].markers_m[:, 0].tolist() == [1.0, 2.0]
     source.close()

@@ -16,7 +16,7 @@ from mbkf.stream.run.log_writer import LogWriter
 from mbkf.stream.run.session import LiveSession
 from mbkf.stream.source import UNCOUNTED, PlateSamples
 from tests.stream.scripted import SETTINGS, Collected, ScriptedSource, follow, frames_of, kinds
-from tests.waiting import PATIENCE_S
+from tests.waiting import PATIENCE_S, until
 
 pytestmark = pytest.mark.slow
 
@@ -133,6 +133,8 @@ def test_frames_that_wait_when_a_run_is_stopped_are_lost_and_counted(tmp_path, c
             def take(self, frame, stop=stop):
                 super().take(frame)
                 if len(self.frames) == 30:
+                    if not Source.patient:  # all frames have come
+                        until(lambda: "mbkf-reader" not in {one.name for one in threading.enumerate()})
                     stop.set()
 
         session = LiveSession(Source(stream, frames), subject, SETTINGS, tmp_path, "script")

@@ -15,6 +15,7 @@ from mbkf.viz.live.page import LivePage
 from tests.motions import assert_near
 from tests.recordings import PLATE, walk, walker
 from tests.viz.streams import feeding, frame
+from tests.waiting import PATIENCE_S
 
 
 @pytest.fixture
@@ -29,13 +30,13 @@ def socket_of(live):
 
 
 def rows_of(socket, count):
-    return [np.frombuffer(socket.recv(5), "<f4") for _ in range(count)]
+    return [np.frombuffer(socket.recv(PATIENCE_S), "<f4") for _ in range(count)]
 
 
 def test_the_greeting_describes_the_rows_that_follow(live):
     live.take(frame(7))
     with socket_of(live) as socket:
-        scene = json.loads(socket.recv(5))
+        scene = json.loads(socket.recv(PATIENCE_S))
         (row,) = rows_of(socket, 1)
     assert scene["title"] == "a walk" and scene["plates"] == [PLATE.tolist()]
     assert len(row) == scene["width"]
@@ -50,7 +51,7 @@ def test_the_greeting_describes_the_rows_that_follow(live):
 
 def test_rows_follow_the_stream_and_leave_frames_out(live):
     with feeding(live, 0.002), socket_of(live) as socket:
-        socket.recv(5)
+        socket.recv(PATIENCE_S)
         numbers = [row[1] for row in rows_of(socket, 8)]
     assert (np.diff(numbers) > 1).any() and (np.diff(numbers) > 0).all()
 
@@ -63,8 +64,8 @@ def test_nothing_is_computed_while_nobody_looks(live):
         live.take(frame(k))
     assert made == []
     with socket_of(live) as socket:
-        socket.recv(5)
-        socket.recv(5)
+        socket.recv(PATIENCE_S)
+        socket.recv(PATIENCE_S)
     assert made == [299]
 
 
@@ -72,7 +73,7 @@ def test_pages_share_one_row(live):
     live.take(frame(3))
     with socket_of(live) as one, socket_of(live) as two:
         for socket in (one, two):
-            socket.recv(5)
+            socket.recv(PATIENCE_S)
         assert_near(rows_of(one, 1)[0], rows_of(two, 1)[0], 0.0)
 
 
@@ -87,11 +88,11 @@ def test_the_judgement_of_the_run_is_sent_when_it_changes(live):
     judgement = Judgement(verdict, 1.5, (doubt,))
     live.take(replace(frame(3), judgement=judgement))
     with socket_of(live) as socket:
-        socket.recv(5)
-        told = json.loads(socket.recv(5))["judgement"]
+        socket.recv(PATIENCE_S)
+        told = json.loads(socket.recv(PATIENCE_S))["judgement"]
         assert told["line"] == verdict.line and told["limb_doubts"][0]["sentence"] == doubt.sentence
-        assert isinstance(socket.recv(5), bytes)
+        assert isinstance(socket.recv(PATIENCE_S), bytes)
         live.take(replace(frame(4), judgement=judgement))
-        assert isinstance(socket.recv(5), bytes)
+        assert isinstance(socket.recv(PATIENCE_S), bytes)
         live.take(replace(frame(5), judgement=Judgement(Verdict(), 2.5)))
-        assert json.loads(socket.recv(5))["judgement"]["overall"] == "use"
+        assert json.loads(socket.recv(PATIENCE_S))["judgement"]["overall"] == "use"

@@ -15,9 +15,11 @@ from mbkf.viz.live.page import LivePage
 from mbkf.viz.live.standing_page import StandingPage, standing_page
 from mbkf.viz.page import page
 from mbkf.viz.server import PageServer
+from tests import waiting
 from tests.recordings import PLATE, walk, walker
 from tests.viz.browsing import until
 from tests.viz.streams import feeding
+from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.slow
 
@@ -42,7 +44,7 @@ def socket_of(url):
 
 
 def row_of(connection):
-    return json.loads(connection.recv(5).decode())
+    return json.loads(connection.recv(PATIENCE_S).decode())
 
 
 def test_the_page_is_whole_and_connects_to_its_server_alone():
@@ -62,7 +64,7 @@ def test_the_live_page_is_told_from_this_one():
 def test_what_was_said_before_it_opened_is_shown_then(standing):
     standing.say(SENTENCES[0])
     with socket_of(standing.open("visit")) as one:
-        assert json.loads(one.recv(5)) == {"title": "visit"}
+        assert json.loads(one.recv(PATIENCE_S)) == {"title": "visit"}
         assert row_of(one) == {"text": SENTENCES[0], "share": None}
         standing.progress(0.25)
         assert row_of(one) == {"text": SENTENCES[0], "share": 0.25}
@@ -95,7 +97,7 @@ def test_the_next_page_gets_port_and_token_while_connections_are_still_open():
     port = int(re.search(r":(\d+)/", url)[1])
     local = f"http://127.0.0.1:{port}/?{url.split('?')[1]}"
     with socket.create_connection(("127.0.0.1", port)), socket_of(local) as one:
-        one.recv(5)
+        one.recv(PATIENCE_S)
         given_port, token = standing.hand_over()
         assert given_port == port
         following = PageServer(
@@ -104,7 +106,7 @@ def test_the_next_page_gets_port_and_token_while_connections_are_still_open():
         try:
             assert following.url == url
             with socket_of(local) as other:
-                assert other.recv(5) == "hello"
+                assert other.recv(PATIENCE_S) == "hello"
         finally:
             following.close()
     standing.close()
@@ -116,7 +118,7 @@ def test_closing_ends_the_thread_whether_it_was_opened_or_not(standing):
     standing.open("visit")
     standing.close()
     standing.close()
-    assert set(threading.enumerate()) <= before
+    waiting.until(lambda: set(threading.enumerate()) <= before, threading.enumerate)
 
 
 def test_a_port_in_use_is_said(standing):

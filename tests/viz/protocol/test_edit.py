@@ -114,9 +114,9 @@ def test_only_who_has_the_token_may_speak(page_of, tmp_path):
         )
     refused.value.close()
     with connect(f"{there}?token={token}") as mine:
-        mine.recv(5)
+        mine.recv(PATIENCE_S)
         mine.send(json.dumps({"do": "save", "choices": {}}))
-        assert json.loads(mine.recv(5))["saved"] == "mine.toml"
+        assert json.loads(mine.recv(PATIENCE_S))["saved"] == "mine.toml"
     assert (tmp_path / "mine.toml").is_file()
 
 
