@@ -15,7 +15,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import exponential, multiply, rotate
-from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.readings import ImuReadings, rate_of
 from mbkf.numerics.runs import runs
 
 STUCK_S = 0.5
@@ -114,11 +114,11 @@ def _time_problems(one: ImuReadings) -> list[Problem]:
     if len(jumps):
         longest = int(jumps[np.argmax(steps[jumps])])
         text = (
-            f"sensor {one.name}: {len(jumps)} gaps in time, the longest {steps[longest]:.3g} s at "
+            f"sensor {one.name}: {_counted_gaps(len(jumps))} in time, the longest {steps[longest]:.3g} s at "
             f"{one.time_s[longest]:.2f} s; samples were lost, they are bridged by the filter"
         )
         found.append(Problem(one.name, "gap", text, False))
-    usual = 1.0 / float(np.median(steps)) if len(steps) else one.rate_hz
+    usual = rate_of(one.time_s, one.name) if len(steps) else one.rate_hz
     if abs(usual / one.rate_hz - 1.0) > 0.02:
         text = (
             f"sensor {one.name}: the times give {usual:.4g} Hz, the stated rate is {one.rate_hz:g} Hz; "
@@ -128,14 +128,19 @@ def _time_problems(one: ImuReadings) -> list[Problem]:
     return found
 
 
+def _counted_gaps(count: int) -> str:
+    return "1 gap" if count == 1 else f"{count} gaps"
+
+
 def _gaps(one: ImuReadings, name: str, values: Array) -> list[Problem]:
     gaps = runs(np.any(np.isnan(values), axis=1))
     if not gaps:
         return []
     start, end = max(gaps, key=lambda run: run[1] - run[0])
     text = (
-        f"sensor {one.name}: the {name} has {len(gaps)} gaps, the longest {(end - start) / one.rate_hz:.3g} s at "
-        f"{one.time_s[start]:.2f} s; check the radio link or export again; the filter bridges them"
+        f"sensor {one.name}: the {name} has {_counted_gaps(len(gaps))}, the longest "
+        f"{(end - start) / one.rate_hz:.3g} s at {one.time_s[start]:.2f} s; check the radio link or export "
+        "again; the filter bridges them"
     )
     return [Problem(one.name, "gap", text, False)]
 

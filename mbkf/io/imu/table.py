@@ -15,6 +15,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.imu.column_names import ColumnName, parse_column_name, time_unit
+from mbkf.io.imu.even_times import even_times
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of, signal_width
 from mbkf.io.imu.table_text import TableText, is_number, read_table_text
@@ -354,7 +355,10 @@ def _clocks(
         return [(-1, np.arange(len(numbers)) / rate_hz)]
     stated = [time for time in times if time.unit]
     chosen = stated or list(times[:1])
-    return [(time.index, times_s(path, numbers[:, time.index], time.unit, time.title)) for time in chosen]
+    return [
+        (time.index, even_times(times_s(path, numbers[:, time.index], time.unit, time.title), rate_hz))
+        for time in chosen
+    ]
 
 
 def _signals(
