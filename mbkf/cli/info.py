@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.trial.info import AxesSummary, CaptureSummary, MarkerSummary, ProtocolSummary
+    from mbkf.trial.info import AxesSummary, CaptureSummary, MarkerSummary, PlatesMass, ProtocolSummary
 
 _MOST_WITH_GAPS = 30
 
@@ -67,6 +67,8 @@ def _show(summary: CaptureSummary, console: Console) -> None:
         for event in summary.events:
             events.add_row(f"{event.time_s:.3f} s", event.context, event.label)
         console.print(events)
+    if summary.plates_mass is not None and summary.plates_mass.verdict == "outside":
+        console.print(f"warning: {summary.plates_mass.note}", soft_wrap=True)
     for note in summary.notes:
         console.print(f"note: {note}")
 
@@ -100,6 +102,7 @@ def _overview(summary: CaptureSummary) -> Table:
         "analog": _channels(summary),
         "events": str(len(summary.events) or "none"),
         "body mass": "" if mass is None else f"{mass:g} kg",
+        "by plates": _plates_mass(summary.plates_mass),
     }
     table = _bare("", ">", "")
     table.show_header = False
@@ -108,6 +111,12 @@ def _overview(summary: CaptureSummary) -> Table:
         if text:
             table.add_row(name, text)
     return table
+
+
+def _plates_mass(found: PlatesMass | None) -> str:
+    if found is None or found.kg is None:
+        return "" if found is None else f"mass not determined: {found.note}"
+    return f"{found.kg:.1f} kg"
 
 
 def _counted(kinds: Iterable[tuple[str, int]]) -> str:

@@ -196,9 +196,13 @@ def mass_option(text: str) -> float | str:
 
 
 def warn_of_fit(subject: Subject) -> None:
-    """Prints the evidence against the fitted body."""
+    """Prints the evidence against the fitted body, and of plates against its mass."""
     from mbkf.scaling.verdict import DOUBTS_KEY
+    from mbkf.trial.checks.unscaled_mass import PLATES_KEY
 
+    contradictions = subject.report.get(PLATES_KEY)
+    for note in contradictions if isinstance(contradictions, list) else ():
+        print(f"warning: {note}", file=sys.stderr)
     found = subject.report.get(DOUBTS_KEY)
     for doubt in found if isinstance(found, list) else ():
         print(f"warning: this body may not be the person's: {doubt}", file=sys.stderr)

@@ -6,12 +6,14 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from mbkf.errors import MbkfError, UnknownName
+from mbkf.errors import InvalidInput, MbkfError, UnknownName
 from mbkf.io.axes import axes_matrix, axes_text
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
 from mbkf.model.protocol import detect_protocol
 from mbkf.numerics.runs import runs
 from mbkf.trial.axes.captures import find_axes_by_names
+from mbkf.trial.axes.decision import AxesFinding, applied
+from mbkf.trial.checks.unscaled_mass import unscaled_mass_finding
 from mbkf.trial.preparation.coverage import use_by_protocol
 from mbkf.trial.protocol.choice import shipped_protocol
 from mbkf.trial.protocol.inferred import infer_marker_set
@@ -87,6 +89,22 @@ class AxesSummary:
 
 
 @dataclass(frozen=True)
+class PlatesMass:
+    """Mass by the plates, over stretches in which they carry the whole body.
+
+    Attributes:
+        kg: The mass, or None where such a stretch is too short.
+        verdict: "inside", "doubtful" or "outside" against the mass that the file states, or a person's; else
+            "not judged".
+        note: A sentence about it.
+    """
+
+    kg: float | None
+    verdict: str
+    note: str
+
+
+@dataclass(frozen=True)
 class ProtocolSummary:
     """The marker set that `mbkf scale` would use, and the share of the capture's markers that it knows.
 
@@ -124,6 +142,7 @@ class CaptureSummary:
         up_axis: Axis of the file that points up.
         length_unit: Length unit of the file.
         subject_mass_kg: Body mass the file states, or None.
+        plates_mass: Mass by the plates; None without plates, or where the vertical is not known.
         labelled: Number of markers with a name of their own.
         unlabelled: Number of trajectories called ``*0``, ``*1`` ….
         missing_fraction: Share of missing samples over all markers, 0 to 1.
@@ -147,6 +166,7 @@ class CaptureSummary:
     up_axis: str
     length_unit: str
     subject_mass_kg: float | None
+    plates_mass: PlatesMass | None
     labelled: int
     unlabelled: int
     missing_fraction: float
@@ -167,6 +187,7 @@ def describe(capture: Capture) -> CaptureSummary:
     present = markers.present
     seen = markers.positions_m[present]
     unlabelled = sum(name.startswith("*") for name in markers.names)
+    axes = find_axes_by_names(capture)
     extent = (tuple(seen.min(axis=0).tolist()), tuple(seen.max(axis=0).tolist())) if len(seen) else None
     return CaptureSummary(
         path=capture.path,
@@ -177,6 +198,7 @@ def describe(capture: Capture) -> CaptureSummary:
         up_axis=capture.up_axis,
         length_unit=capture.length_unit,
         subject_mass_kg=capture.subject_mass_kg,
+        plates_mass=_plates_mass(capture, axes),
         labelled=len(markers.names) - unlabelled,
         unlabelled=unlabelled,
         missing_fraction=float(1.0 - present.mean()) if present.size else 0.0,
@@ -190,7 +212,7 @@ def describe(capture: Capture) -> CaptureSummary:
         channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),
         events=capture.events,
         notes=capture.notes,
-        axes=_axes(capture),
+        axes=_axes(capture, axes),
         protocol=_protocol(capture),
     )
 
@@ -215,8 +237,18 @@ def _protocol(capture: Capture) -> ProtocolSummary | None:
     )
 
 
-def _axes(capture: Capture) -> AxesSummary:
-    found = find_axes_by_names(capture)
+def _plates_mass(capture: Capture, axes: AxesFinding) -> PlatesMass | None:
+    """The mass by the plates, in the axes that other commands would use."""
+    if not capture.plates:
+        return None
+    try:
+        found = unscaled_mass_finding(applied(capture, axes))
+    except InvalidInput:
+        return None
+    return PlatesMass(found.better, found.verdict, found.hint)
+
+
+def _axes(capture: Capture, found: AxesFinding) -> AxesSummary:
     return AxesSummary(
         read=capture.axes,
         source=capture.axes_source.value,

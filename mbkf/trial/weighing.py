@@ -14,6 +14,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks import mass
 from mbkf.trial.checks.judge import plate_checks
+from mbkf.trial.checks.unscaled_mass import PERSONS_KG, PLATES_KEY
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -45,13 +46,16 @@ def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
             continue
         finding = _weighed(subject, capture)
         why = finding.hint
-        if finding.better is not None and finding.expected_sd is not None:
+        if finding.better is not None and not PERSONS_KG[0] <= finding.better <= PERSONS_KG[1]:
+            why = f"{finding.better:.0f} kg is not the mass of a person; check the plates' units, gains and offsets"
+        elif finding.better is not None and finding.expected_sd is not None:
             found.append((finding.expected_sd, finding.better, Path(capture.path).name))
     if not found:
         raise InvalidInput(f"the plates do not give the body mass ({why}); give --mass KG")
     sd, mass_kg, name = min(found)
     note: dict[str, object] = {"kg": mass_kg, "sd_percent": sd, "capture": name}
-    return replace(subject, mass_kg=mass_kg, report={**subject.report, MASS_KEY: note})
+    report = {key: value for key, value in subject.report.items() if key != PLATES_KEY}
+    return replace(subject, mass_kg=mass_kg, report={**report, MASS_KEY: note})
 
 
 def _weighed(subject: Subject, capture: Capture) -> Finding:

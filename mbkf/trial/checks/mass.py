@@ -7,6 +7,7 @@ over whole cycles, the velocities cancel.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -35,6 +36,29 @@ PART_S, PARTS_PERCENT = 0.5, 4.0
 """Parts of a trial, of about this duration, agree on the mass to this; else something besides the feet carries load."""
 
 
+@dataclass(frozen=True)
+class VerticalLoads:
+    """Vertical force and motion of a trial.
+
+    Attributes:
+        rate_hz: Frame rate.
+        mass_kg: The mass that is judged.
+        force_n: (T,) vertical force of all plates.
+        speed_m_s: (T,) vertical speed of the centre of mass.
+        accounted: (T,) frames in which plates carry the whole load.
+        speed_sd_m_s: Standard deviation of that speed.
+        part_s: Duration of parts that have to agree.
+    """
+
+    rate_hz: float
+    mass_kg: float
+    force_n: Array
+    speed_m_s: Array
+    accounted: BoolArray
+    speed_sd_m_s: float = SPEED_SD_M_S
+    part_s: float = PART_S
+
+
 def mass_finding(evidence: Evidence, others: BoolArray, plates_agree: bool = True) -> Finding:
     """The mass given over that of the plates, % more.
 
@@ -43,18 +67,36 @@ def mass_finding(evidence: Evidence, others: BoolArray, plates_agree: bool = Tru
         others: (T,) frames in or near which parts besides the feet carry load.
         plates_agree: False for plates that contradict each other; the mass is then doubtful at most.
     """
-    for frames in (evidence.accounted, evidence.accounted & ~others):
-        parts = _parts(frames, evidence.rate_hz)
-        if sum(len(part) - 1 for part in parts) < LEAST_S * evidence.rate_hz:
+    loads = VerticalLoads(
+        evidence.rate_hz,
+        evidence.mass_kg,
+        evidence.raw[:, :, 2].sum(axis=1),
+        evidence.momentum[:, 2] / evidence.mass_kg,
+        evidence.accounted,
+    )
+    return impulse_finding(loads, others, plates_agree)
+
+
+def impulse_finding(loads: VerticalLoads, others: BoolArray, plates_agree: bool = True) -> Finding:
+    """The mass given over that of the impulse, % more.
+
+    Args:
+        loads: Force and motion.
+        others: (T,) frames in or near which parts besides the feet carry load.
+        plates_agree: False for plates that contradict each other; the mass is then doubtful at most.
+    """
+    for frames in (loads.accounted, loads.accounted & ~others):
+        parts = _parts(frames, loads)
+        if sum(len(part) - 1 for part in parts) < LEAST_S * loads.rate_hz:
             return undetermined("needs half a second in which only feet on plates carry load")
-        impulse, per_kg = np.array([_impulses(evidence, part) for part in parts]).T
-        ratio = impulse / per_kg / evidence.mass_kg
+        impulse, per_kg = np.array([_impulses(loads, part) for part in parts]).T
+        ratio = impulse / per_kg / loads.mass_kg
         mass_kg = float(impulse.sum() / per_kg.sum())
         spread = float(np.sqrt(np.average((ratio - ratio.mean()) ** 2, weights=per_kg)))
-        if spread * evidence.mass_kg <= 0.01 * PARTS_PERCENT * mass_kg:
-            return _judged(evidence.mass_kg, mass_kg, per_kg, parts, plates_agree)
+        if spread * loads.mass_kg <= 0.01 * PARTS_PERCENT * mass_kg:
+            return _judged(loads, mass_kg, per_kg, parts, plates_agree)
     return undetermined(
-        f"parts of the trial differ by {100 * spread:.0f} %: "
+        f"parts of the trial differ by {100 * spread * loads.mass_kg / mass_kg:.0f} %: "
         "something besides the feet may carry load, or plates differ"
     )
 
@@ -64,40 +106,41 @@ def undetermined(why: str) -> Finding:
     return not_judged(NAME, "%", BOUND_PERCENT, why)
 
 
-def _parts(frames: BoolArray, rate_hz: float) -> list[Array]:
+def _parts(frames: BoolArray, loads: VerticalLoads) -> list[Array]:
     """Stretches cut into parts of one duration, each with the frame at which the next one begins."""
     found = []
     for run in stretches(frames):
-        seconds = (len(run) - 1) / rate_hz
+        seconds = (len(run) - 1) / loads.rate_hz
         if seconds >= LEAST_RUN_S:
-            cuts = np.linspace(0, len(run) - 1, max(1, round(seconds / PART_S)) + 1).round().astype(int)
-            found += [run[first : last + 1] for first, last in pairwise(cuts)]
+            cuts = np.linspace(0, len(run) - 1, max(1, round(seconds / loads.part_s)) + 1).round().astype(int)
+            found += [run[first : last + 1] for first, last in pairwise(cuts) if last > first]
     return found
 
 
-def _impulses(evidence: Evidence, part: Array) -> tuple[float, float]:
+def _impulses(loads: VerticalLoads, part: Array) -> tuple[float, float]:
     """Vertical impulse of the plates over a part, N s, and of a body of 1 kg."""
-    force = evidence.raw[part, :, 2].sum(axis=1)
-    given = (force.sum() - 0.5 * (force[0] + force[-1])) / evidence.rate_hz
-    lasting_s = (len(part) - 1) / evidence.rate_hz
-    speeds = evidence.momentum[part[[0, -1]], 2] / evidence.mass_kg
+    force = loads.force_n[part]
+    given = (force.sum() - 0.5 * (force[0] + force[-1])) / loads.rate_hz
+    lasting_s = (len(part) - 1) / loads.rate_hz
+    speeds = loads.speed_m_s[part[[0, -1]]]
     return float(given), float(GRAVITY_M_S2 * lasting_s + speeds[1] - speeds[0])
 
 
 def _judged(
-    stated_kg: float, mass_kg: float, per_kg: Array, parts: list[Array], plates_agree: bool
+    loads: VerticalLoads, mass_kg: float, per_kg: Array, parts: list[Array], plates_agree: bool
 ) -> Finding:
     """The verdict on a mass.
 
     Args:
-        stated_kg: The mass that the body was given.
+        loads: Force and motion, with the mass that is judged.
         mass_kg: That of the plates.
         per_kg: (n,) impulses of a body of 1 kg by part.
         parts: The parts; the velocity at a frame that ends one and begins another cancels.
         plates_agree: False for plates that contradict each other.
     """
+    stated_kg = loads.mass_kg
     breaks = 1 + sum(a[-1] != b[0] for a, b in pairwise(parts))
-    speeds = 100.0 * SPEED_SD_M_S * np.sqrt(2.0 * breaks) / per_kg.sum()
+    speeds = 100.0 * loads.speed_sd_m_s * np.sqrt(2.0 * breaks) / per_kg.sum()
     sd = float(np.hypot(speeds, SCALE_PERCENT))
     percent = 100.0 * (stated_kg / mass_kg - 1.0)
     verdict = judgement(percent, sd, BOUND_PERCENT)
