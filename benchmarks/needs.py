@@ -92,7 +92,9 @@ _SENSORS = ("imu_broad", "imu_gaitmap_foot", "imu_opensense_walk")
 
 NEEDS: Mapping[str, Needs] = {
     "angles": Needs(captures=("biomechzoo_walk_turn", "cgm24_lowerlimb_walk")),
-    "any_capture": Needs(captures=_MARKED),
+    "any_capture": Needs(
+        captures=tuple(dict.fromkeys((*_MARKED, *_PLATES, "breaker", "functional_walk", "strangers3")))
+    ),
     "app": Needs(("axe_playwright_python", "playwright")),
     "batch": Needs(("distributed",)),
     "contact": Needs(captures=_MARKED),

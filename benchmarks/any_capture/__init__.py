@@ -9,6 +9,7 @@ from benchmarks.any_capture.forces import forces_rows
 from benchmarks.any_capture.keypoints import keypoint_rows
 from benchmarks.any_capture.marker_sets import marker_set_rows
 from benchmarks.any_capture.out_of_box import out_of_box_rows
+from benchmarks.any_capture.plates import plate_rows
 from benchmarks.checks import Check, Context
 
 
@@ -17,6 +18,7 @@ def run(context: Context) -> list[Check]:
     return [
         *axes_rows(context.require_data()),
         *forces_rows(context),
+        *plate_rows(context.require_data()),
         *coverage_rows(),
         *direction_rows(context.require_data()),
         *keypoint_rows(context),

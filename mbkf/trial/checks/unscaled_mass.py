@@ -145,7 +145,7 @@ def _mean_kg(loads: VerticalLoads) -> tuple[float, float]:
 def _speed(markers: MarkerTrajectories, floor_m: float) -> Array:
     """(T,) vertical speed of the upper half of the body: the median of its markers' speeds, over 60 ms; NaN unseen."""
     heights = markers.positions_m[:, :, 2] - floor_m
-    seen = np.isfinite(heights).any(axis=0)
+    seen = np.asarray(np.isfinite(heights).any(axis=0))
     if not seen.any() or len(heights) < 3:
         return np.full(len(heights), np.nan)
     typical = np.full(len(seen), -np.inf)
@@ -167,7 +167,7 @@ def _on_plates(markers: MarkerTrajectories, plates: Sequence[PlateReadings]) -> 
     """(T,) frames in which all markers on feet are seen, and each is on a plate, raised, or swings."""
     floor_m = min(surface_height(plate) for plate in plates)
     heights = markers.positions_m[:, :, 2] - floor_m
-    seen = np.isfinite(heights).any(axis=0)
+    seen = np.asarray(np.isfinite(heights).any(axis=0))
     lowest = np.full(len(seen), np.inf)
     lowest[seen] = np.nanpercentile(heights[:, seen], 5.0, axis=0)
     feet = np.flatnonzero(lowest < LOW_M)
