@@ -93,7 +93,17 @@ _SENSORS = ("imu_broad", "imu_gaitmap_foot", "imu_opensense_walk")
 NEEDS: Mapping[str, Needs] = {
     "angles": Needs(captures=("biomechzoo_walk_turn", "cgm24_lowerlimb_walk")),
     "any_capture": Needs(
-        captures=tuple(dict.fromkeys((*_MARKED, *_PLATES, "breaker", "functional_walk", "strangers3")))
+        captures=(
+            *_MARKED,
+            "breaker",
+            "flywheel_squat",
+            "fukuchi_run",
+            "functional_walk",
+            "judgement",
+            "opencap_s6_walk",
+            "strangers3",
+            "synthetic_exact_truth",
+        )
     ),
     "app": Needs(("axe_playwright_python", "playwright")),
     "batch": Needs(("distributed",)),
