@@ -50,7 +50,7 @@ def bands_of(found: Measured) -> list[Band]:
             "filter", "by the letter (ζ 0) and ours, largest angle", b.printed_deg, -OPEN, 1e-6, "deg", False
         ),
         Band(
-            "eqs. 39 to 43",
+            "Madgwick eqs. 39 to 43",
             "angular velocity over the true one",
             found.first.rate_factor,
             1.95,

@@ -1,6 +1,6 @@
-"""The source's formulas by the letter: filter (eqs. 22-37), virtual gyroscope and accelerometer (38-43), gains (44-48).
+"""Formulas by the letter: the filter (Madgwick eqs. 22-37), virtual sensors (38-43), gains (44-48).
 
-Only the two misprints of eq. 28 that no program can hold are put right (docs/theory/inertial.md).
+Only the two misprints of Madgwick eq. 28 that no program can hold are put right (docs/theory/inertial.md).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from mbkf.io.imu.readings import ImuReadings
 
 
 def madgwick_as_printed(one: ImuReadings, beta: float, zeta: float, start: Array) -> Array:
-    """(T, 4) orientations sensor → NWU as (x, y, z, w), by eqs. 22 to 37; eq. 34 does not integrate the bias.
+    """(T, 4) orientations sensor → NWU as (x, y, z, w), by Madgwick eqs. 22 to 37, without an integral of the bias.
 
     Args:
         one: The sensor, no sample missing.
@@ -36,7 +36,7 @@ def madgwick_as_printed(one: ImuReadings, beta: float, zeta: float, start: Array
 
 
 def _step(q: Array, a: Array, m: Array) -> Array:
-    """The normalised gradient: eqs. 26 to 31."""
+    """The normalised gradient: Madgwick eqs. 26 to 31."""
     h = _product(_product(q, np.array([0.0, *m])), _conjugate(q))
     b1, b3 = np.hypot(h[1], h[2]), h[3]
     q0, q1, q2, q3 = q
@@ -83,7 +83,7 @@ def _conjugate(q: Array) -> Array:
 
 
 def printed_rates(rotations: Array, dt_s: float) -> Array:
-    """(T − 1, 3) angular velocities of rotations (T, 3, 3) by eqs. 39 to 43."""
+    """(T − 1, 3) angular velocities of rotations (T, 3, 3) by Madgwick eqs. 39 to 43."""
     rate = (rotations[1:] - rotations[:-1]) / dt_s
     turned = np.swapaxes(rotations[:-1], 1, 2) @ rate
     return np.stack(
@@ -97,21 +97,21 @@ def printed_rates(rotations: Array, dt_s: float) -> Array:
 
 
 def printed_accelerations(places_m: Array, dt_s: float) -> Array:
-    """(T − 2, 3) accelerations of places (T, 3) by eq. 38."""
+    """(T − 2, 3) accelerations of places (T, 3) by Madgwick eq. 38."""
     found: Array = (places_m[:-2] + places_m[2:] - 2.0 * places_m[1:-1]) / dt_s**2
     return found
 
 
 @dataclass(frozen=True)
 class PrintedGains:
-    """β and ζ of a still stretch by eqs. 46 and 48, which take the root of the product."""
+    """β and ζ of a still stretch by Madgwick eqs. 46 and 48, which take the root of the product."""
 
     beta: float
     zeta: float
 
 
 def printed_gains(rates: Array, rate_hz: float) -> PrintedGains:
-    """Gains of still readings by eqs. 44 to 48: root mean square over axes, drift between two halves.
+    """Gains of still readings by Madgwick eqs. 44 to 48: root mean square over axes, drift between two halves.
 
     Args:
         rates: (T, 3) the readings in their own unit.
@@ -124,5 +124,5 @@ def printed_gains(rates: Array, rate_hz: float) -> PrintedGains:
 
 
 def printed_noise(beta: float) -> float:
-    """The noise whose β by eq. 46 is the given one, in the readings' unit."""
+    """The noise whose β by Madgwick eq. 46 is the given one, in the readings' unit."""
     return beta**2 / 0.75

@@ -43,7 +43,7 @@ class Behaviour:
         jitter_deg: Root mean square of the change from sample to sample less the true one, a person standing, by β.
         start_error_deg: Error of the start that the first readings give, by movement.
         unknown_deg: Root mean square error of the walking thigh from (1, 0, 0, 0) and from the true start, β 0.35.
-        zeta_change_deg: Largest change of the foot's orientation by ζ 0.07, eq. 34 by the letter and integrated.
+        zeta_change_deg: Largest change of a foot's orientation by ζ 0.07: Madgwick eq. 34 as printed, and integrated.
         lock_quaternion_deg, lock_yaw_deg: Largest errors of orientation and of yaw alone as pitch passes 90°.
         wrap_deg, unwrapped_deg: Largest step of an Euler angle between samples, before and after unwrapping.
         round_trip: Largest change of a quaternion by way to Euler angles and back.

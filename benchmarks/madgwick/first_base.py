@@ -1,4 +1,4 @@
-"""The source's first data base: motions of AMASS as virtual sensors, through files and commands, and its eqs. 38 to 43.
+"""The source's first data base: motions of AMASS as virtual sensors, through files and commands, and its formulas.
 
 No file of AMASS is at hand (its licence asks each user to register), so that the file is made here: the joint rotations
 of a synthetic walk and of a standing person, in the format of AMASS. Everything after it is what a user would run.
@@ -39,8 +39,8 @@ class FirstBase:
         joints_rad: Largest difference of a joint rotation between the file and our body.
         angle_rms_deg: By filter and joint, both sides, root mean square difference to the angles of the true
             orientations, by `mbkf imu angles`.
-        rate_factor: Angular velocities by eqs. 39 to 43 over the true ones, median.
-        rate_error, acceleration_error_mps2: Their relative error once halved; that of eq. 38, root mean square.
+        rate_factor: Angular velocities by Madgwick eqs. 39 to 43 over the true ones, median.
+        rate_error, acceleration_error_mps2: Relative error of these once halved; RMS error of Madgwick eq. 38.
         skeleton: Number of joints compared.
     """
 
@@ -143,7 +143,7 @@ def _angles(folder: Path, file: Path, still: Path) -> dict[tuple[str, str], floa
 
 
 def _printed(model: HumanModel, q: Array, v: Array, a: Array) -> tuple[float, float, float]:
-    """Eqs. 38 to 43 on the right thigh's origin, whose motion is known exactly."""
+    """Madgwick eqs. 38 to 43 on the right thigh's origin, whose motion is known exactly."""
     times, names = np.arange(len(q)) / RATE_HZ, list(model.joints)
     mount = ImuMount("thigh", "right_thigh", np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]))
     (true,) = virtual_imus(model, times, q, v, a, [mount], errors=ImuErrors.none())

@@ -40,8 +40,8 @@ class SecondBase:
         start_deg: Error of the start by the first readings, largest of the trials.
         noise_deg_s: Noise of the resting gyroscope, root mean square over the trials.
         beta_at_rest, zeta_at_rest: Gains of Madgwick's own formulas at rest.
-        beta_printed, beta_printed_deg: β by eq. 46 as printed, of readings in rad/s and in °/s.
-        zeta_printed, zeta_printed_deg: ζ by eq. 48 likewise.
+        beta_printed, beta_printed_deg: β by Madgwick eq. 46 as printed, of readings in rad/s and in °/s.
+        zeta_printed, zeta_printed_deg: ζ by Madgwick eq. 48 likewise.
         at_rest_deg: Error with the gains of Madgwick's formulas.
         example: The trial that is drawn, the true orientations and the source's filter on it.
     """

@@ -81,7 +81,7 @@ class ThirdBase:
         read: Largest difference between readings written and read again, SI units.
         compared: The source's β beside the sensor's own quaternions, by recording.
         first, second, wide: The source's two sweeps, and one over smaller gains.
-        letter: Mean difference of q_w with ζ 0.01 and 0.1 by eq. 34 as printed, β 0.33, the walking thigh.
+        letter: Mean difference of q_w with ζ 0.01 and 0.1 by Madgwick eq. 34 as printed, β 0.33, the walking thigh.
     """
 
     read: float

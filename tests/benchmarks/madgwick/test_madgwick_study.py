@@ -162,10 +162,10 @@ def test_verdicts_follow_the_numbers():
         ("Summary, 3.3.1, 6", "Madgwick's filter ne"): replace(
             found, times=Times(10.0, 100.0, 300.0, 0.9, 0.8)
         ),
-        ("3.2, eq. 34", "ζ weighs the gyrosco"): replace(
+        ("3.2, Madgwick eq. 34", "ζ weighs the gyrosco"): replace(
             found, behaviour=replace(found.behaviour, zeta_change_deg=(1.2, 1.3))
         ),
-        ("4.1, eqs. 39 to 43", "Angular velocities f"): replace(
+        ("4.1, Madgwick eqs. 39 to 43", "Angular velocities f"): replace(
             found, first=replace(found.first, rate_factor=1.0)
         ),
         ("5.3.3, figures 32 to 39", "Madgwick and the sen"): replace(
@@ -179,4 +179,4 @@ def test_verdicts_follow_the_numbers():
 
 def test_without_captures_claims_on_them_cannot_be_had():
     found = {one.source: one.verdict for one in claims(made())}
-    assert found["5.3.2, eqs. 44 to 48"] == "cannot be had"
+    assert found["5.3.2, Madgwick eqs. 44 to 48"] == found["5.3.2"] == "cannot be had"
