@@ -30,6 +30,9 @@ EVENTS_KEY = 12345
 MOST_EVENTS, EVENT_TIMES, EVENT_LABELS = 18, 304, 396
 """Events that a header has room for, and the bytes at which their times and labels begin."""
 
+_STEADY = 0.2
+"""Largest median step of points between frames, as a share of their median distance from their middle."""
+
 MOST_SAMPLES = 1000
 """Bound of analog samples per frame."""
 
@@ -105,6 +108,9 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
     whole = layout.bytes_per_number == 2
     numbers = (processor.integers(data) if whole else processor.floats(data)).reshape(frames, width)
     corners = numbers[:, : 4 * layout.points].reshape(frames, layout.points, 4)
+    if shape.guessed and not _moves_steadily(corners[:, :, :3]):
+        present = f"{layout.frames} frames promised, {layout.frames_present} present"
+        raise FileFormatError(path, f"cut short: {present}; copy or export it again")
     scale = abs(parameters.number("POINT", "SCALE") or float(processor.floats(header[12:16])[0]))
     analogs, remarks = scaled_samples(numbers[:, 4 * layout.points :], shape.channels, parameters, whole)
     return C3dContent(
@@ -117,6 +123,14 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         _header_events(header, processor),
         (*shape.notes, *remarks),
     )
+
+
+def _moves_steadily(points: Array) -> bool:
+    """True for points (T, N, 3) that move less from frame to frame than they are apart, as rows of a right width do."""
+    with np.errstate(all="ignore"):
+        step = np.median(np.abs(np.diff(points, axis=0))) if len(points) > 1 else np.nan
+        apart = np.median(np.abs(points - np.median(points, axis=1, keepdims=True)))
+        return bool(step < _STEADY * apart)
 
 
 def values_of(
@@ -163,12 +177,13 @@ def _text(word: bytes) -> str:
 
 
 class DataLayout(NamedTuple):
-    """Frames, analog numbers per frame, analog channels, and remarks on them."""
+    """Frames, analog numbers per frame, channels, remarks on them, and True for counts that the file does not state."""
 
     frames: int
     analog_per_frame: int
     channels: int
     notes: tuple[str, ...] = ()
+    guessed: bool = False
 
 
 def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> DataLayout:
@@ -180,7 +195,7 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
         parameters: Its parameters.
 
     Raises:
-        FileFormatError: The file holds fewer frames than it promises, or its layout is ambiguous.
+        FileFormatError: The file holds fewer frames than it promises, by more than one, or its layout is ambiguous.
     """
     used = _count(parameters.number("ANALOG", "USED"))
     stated = used * _samples_per_frame(parameters)
@@ -191,6 +206,9 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
         fits = [kind for kind in kinds if _fits(layout, frames, kind[0])]
         if len(fits) == 1 or (fits and used == layout.channels):
             return DataLayout(frames, *fits[0], tuple(_remarks(layout, frames, fits[0][0])))
+    fewer = _one_fewer(layout, used, _samples_per_frame(parameters))
+    if fewer is not None:
+        return fewer
     if layout.frames_present < layout.frames:
         present = f"{layout.frames} frames promised, {layout.frames_present} present"
         raise FileFormatError(path, f"cut short: {present}; copy or export it again")
@@ -203,6 +221,31 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
         reason = f"ANALOG:USED is {used}, the header counts {layout.channels}; export it again"
         raise FileFormatError(path, reason)
     return DataLayout(layout.frames, layout.analog_per_frame, layout.channels)
+
+
+def _one_fewer(layout: C3dLayout, used: int, samples: int) -> DataLayout | None:
+    """The layout of a file whose writer counted one frame, channel or sample a frame too many; None for any other.
+
+    Such a file ends with a whole block, and only one of the three fills it.
+
+    Args:
+        layout: The header's counts.
+        used: Channels by ANALOG:USED.
+        samples: Samples of a channel per frame, by the rates.
+    """
+    channels = used or layout.channels
+    samples = samples or (layout.analog_per_frame // layout.channels if layout.channels else 0)
+    ways = {  # of as many channels as samples, one channel fewer is the likelier
+        (layout.frames, channels * (samples - 1)): channels,
+        (layout.frames, (channels - 1) * samples): channels - 1,
+        (layout.frames - 1, layout.analog_per_frame): layout.channels,
+    }
+    possible = [way for way in ways if way[0] > 0 and way[1] >= 0 and _fits(layout, *way)]
+    if layout.file_bytes % BLOCK_BYTES or layout.counts_no_further or len(possible) != 1:
+        return None
+    ((frames, per_frame),) = possible
+    remarks = tuple(_remarks(layout, frames, per_frame))
+    return DataLayout(frames, per_frame, ways[frames, per_frame], remarks, guessed=True)
 
 
 def _fits(layout: C3dLayout, frames: int, per_frame: int) -> bool:

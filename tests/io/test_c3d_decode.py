@@ -1,5 +1,6 @@
 """C3D files of all processors and formats are decoded to the same; what contradicts itself is settled or told."""
 
+import struct
 from itertools import product
 
 import numpy as np
@@ -72,6 +73,41 @@ def test_a_header_that_counts_analog_numbers_which_are_not_there_is_overruled(tm
     found = decoded(tmp_path / "x.c3d", c3d_bytes(np.repeat(POINTS, 20, axis=0), header_analogs=6))
     np.testing.assert_allclose(found.points, np.repeat(POINTS, 20, axis=0), atol=1e-4)
     assert "the header counts 6 analog numbers a frame, the file has 0" in found.notes
+
+
+FRAMES = 236  # fill their last block but for less than a frame
+MANY = np.repeat(POINTS, 20, axis=0)[:FRAMES] + np.arange(FRAMES)[:, None, None]
+SAMPLES = np.round(RNG.normal(0.0, 50.0, (FRAMES, 3, 2)))
+
+
+def test_a_header_that_counts_a_frame_too_many_is_read_as_what_fits(tmp_path):
+    found = decoded(tmp_path / "x.c3d", c3d_bytes(MANY, SAMPLES, last=FRAMES + 1))
+    np.testing.assert_allclose(found.points, MANY, atol=1e-4)
+    np.testing.assert_allclose(found.analogs, SAMPLES.reshape(-1, 2).T, atol=1e-4)
+    assert "the header counts 237 frames, the file has 236" in found.notes
+
+
+@pytest.mark.parametrize(("channels", "samples"), [(3, 3), (2, 4)])
+def test_channels_or_samples_of_which_one_fewer_fits_are_read_as_what_fits(tmp_path, channels, samples):
+    """Header and parameters agree on 12 where 11 are stored."""
+    extra = (
+        (2, "USED", 2, (), integers([channels], INTEL)),
+        (2, "RATE", 4, (), floats([100.0 * samples], INTEL)),
+    )
+    content = c3d_bytes(
+        MANY, SAMPLES, header_analogs=channels * samples, extra=extra, without=("USED", "RATE")
+    )
+    content = content[:18] + struct.pack("<H", samples) + content[20:]
+    found = decoded(tmp_path / "x.c3d", content)
+    np.testing.assert_allclose(found.points, MANY, atol=1e-4)
+    np.testing.assert_allclose(found.analogs, SAMPLES.reshape(-1, 2).T, atol=1e-4)
+    assert f"the header counts {channels * samples} analog numbers a frame, the file has 6" in found.notes
+
+
+@pytest.mark.parametrize("blocks", range(2, 11))
+def test_a_file_that_lacks_more_than_a_frame_is_refused(tmp_path, blocks):
+    with pytest.raises(MbkfError, match="cut short"):
+        decoded(tmp_path / "x.c3d", c3d_bytes(MANY, SAMPLES)[: -512 * blocks])
 
 
 LONG = 66000
