@@ -32,6 +32,8 @@ BOUNDS = {
     "trial/live/labels.py LiveLabels._unnamed": "each round takes one frame that waits",
     "trial/protocol/from_osim.py _Skeleton._in_segment": "goes up a tree, which check_body has checked",
     "trial/protocol/osim_bodies.py poses_at_zero": "each round places one body",
+    "model/symbolic/recursions.py mass_matrix": "goes up a tree, whose joints follow their parents",
+    "model/symbolic/tree.py SymbolicTree.chain": "goes up a tree, whose joints follow their parents",
     "model/urdf_segments.py _chain": "three joints at most",
     "model/urdf_segments.py _grow": "each link of a tree comes once",
     "model/urdf_segments.py urdf_segments": "each joint of a tree comes once",

@@ -1,6 +1,6 @@
 """One step of the error of a body moved by forces, by its blocks: (δq, δv) = x moves, forces δu are random walks.
 
-    ẋ = A x + B δu,  A = [[T, 1], [K, D]],  B = [[0], [U]]     (thesis eq. 3.40; eq. 4.15: K = D = 0, the simplified F)
+    ẋ = A x + B δu,  A = [[T, 1], [K, D]],  B = [[0], [U]]     (thesis eq. 3.40; thesis eq. 4.15: K = D = 0)
     x⁺ = E x + G δu,  δu⁺ = δu
 
 The same numbers as :mod:`mbkf.numerics.discretisation` of the whole F (n, n), n = 2 nv + nu, whose rows of δu are zero,
