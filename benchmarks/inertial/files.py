@@ -61,12 +61,16 @@ def forms() -> dict[str, Form]:
             partial(makers.mt_manager, left, mark=",", quaternion=False), (left,), ("MT_0001-000_left_foot",),
             without=("turn",), lost=(200,),
         ),
+        "MT software, counter and rate": Form(partial(makers.xsens_counter, left), (left,)),
         "Movella DOT": Form(partial(makers.movella_dot, left), (left,), without=("turn",)),
         "Movella DOT, quaternion and free acceleration": Form(
             partial(makers.movella_dot, left, orientation_only=True), (left,), without=("field", "turning")
         ),
         "APDM Mobility Lab (.h5)": Form(partial(makers_binary.apdm, two), two),
         "APDM Motion Studio (.h5)": Form(partial(makers_binary.apdm, two, version=3), two),
+        "APDM Motion Studio (.csv)": Form(partial(makers.apdm_csv, two), two),
+        "RepoIMU, names in two rows": Form(partial(makers.repo_imu, left), (left,), ("IMU",)),
+        "table with stamps of packets": Form(partial(makers.packets, left), (left,), without=("turn",)),
         "Shimmer Consensys": Form(partial(makers.shimmer, left), (left,), ("Shimmer_6A92",), without=("turn",)),
         "ShimmerConnect": Form(partial(makers.shimmer_connect, left), (left,), ("left foot",), without=("turn",)),
         "Noraxon MR3": Form(partial(makers.noraxon, sided), sided, without=("field", "turn")),

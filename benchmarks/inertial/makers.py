@@ -113,6 +113,64 @@ def mt_manager(one: Truth, folder: Path, mark: str = "\t", quaternion: bool = Tr
     return _write(folder / f"MT_0001-000_{one.name}.{suffix}", head + _lines(rows, mark))
 
 
+def xsens_counter(one: Truth, folder: Path) -> Path:
+    """An export of an early MT software: a counter, the rate in a comment, a tab at the end of rows."""
+    names = [
+        "Counter",
+        *_axes("Acc_{}"),
+        *_axes("Gyr_{}"),
+        *_axes("Mag_{}"),
+        *(f"Quat_{axis}" for axis in "wxyz"),
+    ]
+    count = 2552.0 + np.arange(len(one.time_s))
+    rows = np.column_stack([count, one.force, one.turning, one.field, one.wxyz])
+    head = ["// Start Time: 0", "// Sample rate: 100.0Hz", "// Firmware Version: 2.5.1", "\t".join(names)]
+    return _write(folder / f"{one.name}.txt", [*head, *(f" {line}\t" for line in _lines(rows, "\t"))])
+
+
+def apdm_csv(sensors: Sequence[Truth], folder: Path) -> Path:
+    """An export of Motion Studio: sensor, quantity and axis in a name, units below, the rate above."""
+    names, units, parts = ["Time"], ["s"], [sensors[0].time_s[:, None]]
+    for one in sensors:
+        for quantity, unit, values in (
+            ("Acceleration", "m/s^2", one.force), ("Angular Velocity", "rad/s", one.turning),
+            ("Magnetic Field", "uT", one.field),
+        ):  # fmt: skip
+            names += _axes(f"{one.name}/{quantity}/{{}}")
+            units += [unit] * 3
+            parts.append(values)
+        names += [f"{one.name}/Orientation/{axis}" for axis in ("Scalar", *"XYZ")]
+        names += [f"{one.name}/Temperature/Scalar"]
+        units += [""] * 4 + ["deg C"]
+        parts += [one.wxyz, np.full((len(one.time_s), 1), 22.0)]
+    blank = "," * (len(names) - 3)
+    head = [f"Test Name:,a walk,{blank}", f"Sample Rate:,100,Hz{blank}", ",".join(names), ",".join(units)]
+    return _write(folder / "apdm.csv", [*head, *_lines(np.column_stack(parts))])
+
+
+def repo_imu(one: Truth, folder: Path) -> Path:
+    """A trial of RepoIMU: quantities over the axes that they span, no units, quaternions of the cameras."""
+    groups = "Time (s)", *("Vicon Orientation", *[""] * 3), *("IMU Acceleration", "", "")
+    groups = *groups, *("IMU Gyroscope", "", ""), *("IMU Magnetometer", "", "")
+    rows = np.column_stack([one.time_s, one.wxyz, one.force, one.turning, one.field])
+    lines = [";".join(groups), ";".join(["", *"WXYZ", *"XYZ" * 3]), *_lines(rows, ";")]
+    return _write(folder / "trial.csv", lines)
+
+
+def packets(one: Truth, folder: Path, size: int = 4) -> Path:
+    """A table whose logger gives one stamp to all samples of a packet.
+
+    Args:
+        one: The sensor.
+        folder: Where to write.
+        size: Samples in a packet.
+    """
+    stamps = np.repeat(one.time_s[::size] + 0.5 * (size - 1) / RATE_HZ, size)[: len(one.time_s)]
+    names = _axes("Accelerometer {} (g)") + _axes("Gyroscope {} (deg/s)") + _axes("Magnetometer {} (uT)")
+    rows = np.column_stack([stamps, one.force / GRAVITY_M_S2, DEGREES * one.turning, one.field])
+    return _write(folder / f"{one.name}.csv", [",".join(["Time (s)", *names]), *_lines(rows)])
+
+
 def movella_dot(one: Truth, folder: Path, orientation_only: bool = False) -> Path:
     """A file of the DOT app, with everything or with orientation and free acceleration alone.
 

@@ -1,6 +1,7 @@
 """Orientation from accelerometer, gyroscope and magnetometer.
 
-Orientation of every sensor by Madgwick's filter or an error-state Kalman filter. Files: CSV tables with units in their
+Orientation of every sensor by an error-state Kalman filter with later readings (--filter smooth), without them (ekf),
+or by Madgwick's filter. Files: CSV tables with units in their
 column names, Xsens text exports (or a folder of them), MATLAB files of the BROAD and qmt sets.
 
 --compare sets a second filter beside the first, or the sensor's own quaternions: those in the same file (--compare
@@ -42,7 +43,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--frame", required=True, choices=("ENU", "NED", "NWU"), help="world frame of the result"
     )
     parser.add_argument(
-        "--filter", default="ekf", choices=filters, help="smooth: ekf with later readings (ekf)"
+        "--filter", default="smooth", choices=filters, help="smooth: ekf with later readings (%(default)s)"
     )
     parser.add_argument(
         "--compare",

@@ -77,7 +77,7 @@ class OrientSettings:
         ekf: Noise model of the Kalman filter.
     """
 
-    method: str = "ekf"
+    method: str = "smooth"
     magnetometer: bool = True
     madgwick: MadgwickSettings = field(default_factory=MadgwickSettings)
     ekf: OrientationSettings = field(default_factory=OrientationSettings)

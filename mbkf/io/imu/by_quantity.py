@@ -17,7 +17,8 @@ from mbkf.errors import FileFormatError
 from mbkf.io.files_read import check_regular, read_bytes
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
-from mbkf.io.imu.table import TableDefaults, table_signals
+from mbkf.io.imu.table import table_signals
+from mbkf.io.imu.table_defaults import TableDefaults
 from mbkf.io.imu.table_text import decoded, read_table_text, split_table
 
 _KINDS = {

@@ -105,6 +105,12 @@ def parse_column_name(name: str, kind: str = "") -> ColumnName | None:
     )
 
 
+def names_quantity(name: str) -> bool:
+    """True for a name of a quantity, with or without an axis."""
+    lower = [word[0].lower() for word in _WORD.finditer(split_unit(name.strip())[0])]
+    return not _OTHER & set(lower) and _kind(lower) is not None
+
+
 def time_unit(name: str) -> str | None:
     """Unit of a column of times, "" where it states none; None where the column holds no times."""
     plain, unit = split_unit(name.strip())
@@ -163,6 +169,8 @@ def _bare(
 
 def _axis(kind: str, lower: Sequence[str], rest: list[int]) -> tuple[int | None, list[int]]:
     """The axis among the words after the quantity, and the other words."""
+    if kind == "quat" and (scalar := [k for k in rest if lower[k] == "scalar"]):
+        return 3, [k for k in rest if k != scalar[0]]
     letters = [
         k for k in rest if lower[k] in ("x", "y", "z") or (kind == "quat" and lower[k] in tuple("wijk"))
     ]

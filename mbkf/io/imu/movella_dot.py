@@ -12,7 +12,8 @@ from pathlib import Path
 
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import readings_of
-from mbkf.io.imu.table import TableDefaults, table_signals
+from mbkf.io.imu.table import table_signals
+from mbkf.io.imu.table_defaults import TableDefaults
 from mbkf.io.imu.table_text import read_table_text
 
 _MARKS = ("devicetag", "deviceid", "firmwareversion", "outputrate", "measurementmode", "syncstatus")

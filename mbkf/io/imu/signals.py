@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -63,6 +63,21 @@ def readings_of(
     if not found:
         raise FileFormatError(path, _no_accelerometer({one.kind for one in signals}))
     return tuple(found)
+
+
+def with_reference(signals: Sequence[Signal]) -> list[Signal]:
+    """The signals, where the orientation of one that has nothing else becomes that of the only sensor beside it.
+
+    So a reference by cameras stands in a table: under a name of its own.
+    """
+    kinds = dict[str, set[str]]()
+    for one in signals:
+        kinds.setdefault(one.sensor, set()).add(one.kind)
+    sensors = [name for name, own in kinds.items() if "acc" in own]
+    references = [name for name, own in kinds.items() if own == {"quat"}]
+    if len(sensors) != 1 or len(references) != 1 or "quat" in kinds[sensors[0]]:
+        return list(signals)
+    return [replace(one, sensor=sensors[0]) if one.sensor == references[0] else one for one in signals]
 
 
 def signal_width(kind: str) -> int:

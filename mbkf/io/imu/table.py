@@ -16,8 +16,12 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.imu.column_names import ColumnName, parse_column_name, time_unit
 from mbkf.io.imu.even_times import even_times
+from mbkf.io.imu.known_tables import defaults_of
 from mbkf.io.imu.readings import ImuReadings
-from mbkf.io.imu.signals import Signal, readings_of, signal_width
+from mbkf.io.imu.signals import Signal, readings_of, signal_width, with_reference
+from mbkf.io.imu.spanning_headers import joined_header
+from mbkf.io.imu.stated_rate import rate_above
+from mbkf.io.imu.table_defaults import NO_DEFAULTS, TableDefaults
 from mbkf.io.imu.table_text import TableText, is_number, read_table_text
 from mbkf.io.imu.times import times_s
 from mbkf.io.imu.units import UNITS, plain_unit, unit_name
@@ -25,25 +29,6 @@ from mbkf.io.imu.units import UNITS, plain_unit, unit_name
 _UNIT_ROWS = 3
 _AXES = "xyzw"
 
-
-@dataclass(frozen=True)
-class TableDefaults:
-    """Statements of a maker's description that replace missing ones of the table.
-
-    Attributes:
-        units: Unit by quantity.
-        kind: Quantity of columns that are called x, y and z only.
-        sensor: Name of a sensor that columns do not name.
-        frame: World of the orientations.
-    """
-
-    units: Mapping[str, str]
-    kind: str = ""
-    sensor: str = ""
-    frame: str = ""
-
-
-NO_DEFAULTS = TableDefaults({})
 
 _NEEDED = {
     "acc": "accelerometer column (such as 'acc_x [m/s^2]')",
@@ -95,8 +80,9 @@ def read_imu_csv(
     """
     path = Path(path)
     text = read_table_text(path)
-    signals, frame = table_signals(text, units=units, rate_hz=rate_hz), _note(text)
-    return readings_of(path, signals, rate_hz if rate_hz else None, frame)
+    known = defaults_of(text)
+    signals = with_reference(table_signals(text, units=units, rate_hz=rate_hz, defaults=known))
+    return readings_of(path, signals, rate_hz if rate_hz else None, _note(text) or known.frame)
 
 
 def read_orientation_csv(path: str | Path, rate_hz: float | None = None) -> tuple[tuple[Signal, ...], str]:
@@ -140,6 +126,7 @@ def table_signals(
         UnknownName: Unknown unit.
     """
     given = {kind: unit_name(kind, unit, "--units") for kind, unit in (units or {}).items()}
+    text = joined_header(text)
     head, first = _head(text, defaults.kind, needed)
     titles = text.rows[head][1]
     below = [text.rows[k][1] for k in range(head + 1, first)]
@@ -151,6 +138,10 @@ def table_signals(
     if not columns:
         raise _lacking(text.path, titles, needed)
     times = _time_columns(text.path, titles, below, given, rate_hz)
+    if rate_hz is None and not times:
+        rate_hz = rate_above(text, head)
+    if rate_hz is None and not times:
+        raise InvalidInput(f"{text.path}: no column of times; give the sample rate with --rate")
     used = [column.index for column in columns] + [time.index for time in times]
     numbers = _numbers(text, first, len(titles), used)
     factors = _factors(text.path, columns, numbers, given, defaults.units)
@@ -248,8 +239,6 @@ def _time_columns(
             unit = unit_name("time", unit, f"{path}, column '{title}'")
         if rate_hz is None or unit:
             found.append(_Time(index, title, unit))
-    if rate_hz is None and not found:
-        raise InvalidInput(f"{path}: no column of times; give the sample rate with --rate")
     if rate_hz is not None and not (np.isfinite(rate_hz) and rate_hz > 0.0):
         raise InvalidInput(f"{path}: the rate must be positive, got {rate_hz} Hz")
     return found

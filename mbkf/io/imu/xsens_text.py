@@ -25,13 +25,14 @@ from mbkf.io.text import number
 TEXTS = (".txt", ".csv")
 """Endings of such files."""
 
-COUNTER = "PacketCounter"
-"""The column that every such file has."""
+COUNTERS = ("PacketCounter", "Counter")
+"""The first column, by the program's version."""
 
 _COUNTER_TURN = 65536
-_RATE = re.compile(r"update rate\s*:\s*([0-9.]+)\s*hz", re.IGNORECASE)
+_RATE = re.compile(r"(?:update|sample|output) rate\s*:\s*([0-9.]+)\s*hz", re.IGNORECASE)
 _MATRIX = tuple(f"Mat[{i}][{j}]" for i in (1, 2, 3) for j in (1, 2, 3))
 _QUATERNIONS = (("Quat_q1", "Quat_q2", "Quat_q3", "Quat_q0"), ("Quat_X", "Quat_Y", "Quat_Z", "Quat_W"))
+_SPELLED = {name.lower(): name for name in _QUATERNIONS[1]}
 _FREE = ("FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z"), ("FreeAcc_E", "FreeAcc_N", "FreeAcc_U")
 _TICKS = "SampleTimeFine"
 _TICK_S = 1e-4
@@ -44,7 +45,13 @@ _LOST_SHARE = 0.5
 def is_xsens(path: Path) -> bool:
     """True for a text file of such an export."""
     with path.open(encoding="utf-8", errors="replace") as file:
-        return any(line.startswith(COUNTER) for line, _ in zip(file, range(30), strict=False))
+        return any(_names_columns(line) for line, _ in zip(file, range(30), strict=False))
+
+
+def _names_columns(line: str) -> bool:
+    """True for the row of names."""
+    first = next(iter(_cells(line)), "")
+    return first == COUNTERS[0] or (first == COUNTERS[1] and "acc_x" in line.lower())
 
 
 def _cells(line: str) -> list[str]:
@@ -65,23 +72,24 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     path = Path(path)
     check_input(path, "name an Xsens text export")
     lines = read_text(path, errors="replace").splitlines()
-    head = next((k for k, line in enumerate(lines[:30]) if line.startswith(COUNTER)), None)
+    head = next((k for k, line in enumerate(lines[:30]) if _names_columns(line)), None)
     if head is None:
-        raise FileFormatError(path, f"not an Xsens text export (no column {COUNTER})")
-    names = _cells(lines[head])
+        raise FileFormatError(path, f"not an Xsens text export (no column {COUNTERS[0]})")
+    names = _cells(lines[head].rstrip())
+    counter, names = names[0], [_SPELLED.get(name.lower(), name) for name in names]
     delimiter = max("\t;,", key=lines[head].count)
     table = _table(path, lines, head + 1, names, delimiter)
     stated = next((number(m[1]) for line in lines[:head] if (m := _RATE.search(line))), None)
     rate = rate_hz or stated or _rate_of_ticks(names, table)
     if rate is None or not rate > 0.0:
         raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
-    counted = table[:, names.index(COUNTER)]
+    counted = table[:, 0]
     if not (np.abs(counted) < _COUNTER_TURN + 1).all():
-        raise FileFormatError(path, f"{COUNTER} does not count packets; export the file again")
+        raise FileFormatError(path, f"{counter} does not count packets; export the file again")
     count = np.unwrap(counted, period=_COUNTER_TURN).astype(int)
     row = count - count[0]
     if (np.diff(row) <= 0).any() or row[-1] + 1 > len(row) / _LOST_SHARE + 10:
-        raise FileFormatError(path, f"{COUNTER} does not count up; export the file again")
+        raise FileFormatError(path, f"{counter} does not count up; export the file again")
     whole = np.full((row[-1] + 1, len(names)), np.nan)
     whole[row] = table
 

@@ -41,7 +41,7 @@ def test_bad_readings_are_refused_and_poor_ones_told():
         orient([replace(ONE, angular_velocity_rad_s=ONE.angular_velocity_rad_s * 180 / np.pi)], frame="NWU")
     force = ONE.specific_force_mps2.copy()
     force[200:220] = np.nan
-    assert "gaps" in orient([replace(ONE, specific_force_mps2=force)], frame="NWU").warnings[0]
+    assert "gap" in orient([replace(ONE, specific_force_mps2=force)], frame="NWU").warnings[0]
 
 
 def test_sensors_are_chosen_by_name():
