@@ -19,9 +19,9 @@ from mbkf.cli.main import build_parser
 
 OUT = "OUT"
 NO_FILES = {
-    "acc=g,gyr=deg/s", "ADDRESS", "[ADDRESS:]PORT", "AXIS", "A,B", "A,B,C", "A,B@T0:T1", "CODE", "E", "FRACTION",
-    "HZ", "I/N", "IP", "KG", "KG|auto", "LIST", "M", "MS", "N", "NAME", "S", "SD", "TEXT", "T0:T1", "UNIT", "X",
-    "X,Y,Z",
+    "acc=g,gyr=deg/s", "ADDRESS", "[ADDRESS:]PORT", "AXIS", "A,B", "A,B,C", "A,B@T0:T1", "CODE", "E",
+    "FIRST:LAST:COUNT", "FRACTION", "HZ", "I/N", "IP", "KG", "KG|auto", "LIST", "M", "MS", "N", "NAME", "NAME=VALUE",
+    "S", "SD", "TEXT", "T0:T1", "UNIT", "W,X,Y,Z|compared", "X", "X,Y,Z",
 }  # fmt: skip
 """Values in help texts that name no file."""
 
@@ -123,9 +123,11 @@ CASES = (
     Case("report", "{session} --curves {OUT}", "new.parquet"),
     Case("norms build", "{session} --out {OUT}", "new.toml"),
     Case("app", "{study} --no-browser", runs=False, serves=True),
-    Case("tune", "{trc} {trial} --subject {subject} --forces {forces} --hold-out {trial} --name new --runs 1"
-         " --out {OUT}", "new.toml", slow=True),
+    Case("tune", "{trc} {trial} --subject {subject} --forces {forces} --preset {preset} --hold-out {trial} --name new"
+         " --runs 1 --out {OUT}", "new.toml", slow=True),
     Case("observability", "{protocol}"),
+    Case("observability", "{protocol} --preset {preset}"),
+    Case("presets", "{preset}"),
     Case("protocol list", ""),
     Case("protocol show", "{protocol} --no-browser --out {OUT}", "new.html"),
     Case("protocol guess", "{static} --trial {trial} --out {OUT}", "new.toml"),
@@ -134,7 +136,10 @@ CASES = (
     Case("protocol edit", "{static} --protocol {protocol} --no-browser --out {OUT}", "new.toml", runs=False,
          edits=("protocol",)),
     Case("imu orient", "{imus} --frame NWU --out {OUT}", "new"),
+    Case("imu orient", "{imus} --frame NWU --compare {still} --out {OUT}", "new"),
     Case("imu tune", "{still} --sensor pelvis --search --against smooth --frame NWU --out {OUT}", "new.json"),
+    Case("imu tune", "{still} --sensor pelvis --search --against smooth --frame NWU --betas 0.01:0.1:2 --zetas 0:0.01:2"
+         " --figure {OUT}", "new.png"),
     Case("imu synth", "{truth} --subject {subject} --mounts {mounts} --out {OUT}", "new.csv", (".toml",)),
     Case("imu angles", ON_IMUS + " --standing {imus} --posture {truth} --out {OUT}", "new"),
     Case("imu motion", ON_IMUS + " --standing {imus} --posture {truth} --out {OUT}", "new"),
