@@ -17,6 +17,7 @@ from mbkf.imu.foot_track import filtered_track, smoothed_track
 from mbkf.imu.key_points import KeyPointSettings, follow_key_points
 from mbkf.imu.stride_doubts import doubted, out_of_reach
 from mbkf.imu.strides import SHORTEST_M, Stride, find_strides
+from mbkf.imu.worn_on_foot import elsewhere
 from mbkf.imu.zero_velocity import StillnessSettings, rolling_samples, still_samples
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.runs import runs
@@ -102,8 +103,8 @@ def measure_strides(
         progress: Called with the number of feet done.
 
     Raises:
-        InvalidInput: No sensor, implausible readings, gaps, no gyroscope, or a foot that never
-            stands still.
+        InvalidInput: No sensor, implausible readings, gaps, no gyroscope, a foot that never stands still, or a sensor
+            that is worn elsewhere.
     """
     chosen = settings or StrideSettings()
     if not readings:
@@ -170,6 +171,8 @@ def _follow(reading: ImuReadings, settings: StrideSettings) -> FootResult:
             reading.name, rate, path.time_s, path.position_m, path.velocity_m_s, None, path.still, strides
         )
     still = still_samples(f, w, rate, settings.stillness)
+    if reason := elsewhere(f, rate, still):
+        raise InvalidInput(reason)
     rolling = rolling_samples(f, w, rate, still, settings.stillness)
     run = follow_foot(f, w, rate, still, settings.kalman, rolling)
     track = smoothed_track(run) if settings.method == "smoother" else filtered_track(run)
