@@ -28,7 +28,16 @@ from mbkf.io.force_table import ForceTable, plates_of_table
 from mbkf.io.numbered_files import numbered_files
 from mbkf.io.plate_table import PlateTable, faced_axes, plates_with_corners
 from mbkf.io.records import PlateReadings
-from mbkf.io.text import TextFile, check_order, csv_rows, even_rate, number, numbers, read_text
+from mbkf.io.text import (
+    TextFile,
+    check_order,
+    csv_rows,
+    even_rate,
+    is_comment,
+    number,
+    numbers,
+    read_text,
+)
 
 _MOST_HEADER_LINES = 60
 _KINDS_IN_NAME = re.compile(r"(?:[A-Za-z]+\d+){2,}")
@@ -135,6 +144,8 @@ def _table(file: TextFile, titled: _Titled) -> ForceTable:
     width = len(titled.titles)
     for line in range(titled.start + 1, len(file.lines) + 1):
         cells = _cells(file, line - 1)
+        if is_comment(file.lines[line - 1]):
+            continue
         if not any(cells):
             if rows:
                 break  # another table may follow

@@ -12,8 +12,7 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, ShapeError, UnknownName
 from mbkf.io.atomic import replacing_text
-from mbkf.io.files_read import check_input, read_text
-from mbkf.io.text import blank_separated
+from mbkf.io.text import blank_separated, is_comment, read_text
 from mbkf.io.written import MARK
 
 _WRITTEN_BY_US = {
@@ -81,13 +80,13 @@ def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
             names the line.
     """
     path = Path(path)
-    check_input(path, "name a MOT or STO file")
-    lines = read_text(path, errors="replace").splitlines()
+    lines = read_text(path, "a MOT or STO file").lines
     end = next((i for i, line in enumerate(lines[:_MOST_HEADER_LINES]) if _is_end(line)), None)
     if end is None:
         raise FileFormatError(path, "not a MOT or STO file (no line 'endheader')")
     title, header = _header(lines[:end])
-    start = next((i for i in range(end + 1, len(lines)) if lines[i].strip()), None)
+    below = range(end + 1, len(lines))
+    start = next((i for i in below if lines[i].strip() and not is_comment(lines[i])), None)
     if start is None:
         raise FileFormatError(path, "cut short: no column names after the header", end + 1)
     names = _cells(lines[start])

@@ -1,9 +1,10 @@
-"""Common parts of text files: lines, numbers in cells, counts and rates that disagree with the rows."""
+"""Common parts of text files: encodings, lines, numbers in cells, counts and rates that disagree with the rows."""
 
 from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,12 @@ from mbkf.io import files_read
 RATE_TOLERANCE = 0.005
 _EVEN_TOLERANCE = 0.5
 
+COMMENT = "#"
+"""Begins a line that people add to a table."""
+
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
+_UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
+
 
 @dataclass(frozen=True)
 class TextFile:
@@ -26,11 +33,23 @@ class TextFile:
         path: The file.
         lines: Its lines without line ends.
         whole: Whether the last line is ended, as a program leaves it and a copy that broke off does not.
+        places: Numbers of the lines in the file, from 1; empty where they are all of its lines.
     """
 
     path: Path
     lines: list[str]
     whole: bool
+    places: tuple[int, ...] = ()
+
+    def line(self, index: int) -> int:
+        """Number in the file of the line with an index, from 1."""
+        return self.places[index] if self.places else index + 1
+
+    def without_comments(self) -> TextFile:
+        """The file without the lines that begin with #."""
+        kept = [(n, text) for n, text in enumerate(self.lines, start=1) if not is_comment(text)]
+        lines, places = [text for _, text in kept], tuple(n for n, _ in kept)
+        return TextFile(self.path, lines, self.whole, places)
 
 
 def read_text(path: Path, kind: str) -> TextFile:
@@ -40,12 +59,28 @@ def read_text(path: Path, kind: str) -> TextFile:
         FileFormatError: The file does not exist.
     """
     files_read.check_input(path, f"name {kind}")
-    text = files_read.read_text(path, errors="replace")
+    text = decoded(files_read.read_bytes(path))
     return TextFile(path, text.splitlines(), text.endswith(("\n", "\r")))
 
 
+def decoded(data: bytes) -> str:
+    """Text of bytes: by the mark at their beginning, as UTF-8, else as Windows writes."""
+    encoding = _UTF_16.get(data[:2])
+    if encoding is not None:
+        return data[2:].decode(encoding, "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace")
+
+
+def is_comment(line: str) -> bool:
+    """True for a line that begins with #."""
+    return line.lstrip().startswith(COMMENT)
+
+
 def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
-    """Cells as numbers, NaN where one is blank.
+    """Cells as numbers, NaN where one is blank; in a row without decimal points, commas are decimal.
 
     Args:
         cells: The cells.
@@ -58,11 +93,20 @@ def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
     try:
         return [float(cell) if cell.strip() else math.nan for cell in cells]
     except ValueError as error:
+        if any("," in cell for cell in cells) and not any("." in cell for cell in cells):
+            with_points = [_with_point(cell) for cell in cells]
+            if not any("," in cell for cell in with_points):
+                return numbers(with_points, path, line)
         raise FileFormatError(path, f"not a number ({error}); correct or blank it", line) from error
 
 
+def _with_point(cell: str) -> str:
+    """A cell with a point for its decimal comma; another cell, as one with a comma for thousands, stays."""
+    return cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell.strip()) else cell
+
+
 def blank_separated(lines: Sequence[str], path: Path, start: int, width: int) -> Array:
-    """(T, width) numbers of the lines from an index on; blank lines are passed over.
+    """(T, width) numbers of the lines from an index on; blank lines and comments are passed over.
 
     Args:
         lines: Lines of the file.
@@ -75,7 +119,7 @@ def blank_separated(lines: Sequence[str], path: Path, start: int, width: int) ->
     """
     rows = []
     for line, text in enumerate(lines[start:], start=start + 1):
-        cells = text.split()
+        cells = [] if is_comment(text) else text.split()
         if cells and len(cells) != width:
             raise FileFormatError(path, f"{len(cells)} values for {width} columns; export it again", line)
         if cells:
@@ -106,9 +150,9 @@ def csv_rows(lines: Sequence[str], path: Path, first: int = 1, delimiter: str = 
 
 
 def number(word: str) -> float | None:
-    """A finite number, or None for any other word."""
+    """A finite number, with a decimal point or comma, or None for any other word."""
     try:
-        value = float(word)
+        value = float(_with_point(word))
     except ValueError:
         return None
     return value if math.isfinite(value) else None

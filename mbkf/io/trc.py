@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing_text
 from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
-from mbkf.io.labels import unique_labels
+from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.marker_capture import StatedUnit, marker_capture
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
@@ -28,6 +29,7 @@ _UNEVEN = 0.25
 """Share of a frame by which times may be off, by rounding or by an inexact rate."""
 
 _COLUMNS_BEFORE_MARKERS = 2
+_ALIGNED = re.compile(r"\t+|\s{2,}")
 _MOST_NAMED = 6
 
 
@@ -54,8 +56,10 @@ def read_trc(path: str | Path, options: CaptureOptions) -> Capture:
     """Markers of a TRC file at the header's rate; the Time column gives the time of the first frame.
 
     Blank cells, NaN and exact zeros are missing samples. The header's fields are found by their order, since
-    some programs put extra tabs between them. Remarks name counts that disagree with the rows, points beyond the
-    names, names that occur twice and another order of axes. TRC files do not state which axis points up; without an
+    some programs put extra tabs between them. Columns stand between tabs or blanks, numbers have decimal points or
+    commas; lines that begin with # are comments. A subject's name before all names ("Anna:LASI") is taken off. Remarks
+    name counts that disagree with the rows, rows that are cut short, points beyond the names, names that occur twice
+    and another order of axes. TRC files do not state which axis points up; without an
     axis in the options it is OpenSim's y.
 
     Raises:
@@ -65,11 +69,11 @@ def read_trc(path: str | Path, options: CaptureOptions) -> Capture:
     """
     path, up = Path(path), up_axis("y" if options.up is None else options.up)
     file = _file(path)
-    header = _header(path, file.lines)
+    header = _header(file)
     cells = _rows(file)
     names = _names(file.lines[3], cells.points)
     if not any(names):
-        raise FileFormatError(path, "no marker is named", 4)
+        raise FileFormatError(path, "no marker is named", file.line(3))
     if cells.longest > 3 * len([name for name in names if name]) and cells.longest % 3:
         width = cells.longest + _COLUMNS_BEFORE_MARKERS
         raise FileFormatError(path, f"{width} columns; each point needs 3 beside frame and time")
@@ -79,6 +83,7 @@ def read_trc(path: str | Path, options: CaptureOptions) -> Capture:
     named = sum(bool(name) for name in names)
     if header.markers is not None and header.markers != named:
         notes.append(f"the header counts {header.markers} markers, {named} are named")
+    cells = _without_cut_rows(cells, len(names), notes)
     labels = _labels(names, notes)
     times = cells.times_s
     values = cells.of(len(names))[:, :, _order_of_axes(file.lines[4], len(names), notes)]
@@ -86,7 +91,7 @@ def read_trc(path: str | Path, options: CaptureOptions) -> Capture:
     notes += compare_count(file, header.frames, len(values), "frames")
     if len(values) == len(times):
         notes += compare_rate(header.rate_hz, times)
-    unit = StatedUnit("Units", header.unit, "mm", 3).of(path, options, notes)
+    unit = StatedUnit("Units", header.unit, "mm", file.line(2)).of(path, options, notes)
     return marker_capture(path, labels, values, header.rate_hz, float(times[0]), up, unit, options, notes)
 
 
@@ -139,7 +144,7 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
 
 
 def _file(path: Path) -> TextFile:
-    file = read_text(path, "a TRC file")
+    file = read_text(path, "a TRC file").without_comments()
     if not file.lines or "pathfiletype" not in file.lines[0].lower():
         raise FileFormatError(path, "not a TRC file (it does not begin with PathFileType)", 1)
     if len(file.lines) <= _HEADER_LINES:
@@ -147,13 +152,16 @@ def _file(path: Path) -> TextFile:
     return file
 
 
-def _header(path: Path, lines: list[str]) -> TrcHeader:
+def _header(file: TextFile) -> TrcHeader:
     """The header's numbers in their order (DataRate, CameraRate, NumFrames, NumMarkers …) and its one word."""
+    lines = file.lines
     words = lines[2].split()
     values = [value for word in words if (value := number(word)) is not None]
     unit = next((word for word in words if number(word) is None), "")
     if not values or not values[0] > 0.0:
-        raise FileFormatError(path, "the header gives no DataRate; write it first in this line", 3)
+        raise FileFormatError(
+            file.path, "the header gives no DataRate; write it first in this line", file.line(2)
+        )
     counts = [int(value) if value >= 0 and value == int(value) else None for value in values[2:4]]
     counts += [None] * (2 - len(counts))
     titles = [title.strip().lower() for title in lines[1].split("\t")]
@@ -165,11 +173,17 @@ def _header(path: Path, lines: list[str]) -> TrcHeader:
 
 @dataclass(frozen=True)
 class _Rows:
-    """Frames of a file: (T,) times in s and T lists of coordinates, without blank cells at their ends."""
+    """Frames of a file: (T,) times in s and T lists of coordinates, without blank cells at their ends.
+
+    ``lines`` are their lines in the file, ``widths`` their cells, ``tabs`` whether tabs stand between these.
+    """
 
     path: Path
     times_s: Array
     rows: list[list[float]]
+    lines: list[int]
+    widths: list[int]
+    tabs: bool
 
     @property
     def longest(self) -> int:
@@ -190,10 +204,13 @@ class _Rows:
 
 
 def _rows(file: TextFile) -> _Rows:
-    times, table, widths = [], [], []
-    for line, text in enumerate(file.lines[_HEADER_LINES:], start=_HEADER_LINES + 1):
+    times, table, lines, widths, tabs = [], [], [], [], False
+    for index, text in enumerate(file.lines[_HEADER_LINES:], start=_HEADER_LINES):
         if not text.strip():
             continue
+        line = file.line(index)
+        lines.append(line)
+        tabs = tabs or "\t" in text
         cells = text.split("\t") if "\t" in text else text.split()
         widths.append(len(cells))
         row = numbers("\t".join(cells).rstrip().split("\t"), file.path, line)
@@ -205,7 +222,26 @@ def _rows(file: TextFile) -> _Rows:
         raise FileFormatError(file.path, "no frames after the header; export it again", len(file.lines))
     if not file.whole and widths[-1] < widths[0]:
         raise FileFormatError(file.path, "cut short within a row; copy or export it again", len(file.lines))
-    return _Rows(file.path, np.array(times), table)
+    return _Rows(file.path, np.array(times), table, lines, widths, tabs)
+
+
+def _without_cut_rows(rows: _Rows, points: int, notes: list[str]) -> _Rows:
+    """The frames without those of which no one can say which columns they lack, with remarks on short rows.
+
+    Between tabs, the last columns are the ones that a short row lacks; between blanks, any of them may be.
+    """
+    full = _COLUMNS_BEFORE_MARKERS + (3 * points if rows.tabs else rows.longest)
+    short = [i for i, width in enumerate(rows.widths) if width < full]
+    if not short:
+        return rows
+    first = short[0]
+    place = f"line {rows.lines[first]} ({rows.widths[first]} of {full} columns)"
+    found = f"{len(short)} rows end early, the first in {place}"
+    if rows.tabs:
+        notes.append(f"{found}; the markers of the columns they lack are missing there")
+        return rows
+    notes.append(f"{found}; blanks do not show which columns they lack, so all markers are missing there")
+    return replace(rows, rows=[[] if i in set(short) else row for i, row in enumerate(rows.rows)])
 
 
 def _names(line: str, points: int) -> list[str]:
@@ -214,7 +250,7 @@ def _names(line: str, points: int) -> list[str]:
     Where every name stands over the first column of a point, its place counts; some programs put any number of
     tabs between names, which then follow one another.
     """
-    cells = [cell.strip() for cell in (line.split("\t") if "\t" in line else line.split())]
+    cells = _title_cells(line, points)
     places = [i - _COLUMNS_BEFORE_MARKERS for i, cell in enumerate(cells) if cell][_COLUMNS_BEFORE_MARKERS:]
     names = [cell for cell in cells if cell][_COLUMNS_BEFORE_MARKERS:]
     in_place = all(place % 3 == 0 for place in places) and (not places or places[-1] // 3 < max(points, 1))
@@ -226,13 +262,25 @@ def _names(line: str, points: int) -> list[str]:
     return names + [""] * (points - len(names))
 
 
+def _title_cells(line: str, points: int) -> list[str]:
+    """Cells of the line of names: between tabs, unless blanks align more of the names; those may hold single blanks."""
+    count = points + _COLUMNS_BEFORE_MARKERS
+    by_tabs = [cell.strip() for cell in line.split("\t")]
+    frame_and_time, rest = (words := line.split(None, 2))[:2], words[2:]
+    aligned = frame_and_time + [cell for text in rest for cell in _ALIGNED.split(text.strip()) if cell]
+    tabbed = sum(bool(cell) for cell in by_tabs)
+    if tabbed >= count or (tabbed > _COLUMNS_BEFORE_MARKERS and len(aligned) != count):
+        return by_tabs
+    return aligned if len(aligned) == count else line.split()
+
+
 def _labels(names: list[str], notes: list[str]) -> tuple[str, ...]:
-    """Names that occur once each; points without one are called by their number, as in C3D files."""
+    """Names that occur once each, without the subject's; points without one are called by their number."""
     unnamed = [f"*{i}" for i, name in enumerate(names) if not name]
     if unnamed:
         listed = ", ".join(unnamed[:_MOST_NAMED])
         notes.append(f"{len(unnamed)} points have columns and no name; called by their number: {listed}")
-    return tuple(unique_labels([name or f"*{i}" for i, name in enumerate(names)], notes))
+    return tuple(unique_labels(without_subject([name or f"*{i}" for i, name in enumerate(names)]), notes))
 
 
 def _order_of_axes(line: str, count: int, notes: list[str]) -> list[int]:

@@ -10,6 +10,7 @@ from mbkf.io.text import (
     compare_count,
     compare_rate,
     csv_rows,
+    decoded,
     even_rate,
     number,
     numbers,
@@ -23,6 +24,28 @@ def test_lines_and_whether_the_last_is_whole(tmp_path, content, whole):
     path.write_bytes(b"\xef\xbb\xbf" + content.encode())
     file = read_text(path, "a text")
     assert (file.lines, file.whole) == (["a", "b"], whole)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_texts_of_other_encodings_are_decoded(encoding):
+    assert decoded("Knöchel µ".encode(encoding)) == "Knöchel µ"
+    assert decoded(b"\xfe\xff" + "Knöchel".encode("utf-16-be")) == "Knöchel"
+
+
+def test_lines_keep_their_numbers_without_comments(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("# made\na\n  # by\nb\n")
+    file = read_text(path, "a text").without_comments()
+    assert file.lines == ["a", "b"] and [file.line(k) for k in (0, 1)] == [2, 4]
+    assert read_text(path, "a text").line(1) == 2
+
+
+def test_commas_are_decimal_in_a_row_without_points(tmp_path):
+    assert numbers(["1", "-2,5", ",5", "1,5e-3"], tmp_path, 1) == [1.0, -2.5, 0.5, 0.0015]
+    assert number("100,5") == 100.5 and number("1,234,5") is number("1.234,5") is None
+    for cells in (["1,234", "0.5"], ["1,234,567"], ["1,5", "x"]):
+        with pytest.raises(FileFormatError, match="line 3: not a number"):
+            numbers(cells, tmp_path, 3)
 
 
 def test_a_missing_file_is_named(tmp_path):

@@ -88,6 +88,59 @@ def test_blanks_instead_of_tabs(tmp_path):
     np.testing.assert_array_equal(capture.markers.present, [[True, True], [True, False], [False, False]])
 
 
+@pytest.mark.parametrize(
+    "names", ["Frame#\tTime     Head     L.Toe Tip   ", "Frame# Time   Head    L.Toe Tip  "]
+)
+def test_names_that_blanks_align_may_hold_single_blanks(tmp_path, names):
+    check_values(read(tmp_path, text(names=names)))
+
+
+def test_names_between_single_blanks_after_tabs(tmp_path):
+    assert read(tmp_path, text(names="Frame#\tTime Head Toe")).markers.names == ("Head", "Toe")
+
+
+def test_decimal_commas(tmp_path):
+    check_values(
+        read(tmp_path, text(TIDY.replace("50", "50,0"), rows=[row.replace(".", ",") for row in ROWS]))
+    )
+    with pytest.raises(FileFormatError, match=r"line 8.*not a number"):
+        read(tmp_path, text(rows=[ROWS[0], ROWS[1].replace("1501", "1,501"), ROWS[2]]))
+
+
+def test_one_subjects_name_is_taken_off_and_two_are_kept(tmp_path):
+    one, two = ("Frame#\tTime\tAnna:Head\t\t\t" + toe for toe in ("Anna:L.Toe Tip", "Bea:L.Toe Tip"))
+    check_values(read(tmp_path, text(names=one)))
+    assert read(tmp_path, text(names=two)).markers.names == ("Anna:Head", "Bea:L.Toe Tip")
+
+
+def test_comments_and_lines_of_the_file_in_messages(tmp_path):
+    commented = text(rows=[ROWS[0], "# a pause", *ROWS[1:]]).replace("50\t50", "# by hand\n50\t50", 1)
+    check_values(read(tmp_path, "# made by X\n" + commented))
+    timeless = "# made by X\n" + commented.replace("2\t0.02", "2\t", 1)
+    with pytest.raises(FileFormatError, match=r"line 11.*no time"):
+        read(tmp_path, timeless)
+
+
+def test_utf_16(tmp_path):
+    (tmp_path / "a.trc").write_bytes(text().encode("utf-16"))
+    check_values(read_trc(tmp_path / "a.trc", CaptureOptions()))
+
+
+def test_rows_cut_short_are_read_as_far_as_they_go_and_told(tmp_path):
+    capture = read(tmp_path, text(rows=[ROWS[0], "2\t0.02\t101\t1501\t-51\t120", ROWS[2]]))
+    check_values(capture)
+    note = "1 rows end early, the first in line 8 (6 of 8 columns)"
+    assert [one for one in capture.notes if one.startswith(note)]
+
+
+def test_between_blanks_a_short_row_does_not_show_which_columns_it_lacks(tmp_path):
+    rows = ["1 0.00 100 1500 -50 120 20 60", "2 0.02 120 20 60", "3 0.04 100 1500 -50 120 20 60"]
+    capture = read(tmp_path, text(names="Frame# Time Head Toe", rows=rows))
+    np.testing.assert_array_equal(capture.markers.present.all(axis=1), [True, False, True])
+    np.testing.assert_array_equal(capture.markers.present.any(axis=1), [True, False, True])
+    assert any("5 of 8 columns" in note and "all markers are missing" in note for note in capture.notes)
+
+
 def test_units_come_from_the_header_or_the_caller(tmp_path):
     metres = text(TIDY.replace("mm", "m"), rows=["1\t0\t0.1\t1.5\t0\t0.1\t0.1\t0.1"] * 3)
     assert read(tmp_path, metres).markers.positions_m[0, 0, 2] == 1.5

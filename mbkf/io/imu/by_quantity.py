@@ -19,7 +19,8 @@ from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
 from mbkf.io.imu.table import table_signals
 from mbkf.io.imu.table_defaults import TableDefaults
-from mbkf.io.imu.table_text import decoded, read_table_text, split_table
+from mbkf.io.imu.table_text import read_table_text, split_table
+from mbkf.io.text import decoded
 
 _KINDS = {
     "inertial": "", "sensors": "", "imu": "", "rawdata": "",

@@ -11,7 +11,7 @@ from mbkf.io.files_read import opened
 from mbkf.io.imu.clocks import on_one_clock
 from mbkf.io.imu.column_names import parse_column_name
 from mbkf.io.imu.readings import ImuReadings
-from mbkf.io.imu.table_text import decoded
+from mbkf.io.text import decoded
 
 _TEXTS = (".csv", ".tsv", ".txt")
 _HEAD_BYTES = 1 << 16

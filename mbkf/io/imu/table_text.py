@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.files_read import check_input, read_bytes
+from mbkf.io.text import decoded
 
 _COMMENT = ("#", "//", "%")
 _DELIMITERS = "\t;,"
@@ -82,17 +83,6 @@ def split_table(path: Path, text: str) -> TableText:
     except (csv.Error, ValueError) as error:  # a quotation mark that does not end joins rows
         raise FileFormatError(path, f"damaged ({error}); export it again") from error
     return TableText(path, rows, comments, delimiter != "," and _decimal_commas(rows))
-
-
-def decoded(data: bytes) -> str:
-    """Text of bytes: by the mark at their beginning, as UTF-8, else as Windows writes."""
-    for mark, encoding in ((b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
-        if data.startswith(mark):
-            return data[2:].decode(encoding, "replace")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("cp1252", "replace")
 
 
 def is_number(cell: str) -> bool:

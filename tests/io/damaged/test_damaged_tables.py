@@ -91,11 +91,19 @@ def test_what_is_no_table_is_refused(tmp_path, name, content):
     refusal(SAMPLES[name][0], tmp_path / name, content)
 
 
+@pytest.mark.parametrize("name", set(SAMPLES) - {"xsens.txt"})
+def test_programs_on_windows_write_utf_16(tmp_path, name):
+    read, text = SAMPLES[name]
+    for encoding in ("utf-16", "utf-16-be"):
+        mark = "" if encoding == "utf-16" else "\ufeff"
+        (tmp_path / name).write_bytes((mark + text).encode(encoding))
+        assert read(tmp_path / name) is not None
+
+
 @pytest.mark.parametrize("name", SAMPLES)
 def test_another_encoding_and_a_first_line_alone_are_refused(tmp_path, name):
     read, text = SAMPLES[name]
-    other = "utf-32" if name == "imu.csv" else "utf-16"  # sensors' programs on Windows write UTF-16
-    refusal(read, tmp_path / name, text.encode(other)[: 4000 // 4 * 4])
+    refusal(read, tmp_path / name, text.encode("utf-32")[:4000])
     refusal(read, tmp_path / name, text.splitlines()[0].encode())
 
 

@@ -6,7 +6,8 @@ import pytest
 from mbkf.errors import InvalidInput
 from mbkf.io.imu.channels import Channel, channel_signals
 from mbkf.io.imu.table import read_imu_csv
-from mbkf.io.imu.table_text import decoded, is_number, split_table
+from mbkf.io.imu.table_text import is_number, split_table
+from mbkf.io.text import decoded
 
 ROWS = [[0.0, 0.5, -1.25, 9.75], [0.01, 0.25, 1.5, 9.5], [0.02, 0.25, 1.5, 9.5]]
 TITLES = ["time (s)", "acc_x (m/s²)", "acc_y (m/s²)", "acc_z (m/s²)"]
