@@ -77,7 +77,7 @@ def run(context: Context) -> list[Check]:
     trials = list(product(QUICK_MOTIONS if quick else MOTIONS, range(QUICK_SEEDS if quick else SEEDS)))
     for (motion, seed), smooth in product(trials, (False, True)):
         name = f"{motion}, {'smoothed' if smooth else 'causal'}"
-        found = _apart(motion, seed, ReconstructSettings(smooth=smooth, checks=False))
+        found = apart(motion, seed, ReconstructSettings(smooth=smooth, checks=False))
         worst[name] = found if name not in worst else worst[name].or_worse(found)
     share, times = "share of each array's largest value", "over the last digit's effect on the reference"
     return [
@@ -101,7 +101,7 @@ class Apart(NamedTuple):
         return Apart(max(self.share, other.share), max(self.over_rounding, other.over_rounding))
 
 
-def _apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
+def apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
     """How far the kernels are apart on one trial.
 
     Args:

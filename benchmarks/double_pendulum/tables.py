@@ -205,7 +205,8 @@ def _speed_claims(speed: dict[str, float]) -> list[Claim]:
         Claim(
             "Table A.3",
             "The simplified F is faster.",
-            f"{simple:.2f} times the speed (thesis 1.18); analytic derivatives leave little to save",
+            f"{simple:.2f} times the speed on the pendulum (thesis 1.18), where ∂z̈/∂T_e is computed alone; on the "
+            "whole body see the benchmark torque_speed",
             judged(simple > 1.05, simple > 1.0),
         ),
     ]

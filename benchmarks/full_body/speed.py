@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from time import thread_time
+from types import MappingProxyType
 
 import numpy as np
 
@@ -116,23 +117,30 @@ def measure_speed(quick: bool) -> Speed:
         return time_filters(subject, tared(made.trial), made.truth.foot_wrench, rounds)
 
 
-def time_filters(subject: Subject, capture: Capture, foot_wrench: Array, rounds: int) -> Speed:
-    """Times all filters on a capture, in turns.
+def time_filters(
+    subject: Subject,
+    capture: Capture,
+    foot_wrench: Array,
+    rounds: int,
+    methods: Mapping[str, Method] = MappingProxyType({name: CAUSAL[name] for name in FILTERS}),
+) -> Speed:
+    """Times filters on a capture, in turns.
 
     Args:
         subject: The person.
         capture: Markers and plates.
         foot_wrench: (T, 2, 6) wrenches for inverse dynamics after the kinematic filter.
         rounds: How often the capture is followed.
+        methods: The filters by name.
 
     Raises:
         NotObservable: A filter does not follow a single frame.
     """
     products: list[float] = []
     factor = np.random.default_rng(0).normal(size=(PRODUCT_SIZE, PRODUCT_SIZE))
-    drivers = {name: _Driver(CAUSAL[name], subject, capture, foot_wrench) for name in FILTERS}
+    drivers = {name: _Driver(one, subject, capture, foot_wrench) for name, one in methods.items()}
     frames = len(foot_wrench)
-    seconds = {name: np.full((rounds, frames, len(PARTS)), np.nan) for name in FILTERS}
+    seconds = {name: np.full((rounds, frames, len(PARTS)), np.nan) for name in methods}
     for k in range(rounds):
         for name, driver in drivers.items():
             driver.rewind()

@@ -99,8 +99,16 @@ class Pauses:
             self._late.append(time.perf_counter() - begin - self.EVERY_S)
 
 
-def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed: float = 1.0) -> Run:
-    """Plays a trial into a live run with the dynamic filter.
+def play(
+    trial: Trial,
+    protocol: str,
+    folder: Path,
+    *,
+    view: bool = False,
+    speed: float = 1.0,
+    filter_words: Sequence[str] = ("dynamic",),
+) -> Run:
+    """Plays a trial into a live run.
 
     Args:
         trial: The capture and its subject.
@@ -108,6 +116,7 @@ def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed
         folder: Folder for the results.
         view: Whether a live page is open, too.
         speed: Times real time.
+        filter_words: What follows ``--filter``: its name, and options such as a preset.
 
     Raises:
         InvalidInput: One of the commands failed.
@@ -118,7 +127,15 @@ def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed
     receive, send = (
         (["--stream", name], ["--name", name]) if protocol == "lsl" else (["--port", port], ["--port", port])
     )
-    words: list[str | Path] = ["live", "--from", protocol, "--subject", trial.subject, "--filter", "dynamic"]
+    words: list[str | Path] = [
+        "live",
+        "--from",
+        protocol,
+        "--subject",
+        trial.subject,
+        "--filter",
+        *filter_words,
+    ]
     words += ["--seconds", f"{trial.seconds:.6f}", "--keep-log", "--out", folder, *receive]
     words += ["--view"] if view else []
     live = _start(words)
