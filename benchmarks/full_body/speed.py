@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from time import thread_time
-from types import MappingProxyType
 
 import numpy as np
 
@@ -41,6 +40,8 @@ SECONDS, QUICK_SECONDS = 4.0, 1.0
 
 FILTERS = (FCDI, FDMC_PRINTED, FDMC, DYNAMIC)
 """FDMC per frame differs from FDMC as printed in numbers only, and so costs the same."""
+
+METHODS: Mapping[str, Method] = {name: CAUSAL[name] for name in FILTERS}
 
 PARTS = ("step", "standard deviations", "NIS", "records")
 STEP = PARTS[0]
@@ -122,7 +123,7 @@ def time_filters(
     capture: Capture,
     foot_wrench: Array,
     rounds: int,
-    methods: Mapping[str, Method] = MappingProxyType({name: CAUSAL[name] for name in FILTERS}),
+    methods: Mapping[str, Method] = METHODS,
 ) -> Speed:
     """Times filters on a capture, in turns.
 
