@@ -10,8 +10,9 @@ Examples:
   mbkf batch study --out results --shard 3/16                        (one of 16 independent jobs)
 
 A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names the
-person. Standing trials are known by their names (static, calibration, t-pose, …); ground reactions lie beside their
-trial under its name with "grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and
+person. Captures of several persons in one folder are told apart by codes in their names and by subject, mass and height
+in the files. Standing trials are known by their names (static, calibration, t-pose, …); ground reactions lie beside
+their trial under its name with "grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and
 plates do not. A list names them instead:
 
   subject,trial,static,forces,mass_kg                    [[subject]]
@@ -21,8 +22,8 @@ plates do not. A list names them instead:
 
 Results stand in DIR/SUBJECT[/SESSION]/TRIAL. DIR/summary.csv has a row for each trial, DIR/curves.csv all gait cycles
 at 0 to 100 %; both also as .parquet. The last lines name the trials that are not to be used and those to look at, with
-the reason, and count the words; --strict exits with 3 if one is "do not use". A trial that is done and unchanged is
-skipped. A bad file fails alone, with its reason in the table.
+the reason, and the persons whose bodies are doubtful, and count the words; --strict exits with 3 if one is "do not
+use". A trial that is done and unchanged is skipped. A bad file fails alone, with its reason in the table.
 """
 
 from __future__ import annotations
@@ -54,6 +55,9 @@ if TYPE_CHECKING:
 
 EXIT_FAILED = 1
 """Exit code after a trial that failed."""
+
+DOUBTS = "person_doubts"
+"""Column of the table with the doubts about a trial's person."""
 
 REASONS = "verdict.reasons"
 """Column of the table with the reasons of verdicts."""
@@ -144,12 +148,23 @@ def _print(table: pa.Table, out: str) -> tuple[int, Counter[str]]:
     for folder, verdict in verdicts.items():
         if verdict.overall != WORDS[0]:
             print(f"{folder}: {verdict.line}")
+    for person, doubts in _doubtful_persons(table).items():
+        print(f"person {person}: {doubts}")
     done, unchanged, failed = (statuses.count(status) for status in ("done", "unchanged", "failed"))
     words = Counter(verdict.overall for verdict in verdicts.values())
     if verdicts:
         print("may they be used? " + ", ".join(f"{words[word]} {word}" for word in WORDS))
     print(f"{out}: {done} trials done, {unchanged} unchanged, {failed} failed")
     return failed, Counter(words)
+
+
+def _doubtful_persons(table: pa.Table) -> dict[str, str]:
+    """Doubts about persons, by the names of person and session."""
+    columns = ["subject", "session", DOUBTS]
+    if DOUBTS not in table.column_names:
+        return {}
+    rows = [tuple(row[name] for name in columns) for row in table.select(columns).to_pylist()]
+    return {f"{name}/{session}" if session else name: doubts for name, session, doubts in rows if doubts}
 
 
 def _verdicts(table: pa.Table) -> Iterator[tuple[str, Verdict]]:

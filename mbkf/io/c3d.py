@@ -20,12 +20,12 @@ from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plat
 from mbkf.io.c3d_decode import C3dContent, decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_person import stated_mass
 from mbkf.io.c3d_plates import RawPlate
 from mbkf.io.c3d_points import read_points
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.marker_capture import StatedUnit
 from mbkf.io.plate_corners import plate_normal
-from mbkf.io.plausible import MASSES_KG
 from mbkf.io.readable_plates import readable_plates
 from mbkf.io.records import AxesSource, Capture
 
@@ -47,6 +47,7 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     path = Path(path)
     content = decode(path, check_layout(path))
     parameters = content.parameters
+    mass_kg = stated_mass(parameters)
     rate_hz = _rate(path, content)
     start_s = max(content.first_frame - 1, 0) / rate_hz
 
@@ -78,7 +79,7 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
         up_axis=up,
         length_unit=unit,
         notes=tuple(notes),
-        subject_mass_kg=_mass_kg(parameters),
+        subject_mass_kg=None if mass_kg is None else single_precision(mass_kg),
         axes=axes_text(rotation_to_world(up)),
         axes_source=source,
         processing=parameters.single_numbers("PROCESSING"),
@@ -114,12 +115,3 @@ def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]
         "neither plates nor POINT:Y_SCREEN state the axis that points up; taken as z (--up changes it)"
     )
     return "z", AxesSource.DEFAULT
-
-
-def _mass_kg(parameters: C3dParameters) -> float | None:
-    """Body mass stated in PROCESSING or SUBJECTS, if it is one."""
-    for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECTS", "WEIGHT")):
-        mass = parameters.number(group, name)
-        if MASSES_KG[0] <= mass <= MASSES_KG[1]:
-            return single_precision(mass)
-    return None

@@ -5,7 +5,7 @@ import json
 import pyarrow as pa
 import pytest
 
-from mbkf.cli.batch import REASONS, _print, shard_of
+from mbkf.cli.batch import DOUBTS, REASONS, _print, shard_of
 from mbkf.cli.main import main
 from mbkf.errors import InvalidInput
 from mbkf.io.verdict import Reason, Verdict
@@ -65,3 +65,12 @@ def test_the_last_lines_name_the_trials_that_may_not_be_used_and_count_the_words
         "out: 1 trials done, 1 unchanged, 1 failed",
     ]
     assert shown.err == "failed: P1/c: no file\n"
+
+
+def test_the_last_lines_name_each_person_whose_body_is_doubtful_once(capsys):
+    columns = {
+        "subject": ["P1", "P1", "P2"], "session": ["", "", "am"], "folder": ["P1/a", "P1/b", "P2/am/c"],
+        "status": ["done"] * 3, "reason": [""] * 3, DOUBTS: ["long legs", "long legs", ""],
+    }  # fmt: skip
+    _print(pa.table(columns), "out")
+    assert capsys.readouterr().out.splitlines()[:-1] == ["person P1: long legs"]

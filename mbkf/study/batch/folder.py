@@ -2,6 +2,7 @@
 
     study/P01/static.c3d, study/P01/walk1.c3d                  person P01
     study/P01/monday/static.c3d, study/P01/monday/walk1.trc    person P01, session monday
+    mixed/A1_static.c3d, mixed/A1_walk.c3d, mixed/B2_walk.c3d  persons A1 and B2 (:mod:`mbkf.study.batch.persons`)
 
 Standing trials are recognised by their names, else by standing still. Ground reactions lie beside their trial,
 under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and
@@ -18,11 +19,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError, InvalidInput, suggestion
+from mbkf.io.c3d_person import person_of_c3d
 from mbkf.io.capture import CAPTURES, FORCES, folder_suffixes
 from mbkf.io.plain_data import plain_text
 from mbkf.io.results_folder import MOTION_FILE
 from mbkf.io.session import FROM_STATIC, SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.io.toml_lines import line_of
+from mbkf.study.batch.persons import FolderPersons, PersonFiles, persons_of_files
 from mbkf.study.batch.plan import (
     Files,
     Person,
@@ -32,6 +35,12 @@ from mbkf.study.batch.plan import (
     planned,
     scaling_candidates,
 )
+
+STATED_SHARE = 0.1
+"""Share by which a mass or height in a session file and in captures may differ."""
+
+APART = "put the captures of each person into a folder of their own, or name them in a list"
+"""Mend for a folder of several persons."""
 
 SUBJECT_FILE = "subject.toml"
 """A person scaled before, in the session's folder."""
@@ -56,7 +65,7 @@ def plan_of_folder(folder: Path) -> Plan:
         try:
             stated = stated_of(root, place)
             notes += strange_trials(stated, captures, place / SESSION_FILE)
-            trials += _trials(root, place, captures, stated)
+            trials += _trials(root, place, captures, stated, notes)
         except FileFormatError as error:
             person = Person(*person_and_session(root, place))
             trials += [
@@ -176,13 +185,48 @@ def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
         yield place, captures_in(place)
 
 
-def _trials(root: Path, place: Path, captures: Sequence[Path], notes: SessionNotes) -> list[Trial]:
-    """The trials of one session."""
-    person, moving = _person(root, place, captures, notes)
-    return [
-        Trial(person, path, forces, folder_name(path.stem), notes.trial(path.stem).events)
-        for path, forces in moving
+def _trials(
+    root: Path, place: Path, captures: Sequence[Path], stated: SessionNotes, notes: list[str]
+) -> list[Trial]:
+    """The trials of one session's folder, of each person in it; remarks on several persons are added to the notes."""
+    found = _persons_in(captures, stated)
+    if len(found.persons) > 1:
+        notes.append(_several(place, found))
+    trials = []
+    for one in found.persons:
+        person, moving = _person(root, place, one, stated, found)
+        trials += [
+            Trial(person, path, forces, folder_name(path.stem), stated.trial(path.stem).events)
+            for path, forces in moving
+        ]
+    lost = Person(*person_and_session(root, place))
+    reason = f"{place} holds several persons, and neither name nor mass tells whose capture this is; {APART}"
+    return trials + [
+        Trial(lost, path, None, folder_name(path.stem), fault=f"{path.name}: {reason}")
+        for path in found.unknown
     ]
+
+
+def _persons_in(captures: Sequence[Path], stated: SessionNotes) -> FolderPersons:
+    """The persons of a folder by its captures that are not left out."""
+    kept = [path for path in captures if not stated.trial(path.stem).excluded]
+    return persons_of_files(kept, {path for path in kept if is_static(path, stated)}, person_of_c3d)
+
+
+def _several(place: Path, found: FolderPersons) -> str:
+    """A remark on a folder of several persons."""
+    persons = [
+        f"{one.label} ({'' if one.mass_kg is None else f'{one.mass_kg:.1f} kg, '}{_counted(one.captures)})"
+        for one in found.persons
+    ]
+    return (
+        f"{place} holds captures of {len(persons)} persons: {', '.join(persons)}. "
+        "Each is scaled from their own captures; if these are one person's, name them in a list"
+    )
+
+
+def _counted(captures: Sequence[Path]) -> str:
+    return "1 capture" if len(captures) == 1 else f"{len(captures)} captures"
 
 
 def person_of_folder(folder: Path) -> Person:
@@ -205,29 +249,69 @@ def person_of_folder(folder: Path) -> Person:
         raise InvalidInput(f"{folder}: no captures lie in this folder; {hint}")
     notes = stated_of(place, place)
     strange_trials(notes, captures, place / SESSION_FILE)
-    return replace(_person(place, place, captures, notes)[0], subject=None)
+    found = _persons_in(captures, notes)
+    if len(found.persons) > 1:
+        raise InvalidInput(f"{_several(place, found).split('. ')[0]}; {APART}")
+    return replace(_person(place, place, found.persons[0], notes, found)[0], subject=None)
 
 
 def _person(
-    root: Path, place: Path, captures: Sequence[Path], notes: SessionNotes
+    root: Path, place: Path, files: PersonFiles, notes: SessionNotes, found: FolderPersons
 ) -> tuple[Person, list[Files]]:
-    """The person of one session, and the moving trials that are not left out."""
-    files = sorted(place.iterdir())
-    kept = [path for path in captures if not notes.trial(path.stem).excluded]
-    statics = tuple(path for path in kept if is_static(path, notes))
-    moving = [Files(path, forces_beside(path, files)) for path in kept if path not in statics]
+    """A person of one session, and the moving trials that are not left out.
+
+    In a folder of several persons its ``subject.toml`` is nobody's, and mass and height in its session file are those
+    of the persons whose captures state nearly the same.
+    """
+    beside = sorted(place.iterdir())
+    statics = tuple(path for path in files.captures if is_static(path, notes))
+    moving = [Files(path, forces_beside(path, beside)) for path in files.captures if path not in statics]
     subject = place / SUBJECT_FILE
+    several = len(found.persons) > 1
+    name, session = person_and_session(root, place)
+    label = folder_name(files.label)
+    same_mass = not several or _near(notes.mass_kg, files.mass_kg)
+    same_height = not several or _near(notes.height_m, files.height_m)
     person = Person(
-        *person_and_session(root, place),
+        name if not several else label if place == root else f"{name}-{label}",
+        session,
         statics,
         scaling_candidates(moving),
-        notes.mass_kg,
-        notes.height_m,
+        notes.mass_kg if same_mass else None,
+        notes.height_m if same_height else None,
         notes.protocol,
-        subject if subject.is_file() else None,
+        subject if subject.is_file() and not several else None,
         notes.scaling == FROM_STATIC,
+        _remarks(files, statics, notes, found),
     )
     return person, moving
+
+
+def _near(stated: float | None, in_files: float | None) -> bool:
+    """True for a stated mass or height that the captures state, too."""
+    return stated is not None and in_files is not None and abs(stated / in_files - 1.0) <= STATED_SHARE
+
+
+def _remarks(
+    files: PersonFiles, statics: Sequence[Path], notes: SessionNotes, found: FolderPersons
+) -> tuple[str, ...]:
+    """Doubts about a person that follow from the statements of the captures."""
+    remarks = []
+    if len(found.persons) > 1 and not statics:
+        remarks.append("has no standing trial in a folder of several persons; scaled from moving trials")
+    if found.subjects:
+        names = ", ".join(found.subjects)
+        remarks.append(
+            f"the captures name different subjects ({names}) and are taken for one person's; {APART}"
+        )
+    stated, in_files = notes.mass_kg, files.mass_kg
+    if stated is not None and in_files is not None and not _near(stated, in_files):
+        used = "stated" if len(found.persons) == 1 else "captures'"
+        remarks.append(
+            f"{SESSION_FILE} states {stated:.1f} kg, the captures {in_files:.1f} kg; "
+            f"the {used} mass is used: correct the other"
+        )
+    return tuple(remarks)
 
 
 def person_and_session(root: Path, place: Path) -> tuple[str, str]:

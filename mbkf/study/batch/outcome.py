@@ -37,6 +37,7 @@ class Outcome:
         seconds: How long it took.
         peak_memory_mb: Most memory that its worker had until then; None where the system does not state it.
         subject: The scaled person's file; None: a trial, or a failed scaling.
+        doubts: Doubts about the scaled person, in one line; empty without any.
     """
 
     status: Status
@@ -44,6 +45,7 @@ class Outcome:
     seconds: float = 0.0
     peak_memory_mb: float | None = None
     subject: Path | None = None
+    doubts: str = ""
 
 
 class Task(Protocol):

@@ -14,9 +14,10 @@ from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.atomic import check_file, remove_file
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
-from mbkf.io.subject import Subject, write_subject
+from mbkf.io.subject import Subject, read_subject, write_subject
 from mbkf.io.written import SETTINGS
 from mbkf.scaling.records import ScalingSettings
+from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.study.batch.inputs import fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import body_of_points, is_nameless, named
 from mbkf.study.batch.plan import Files, Person, trial_names
@@ -63,6 +64,20 @@ def subject_of(person: Person, out: Path, progress: StageCallback = ignored) -> 
     write_subject(replace(subject, report=report), place / SUBJECT_FILE)
     write_record(place / RECORD, {**made_from, **trials})
     return place / SUBJECT_FILE
+
+
+def doubts_of(person: Person, subject: Path) -> tuple[str, ...]:
+    """Doubts about a scaled person: those of the plan and of the scaling; a file that cannot be read raises none.
+
+    Args:
+        person: The person.
+        subject: The person's file.
+    """
+    try:
+        found = read_subject(subject).report.get(DOUBTS_KEY)
+    except MbkfError:
+        found = None  # each trial fails by it, with the reason
+    return (*person.remarks, *(map(str, found) if isinstance(found, list) else ()))
 
 
 def record_of(place: Path) -> JsonTable:

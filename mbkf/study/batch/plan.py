@@ -56,6 +56,7 @@ class Person:
         protocol: Marker protocol; None: recognised by the names.
         subject: A subject file to take instead of scaling.
         static_only: True: scaled from the standing trial alone, where there is one.
+        remarks: Doubts about the person that follow from the folder or list.
     """
 
     name: str
@@ -67,6 +68,7 @@ class Person:
     protocol: str | None = None
     subject: Path | None = None
     static_only: bool = False
+    remarks: tuple[str, ...] = ()
 
     @property
     def place(self) -> Path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from os import cpu_count
 from pathlib import Path
 
@@ -165,7 +166,17 @@ def outcomes_of(
     ready = [trial for trial in possible if scaled[trial.person].subject is not None]
     tasks = (ReconstructTrial(one, _subject(scaled, one.person), out, settings) for one in ready)
     found = dict(zip(ready, _done(tasks, executor, "Trials", progress, len(ready)), strict=True))
-    return [found.get(trial) or _undone(trial, scaled) for trial in plan.trials]
+    return [
+        replace(found.get(trial) or _undone(trial, scaled), doubts=_doubts(trial.person, scaled))
+        for trial in plan.trials
+    ]
+
+
+def _doubts(person: Person, scaled: dict[Person, Outcome]) -> str:
+    """Doubts about a trial's person; those of the plan where the person was not scaled."""
+    outcome = scaled.get(person)
+    known = outcome is not None and outcome.status != Status.FAILED
+    return outcome.doubts if outcome is not None and known else "; ".join(person.remarks)
 
 
 def _done(

@@ -11,7 +11,7 @@ from mbkf.conventions import StageCallback
 from mbkf.io.files_read import own_files_read
 from mbkf.numerics.threads import single_threaded
 from mbkf.study.batch.outcome import Outcome, Status, failed, peak_memory_mb
-from mbkf.study.batch.person import subject_of
+from mbkf.study.batch.person import doubts_of, subject_of
 from mbkf.study.batch.plan import Person, Trial
 from mbkf.study.batch.progress import ignored
 from mbkf.study.batch.trial import trial_done
@@ -36,8 +36,13 @@ class ScalePerson:
         return self.person.place.as_posix()
 
     def __call__(self, progress: StageCallback = ignored) -> Outcome:
-        """The outcome, with the person's file."""
-        return _outcome(lambda: Outcome(Status.DONE, subject=subject_of(self.person, self.out, progress)))
+        """The outcome, with the person's file and the doubts about the person."""
+
+        def work() -> Outcome:
+            subject = subject_of(self.person, self.out, progress)
+            return Outcome(Status.DONE, subject=subject, doubts="; ".join(doubts_of(self.person, subject)))
+
+        return _outcome(work)
 
 
 @dataclass(frozen=True)
@@ -80,4 +85,4 @@ def _outcome(work: Callable[[], Outcome]) -> Outcome:
     except Exception as error:  # one bad file costs only itself
         found = failed(error)
     seconds = time.perf_counter() - begin
-    return Outcome(found.status, found.reason, seconds, peak_memory_mb(), found.subject)
+    return Outcome(found.status, found.reason, seconds, peak_memory_mb(), found.subject, found.doubts)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from mbkf.errors import InvalidInput
+from mbkf.io.c3d_person import StatedPerson
 from mbkf.io.session import EventKind, FootEvent
 from mbkf.study.batch.folder import (
     forces_beside,
@@ -82,6 +83,48 @@ def test_ground_reactions_lie_beside_their_trial(tmp_path, capture, forces):
 def test_motion_files_without_forces_are_not_ground_reactions(tmp_path):
     made(tmp_path, "walk.trc", "walk.mot", "walk_ik.sto", "walk.csv")
     assert forces_beside(tmp_path / "walk.trc", sorted(tmp_path.iterdir())) is None
+
+
+def test_persons_in_one_folder_are_scaled_each_from_their_own(tmp_path):
+    made(tmp_path, "P1_static.c3d", "P1_walk.c3d", "P2_static.c3d", "P2_walk.c3d", "subject.toml")
+    plan = plan_of_folder(tmp_path)
+    assert told(plan) == [("P1", "", "P1_walk.c3d"), ("P2", "", "P2_walk.c3d")]
+    for person in plan.persons:
+        assert [path.name for path in person.statics] == [f"{person.name}_static.c3d"]
+        assert [files.path.name for files in person.moving] == [f"{person.name}_walk.c3d"]
+        assert person.subject is None and not person.remarks
+    assert len(plan.notes) == 1 and "2 persons: P1 (2 captures), P2 (2 captures)" in plan.notes[0]
+    with pytest.raises(InvalidInput, match=r"2 persons: P1 .*put the captures of each person into a folder"):
+        person_of_folder(tmp_path)
+
+
+def test_persons_in_a_session_s_folder_keep_its_name_before_theirs(tmp_path):
+    plan = plan_of_folder(
+        made(tmp_path, "lab/monday/P1_static.c3d", "lab/monday/P1_walk.c3d", "lab/monday/P2_walk.c3d")
+    )
+    assert told(plan) == [("lab-P1", "monday", "P1_walk.c3d"), ("lab-P2", "monday", "P2_walk.c3d")]
+    one, other = plan.persons
+    assert not one.remarks and "has no standing trial" in other.remarks[0]
+
+
+def test_a_stated_mass_is_only_that_of_the_person_whose_captures_state_it(tmp_path, monkeypatch):
+    stated = {"adult": StatedPerson((), 60.3, 1.58), "child": StatedPerson((), 39.4, 1.45)}
+    monkeypatch.setattr(
+        "mbkf.study.batch.folder.person_of_c3d", lambda path: stated.get(path.stem[:5], StatedPerson())
+    )
+    made(tmp_path, "adult1.c3d", "child1.c3d", "hop.c3d", session_toml="mass_kg = 61\nheight_m = 1.6\n")
+    plan = plan_of_folder(tmp_path)
+    found = {person.name: (person.mass_kg, person.height_m) for person in plan.persons}
+    assert found == {"60.3kg_1.58m": (61.0, 1.6), "39.4kg_1.45m": (None, None)}
+    assert "states 61.0 kg, the captures 39.4 kg; the captures' mass is used" in plan.persons[1].remarks[-1]
+    lost = [trial for trial in plan.trials if trial.fault]
+    assert [trial.path.name for trial in lost] == ["hop.c3d"] and "whose capture" in lost[0].fault
+
+
+def test_a_stated_mass_far_from_that_of_the_captures_is_a_doubt_about_the_person(tmp_path, monkeypatch):
+    monkeypatch.setattr("mbkf.study.batch.folder.person_of_c3d", lambda path: StatedPerson((), 39.4))
+    (person,) = plan_of_folder(made(tmp_path, "walk.c3d", session_toml="mass_kg = 60")).persons
+    assert person.mass_kg == 60.0 and "the stated mass is used" in person.remarks[0]
 
 
 def test_of_two_captures_of_one_name_the_c3d_is_taken(tmp_path):

@@ -1,13 +1,18 @@
 """A batch from end to end: bad files cost only themselves, what is done is not done again, workers change nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture import read_capture
+from mbkf.io.subject import read_subject
 from mbkf.study.batch import run as module
 from mbkf.study.batch.run import batch, plan_of
 from tests.captures import snapshot
-from tests.studies import QUICK, ThisProcess, study, walk_folder
+from tests.studies import QUICK, ThisProcess, batch_here, study, walk_folder
 
 pytestmark = pytest.mark.slow
 
@@ -131,3 +136,23 @@ def test_a_source_is_a_folder_or_a_list(tmp_path):
         plan_of(tmp_path / "walk.c3d")
     assert len(plan_of(tmp_path).trials) == 1
     assert set(module.LISTS) == {".toml", ".csv"}
+
+
+def test_two_persons_in_one_folder_get_bodies_and_masses_of_their_own(tmp_path):
+    source = tmp_path / "mixed"
+    source.mkdir()
+    for name, size, mass_kg in (("A01", 1.0, 70.0), ("B02", 0.8, 39.4)):
+        for kind, file in (("static", "static.c3d"), ("walk", "trial.c3d")):
+            made = read_capture(walk_folder() / file)
+            markers = replace(made.markers, positions_m=size * made.markers.positions_m)
+            capture = replace(made, markers=markers, plates=(), subject_mass_kg=mass_kg)
+            write_c3d(capture, source / f"{kind}_{name}.c3d")
+    table = batch_here(source, tmp_path / "out", static_only=True)
+    assert table["status"].to_pylist() == ["done", "done"]
+    bodies = {
+        key: read_subject(tmp_path / "out" / key / "subject.toml") for key in table["subject"].to_pylist()
+    }
+    assert {key: body.mass_kg for key, body in bodies.items()} == pytest.approx({"A01": 70, "B02": 39.4})
+    ratios = [bodies["B02"].scale_factors[k] / f for k, f in bodies["A01"].scale_factors.items()]
+    assert np.median(ratios) == pytest.approx(0.8, abs=0.02)
+    assert max(table["marker_rms_mm"].to_pylist()) < 12.0
