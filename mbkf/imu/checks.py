@@ -14,7 +14,8 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
-from mbkf.imu.frames import exponential, multiply, rotate
+from mbkf.imu.soft_saturation import SoftLimit, soft_limits
+from mbkf.imu.turned_force import mean_force
 from mbkf.io.imu.readings import ImuReadings, rate_of
 from mbkf.numerics.runs import runs
 
@@ -99,6 +100,8 @@ def _of_sensor(one: ImuReadings) -> list[Problem]:
         found += _stuck(one, name, values)
         if name != "magnetometer":
             found += _saturated(one, name, values)
+    if not any(problem.kind == "saturated" and "gyroscope" in problem.text for problem in found):
+        found += [_clips_softly(one, limit) for limit in soft_limits(one)]
     wrong = _force_unit(one)
     return [*found, *(wrong or _turning(one))]
 
@@ -165,7 +168,21 @@ def _stuck(one: ImuReadings, name: str, values: Array) -> list[Problem]:
     return found
 
 
+def _clips_softly(one: ImuReadings, limit: SoftLimit) -> Problem:
+    count = int(limit.reached.sum())
+    text = (
+        f"sensor {one.name}: axis {'xyz'[limit.axis]} of the gyroscope clips softly at "
+        f"{limit.limit_rad_s / _DEGREE:.4g} deg/s in {count} samples ({count / one.samples:.1%}; first at "
+        f"{one.time_s[int(np.argmax(limit.reached))]:.2f} s), while gravity turns faster; record with a wider range. "
+        "Stated spreads of its orientation are widened"
+    )
+    return Problem(one.name, "saturated", text, False)
+
+
 def _saturated(one: ImuReadings, name: str, values: Array) -> list[Problem]:
+    # A reading that is held, on all axes, is one reading.
+    fresh = np.concatenate([[True], np.any(np.diff(values, axis=0) != 0.0, axis=1)])
+    values, times = values[fresh], one.time_s[fresh]
     found = []
     for axis in range(3):
         series = values[:, axis]
@@ -181,7 +198,7 @@ def _saturated(one: ImuReadings, name: str, values: Array) -> list[Problem]:
             unit, size = ("deg/s", limit / _DEGREE) if name == "gyroscope" else ("g", limit / GRAVITY_M_S2)
             text = (
                 f"sensor {one.name}: axis {'xyz'[axis]} of the {name} is saturated at {size:.4g} {unit} in "
-                f"{share} samples (first at {one.time_s[full[0][0]]:.2f} s); record with a wider range, angles after a "
+                f"{share} samples (first at {times[full[0][0]]:.2f} s); record with a wider range, angles after a "
                 "clipped turn are off"
             )
             found.append(Problem(one.name, "saturated", text, False))
@@ -226,24 +243,13 @@ def _turning(one: ImuReadings) -> list[Problem]:
     if windows is None:
         return []
     rates, force = windows
-    off = {s: abs(_mean_force(s / one.rate_hz * rates, force) / GRAVITY_M_S2 - 1.0) for s in _SCALES}
+    off = {s: abs(mean_force(s / one.rate_hz * rates, force) / GRAVITY_M_S2 - 1.0) for s in _SCALES}
     best = min(off, key=lambda scale: off[scale])
     fast = float(np.sqrt((rates**2).sum(axis=2).mean())) > _FAST_RAD_S
     if best == 1.0 or off[1.0] - off[best] < _CLEARLY or (best == _DEGREE and not fast):
         return []
     kind: Literal["sign", "unit"] = "sign" if best < 0.0 else "unit"
     return [Problem(one.name, kind, f"sensor {one.name}: the gyroscope {_SCALES[best]}", True)]
-
-
-def _mean_force(turns: Array, force: Array) -> float:
-    """Median size of the mean of forces (W, L, 3), turned by successive rotations (W, L, 3), rad."""
-    q = exponential(turns[:, :-1])
-    reach = 1  # products of 1, 2, 4, … successive rotations
-    while reach < q.shape[1]:
-        q[:, reach:] = multiply(q[:, :-reach], q[:, reach:])
-        reach *= 2
-    total = force[:, 0] + rotate(q, force[:, 1:]).sum(axis=1)
-    return float(np.median(np.sqrt((total**2).sum(axis=1)))) / turns.shape[1]
 
 
 def _windows(one: ImuReadings) -> tuple[Array, Array] | None:
