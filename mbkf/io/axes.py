@@ -36,6 +36,7 @@ ODD_EXTENT_M = 8.0
 """One person's markers hardly spread over more than this; worth a remark, no error."""
 
 _CHECKED_FRAMES = 200
+_LEAST_LETTERS = 4
 
 
 def up_axis(name: str) -> str:
@@ -98,10 +99,16 @@ def length_unit(name: str) -> str:
         UnknownName: It is not a known unit of length.
     """
     word = name.strip().lower()
-    word = UNIT_SPELLINGS.get(word, word)
+    word = UNIT_SPELLINGS.get(word) or UNIT_SPELLINGS.get(_completed(word), word)
     if word not in METRES_PER_UNIT:
         raise UnknownName("length unit", name, METRES_PER_UNIT)
     return word
+
+
+def _completed(word: str) -> str:
+    """A longer spelling of which a word is the beginning, as programs cut it at four letters; else the word."""
+    begun = [one for one in UNIT_SPELLINGS if one.startswith(word)] if len(word) >= _LEAST_LETTERS else []
+    return begun[0] if begun and len({UNIT_SPELLINGS[one] for one in begun}) == 1 else word
 
 
 def finite(values: Array) -> BoolArray:

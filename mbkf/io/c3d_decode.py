@@ -21,7 +21,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_records import ParameterRecord
-from mbkf.io.c3d_scaling import scaled_samples
+from mbkf.io.c3d_scaling import ANALOG_SCALING, scaled_samples
 from mbkf.io.files_read import opened
 
 EVENTS_KEY = 12345
@@ -35,6 +35,15 @@ _STEADY = 0.2
 
 MOST_SAMPLES = 1000
 """Bound of analog samples per frame."""
+
+
+_PLATES = "FORCE_PLATFORM"
+PLATE_GEOMETRY = ("TYPE", "CHANNEL", "CORNERS", "ORIGIN")
+"""Parameters without which force plates are not known."""
+
+_NO_PLATES = (
+    "force plates are left out: damage may have taken their parameters; give their readings with --forces"
+)
 
 
 class Processor(Enum):
@@ -98,7 +107,9 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         FileFormatError: The data do not fit the layout.
     """
     processor = Processor(layout.processor)
-    parameters = C3dParameters(values_of(layout.groups, layout.records, processor))
+    values = values_of(layout.section.groups, layout.section.records, processor)
+    without_plates = bool(values.get(_PLATES)) and layout.section.may_lack(_PLATES, PLATE_GEOMETRY)
+    parameters = C3dParameters(values | {_PLATES: {}} if without_plates else values)
     shape = data_layout(path, layout, parameters)
     frames, width = shape.frames, 4 * layout.points + shape.analog_per_frame
     with opened(path) as file:
@@ -113,6 +124,9 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         raise FileFormatError(path, f"cut short: {present}; copy or export it again")
     scale = abs(parameters.number("POINT", "SCALE") or float(processor.floats(header[12:16])[0]))
     analogs, remarks = scaled_samples(numbers[:, 4 * layout.points :], shape.channels, parameters, whole)
+    if len(analogs) and layout.section.may_lack("ANALOG", ANALOG_SCALING):
+        analogs = np.zeros((0, 0))
+        remarks = ("analog channels are left out: damage may have taken the parameters that scale them",)
     return C3dContent(
         parameters,
         corners[:, :, :3] * scale if whole else corners[:, :, :3],
@@ -121,7 +135,7 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         float(processor.floats(header[20:24])[0]),
         _first_frame(layout, parameters),
         _header_events(header, processor),
-        (*shape.notes, *remarks),
+        (*layout.notes, *shape.notes, *remarks, *([_NO_PLATES] if without_plates else [])),
     )
 
 

@@ -7,12 +7,11 @@ points (four numbers each) and analog samples, two bytes a number if the point s
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d_records import DamagedParameters, ParameterRecord, first_integer, walk_parameters
+from mbkf.io.c3d_records import ParameterSection, first_integer, walk_parameters
 from mbkf.io.files_read import check_input, opened
 
 BLOCK_BYTES = 512
@@ -21,6 +20,7 @@ BLOCK_BYTES = 512
 _KEY = 0x50
 _BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, MIPS
 _INTEL = 84
+_MOST_NAMED = 4
 LAST_FRAME_OF_HEADER = 65535
 """The header's 16-bit words cannot count further; longer files count in TRIAL:ACTUAL_END_FIELD."""
 
@@ -39,8 +39,8 @@ class C3dLayout:
         bytes_per_number: 2 (integers) or 4 (floats).
         file_bytes: Size of the file.
         processor: 84 Intel, 85 DEC, 86 SGI-MIPS.
-        groups: Names of the groups of parameters by their numbers.
-        records: The parameters as they stand in the file.
+        section: The parameters as they stand in the file.
+        notes: What had to be settled about them.
     """
 
     points: int
@@ -52,8 +52,8 @@ class C3dLayout:
     bytes_per_number: int
     file_bytes: int
     processor: int
-    groups: Mapping[int, str] = field(default_factory=dict)
-    records: tuple[ParameterRecord, ...] = ()
+    section: ParameterSection = field(default_factory=ParameterSection)
+    notes: tuple[str, ...] = ()
 
     @property
     def bytes_per_frame(self) -> int:
@@ -106,23 +106,48 @@ def check_layout(path: Path) -> C3dLayout:
 
 
 def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> C3dLayout:
-    """The layout with the parameters' records, after comparing the number of points with the header's."""
+    """The layout with the parameters' records and the number of points on which they, header and size agree."""
     end = max(start + blocks * BLOCK_BYTES, (layout.data_block - 1) * BLOCK_BYTES)
     with opened(path) as file:
         file.seek(start + 4)
         section = file.read(end - start - 4)
-    try:
-        groups, parameters = walk_parameters(section, order)
-    except DamagedParameters as error:
-        raise FileFormatError(path, f"its parameters are damaged ({error}); export it again") from error
-    used = {(groups[item.group], item.name): first_integer(item, order) for item in parameters}
-    stated = used.get(("POINT", "USED"))
+    if layout.data_block * BLOCK_BYTES < start + BLOCK_BYTES:
+        raise FileFormatError(path, "its data begin before its parameters end; export it again")
+    found = walk_parameters(section, order)
+    notes = _damage(found)
+    used = [
+        first_integer(one, order)
+        for one in found.records
+        if one.name == "USED" and found.groups[one.group] == "POINT"
+    ]
+    stated = used[-1] if used else None
     if stated is not None and stated != layout.points:
-        reason = f"POINT:USED is {stated}, the header counts {layout.points}; export it again"
-        raise FileFormatError(path, reason)
-    if ("POINT", "USED") not in used or layout.data_block * BLOCK_BYTES < start + BLOCK_BYTES:
-        raise FileFormatError(path, "its parameters are damaged (no POINT:USED or no data); export it again")
-    return replace(layout, groups=groups, records=tuple(parameters))
+        fitting = [count for count in (layout.points, stated) if _fills(replace(layout, points=count))]
+        reason = f"POINT:USED is {stated}, the header counts {layout.points}"
+        if len(fitting) != 1:
+            raise FileFormatError(path, f"{reason} and the file's size does not decide; export it again")
+        notes.append(f"{reason} points; {fitting[0]} fill the file")
+        layout = replace(layout, points=fitting[0])
+    elif stated is None and not _fills(layout):
+        reason = f"no POINT:USED, and the header's {layout.points} points do not fill the file"
+        raise FileFormatError(path, f"its parameters are damaged ({reason}); export it again")
+    elif stated is None:
+        notes.append(f"POINT:USED is missing; the header counts {layout.points} points, which fill the file")
+    return replace(layout, section=found, notes=tuple(notes))
+
+
+def _fills(layout: C3dLayout) -> bool:
+    """True for a layout whose frames fill the file to its last block."""
+    return layout.points > 0 and 0 <= layout.data_bytes - layout.frames * layout.bytes_per_frame < BLOCK_BYTES
+
+
+def _damage(section: ParameterSection) -> list[str]:
+    """A remark on the damaged records of a section, if there are any."""
+    if not section.faults:
+        return []
+    listed = "; ".join(section.faults[:_MOST_NAMED])
+    more = f"; {len(section.faults) - _MOST_NAMED} more" if len(section.faults) > _MOST_NAMED else ""
+    return [f"damaged parameters are left out, and the others used: {listed}{more}"]
 
 
 def _layout(header: bytes, processor: int, size: int) -> C3dLayout:

@@ -1,16 +1,16 @@
-"""Structure of a C3D file's parameter section, walked before a library trusts it.
+"""Structure of a C3D file's parameter section: sound records are read, damaged ones are named.
 
 Each record is: length of the name, group number, name, distance to the next record, then for a parameter its
-type (−1 text, 1 byte, 2 integer, 4 float), its dimensions and its data. A damaged record sends a reader outside
-the file. Source: The C3D File Format, section on parameters (c3d.org).
+type (−1 text, 1 byte, 2 integer, 4 float), its dimensions and its data. A damaged record costs only itself, and one
+that points beyond the section is its last. Source: The C3D File Format, section on parameters (c3d.org).
 """
 
 from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 _TYPES = {-1: 1, 1: 1, 2: 2, 4: 4}
 _MOST_DIMENSIONS = 7
@@ -35,31 +35,73 @@ class ParameterRecord:
     data: bytes
 
 
-class DamagedParameters(ValueError):
-    """The parameter section does not hold together; the text says where."""
+@dataclass(frozen=True)
+class ParameterSection:
+    """The sound records of a section, and what is wrong with the others.
+
+    Attributes:
+        groups: Names of the groups in capitals by their numbers, positive.
+        records: The parameters in the file's order; each belongs to one of the groups.
+        faults: One text for each damaged record.
+        lost: Group, "" where there is none of that number, and name of each parameter that was left out.
+        ended: False where the walk stopped at a damaged record, so that later ones are unknown.
+    """
+
+    groups: Mapping[int, str] = field(default_factory=dict)
+    records: tuple[ParameterRecord, ...] = ()
+    faults: tuple[str, ...] = ()
+    lost: tuple[tuple[str, str], ...] = ()
+    ended: bool = True
+
+    def states(self, group: str, name: str) -> bool:
+        """True where a sound record states a parameter."""
+        return any(one.name == name and self.groups[one.group] == group for one in self.records)
+
+    def may_lack(self, group: str, names: Sequence[str]) -> bool:
+        """True where damage may have taken one of the parameters of a group."""
+        lost = [
+            name for where, name in self.lost if where == group or not (where or self.states(group, name))
+        ]
+        if not set(lost).isdisjoint(names):
+            return True
+        cut = bool(self.faults) and (not self.ended or group not in self.groups.values())
+        return cut and not all(self.states(group, name) for name in names)
 
 
-def walk_parameters(section: bytes, order: str) -> tuple[dict[int, str], list[ParameterRecord]]:
-    """Group number → name in capitals, and the parameters of a section in the file's order.
+class _DamagedRecord(ValueError):
+    """A record contradicts itself; the text says how."""
+
+
+def walk_parameters(section: bytes, order: str) -> ParameterSection:
+    """The parameters of a section; after a damaged record, none replaces one that came before it.
 
     Args:
         section: The bytes from the section's first record on, to the end of the section.
         order: Byte order, "<" or ">".
-
-    Raises:
-        DamagedParameters: A record reaches beyond the section or contradicts itself.
     """
     groups: dict[int, str] = {}
-    parameters = []
-    for number, name, body in _records(section, order):
+    found: dict[tuple[int, str], ParameterRecord] = {}
+    lost: list[tuple[int, str]] = []
+    faults: list[str] = []
+    walk = _Walk(section, order, faults)
+    for number, name, body in walk:
         if number < 0:
-            groups[-number] = name
-        else:
-            parameters.append(_parameter(number, name, body))
-    unknown = [parameter.name for parameter in parameters if parameter.group not in groups]
-    if unknown:
-        raise DamagedParameters(f"parameter {unknown[0]} belongs to no group")
-    return groups, parameters
+            groups[-number] = groups.get(-number, name) if faults else name
+            continue
+        try:
+            record = _parameter(number, name, body)
+        except _DamagedRecord as error:
+            faults.append(str(error))
+            lost.append((number, name))
+            continue
+        if not (faults and (number, name) in found):
+            found[number, name] = record
+    for number, name in [key for key in found if key[0] not in groups]:
+        faults.append(f"parameter {name} belongs to no group")
+        lost.append((number, name))
+        del found[number, name]
+    named = tuple((groups.get(number, ""), name) for number, name in lost)
+    return ParameterSection(groups, tuple(found.values()), tuple(faults), named, walk.ended)
 
 
 def first_integer(parameter: ParameterRecord, order: str) -> int | None:
@@ -69,39 +111,61 @@ def first_integer(parameter: ParameterRecord, order: str) -> int | None:
     return int(struct.unpack_from(f"{order}H", parameter.data)[0])
 
 
-def _records(section: bytes, order: str) -> Iterator[tuple[int, str, bytes]]:
-    """Group number (negative for a group itself), name and body of each record."""
-    at = 0
-    while at + 2 <= len(section):
-        length, number = struct.unpack_from("bb", section, at)
-        length = abs(length)
-        if length == 0 or number == 0:
-            return
-        pointer = at + 2 + length
-        if pointer + 2 > len(section):
-            raise DamagedParameters(f"the record at byte {at} reaches beyond the section")
-        name = section[at + 2 : pointer]
-        if not all(32 <= letter < 127 for letter in name):
-            raise DamagedParameters(f"the name at byte {at} is not text")
-        (step,) = struct.unpack_from(f"{order}H", section, pointer)
-        following = pointer + step if step else len(section)
-        if following > len(section) or (step and step < 3):
-            raise DamagedParameters(f"the record '{name.decode()}' points beyond the section")
-        yield number, name.decode().strip().upper(), section[pointer + 2 : following]
-        if not step:
-            return
-        at = following
+class _Walk:
+    """Group number (negative for a group itself), name and body of each record with a name.
+
+    Attributes:
+        ended: False once the walk has stopped at a damaged record.
+    """
+
+    def __init__(self, section: bytes, order: str, faults: list[str]) -> None:
+        self._section, self._order, self._faults = section, order, faults
+        self.ended = True
+
+    def __iter__(self) -> Iterator[tuple[int, str, bytes]]:
+        section, at = self._section, 0
+        while at + 2 <= len(section):  # ends: each record is at least 3 bytes long
+            length, number = struct.unpack_from("bb", section, at)
+            pointer = at + 2 + abs(length)
+            if length == 0 or number == 0:
+                return
+            if pointer + 2 > len(section):
+                self._stop(f"the record at byte {at} reaches beyond the section")
+                return
+            name = _name(section[at + 2 : pointer])
+            (step,) = struct.unpack_from(f"{self._order}H", section, pointer)
+            following = pointer + step
+            if name is None:
+                self._faults.append(f"the name at byte {at} is not text")
+            if step in (1, 2) or following > len(section):
+                self._stop(f"the record {name or f'at byte {at}'} points beyond the section")
+            if name is not None:
+                last = not step or not self.ended
+                yield number, name, section[pointer + 2 : len(section) if last else following]
+            if not step or not self.ended:
+                return
+            at = following
+
+    def _stop(self, fault: str) -> None:
+        self._faults.append(fault)
+        self.ended = False
+
+
+def _name(letters: bytes) -> str | None:
+    """A name in capitals, without what fills it up; None where it is not text."""
+    name = letters.rstrip(b"\0 ").decode("latin-1")
+    return name.strip().upper() if name.strip() and name.isprintable() else None
 
 
 def _parameter(group: int, name: str, body: bytes) -> ParameterRecord:
     if len(body) < 2:
-        raise DamagedParameters(f"parameter {name} is empty")
+        raise _DamagedRecord(f"parameter {name} is empty")
     kind, count = struct.unpack_from("bB", body)
     if kind not in _TYPES or count > _MOST_DIMENSIONS or len(body) < 2 + count:
-        raise DamagedParameters(f"parameter {name} has no valid type or dimensions")
+        raise _DamagedRecord(f"parameter {name} has no valid type or dimensions")
     dimensions = tuple(body[2 : 2 + count])
     size = _TYPES[kind] * math.prod(dimensions)
     data = body[2 + count : 2 + count + size]
     if len(data) < size:
-        raise DamagedParameters(f"parameter {name} is longer than its record")
+        raise _DamagedRecord(f"parameter {name} is longer than its record")
     return ParameterRecord(group, name, kind, dimensions, data)

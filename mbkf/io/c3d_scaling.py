@@ -15,6 +15,9 @@ from mbkf.io.c3d_parameters import C3dParameters
 _UNSIGNED_OFFSET = -16384
 """An analog offset below this, read with a sign, is the middle of an unsigned range."""
 
+ANALOG_SCALING = ("OFFSET", "SCALE", "GEN_SCALE")
+"""Parameters of ANALOG without which samples have no size."""
+
 TAKEN_AS_UNSIGNED = "analog samples are taken as numbers without a sign, since their OFFSET is that of such"
 
 

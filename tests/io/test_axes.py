@@ -35,6 +35,7 @@ def test_opensim_axes_keep_forward_and_turn_right_into_minus_y():
 def test_names_of_axes_and_units_are_read_generously_and_unknown_ones_refused():
     assert (up_axis("+Y"), up_axis(" -Z ")) == ("y", "-z")
     assert (length_unit(" MM "), length_unit("Meters")) == ("mm", "m")
+    assert [length_unit(cut) for cut in ("mete", "metr", "Mill", "centi")] == ["m", "m", "mm", "cm"]
     with pytest.raises(UnknownName, match="up axis 'w'"):
         up_axis("w")
     with pytest.raises(UnknownName, match="length unit 'furlong'"):

@@ -1,10 +1,11 @@
 """Parameter records are walked as stored, and damaged ones are noticed."""
 
+import re
 import struct
 
 import pytest
 
-from mbkf.io.c3d_records import DamagedParameters, first_integer, walk_parameters
+from mbkf.io.c3d_records import first_integer, walk_parameters
 
 
 def group(number: int, name: str, order: str = "<") -> bytes:
@@ -22,8 +23,9 @@ def parameter(
 def test_records_are_found_in_order(order):
     section = group(2, "Point", order) + parameter(2, "used", 2, (), struct.pack(f"{order}H", 41000), order)
     section += parameter(2, "LABELS", -1, (3, 2), b"abcdef", order) + bytes(30)
-    groups, found = walk_parameters(section, order)
-    assert groups == {2: "POINT"}
+    walked = walk_parameters(section, order)
+    found = walked.records
+    assert walked.groups == {2: "POINT"} and not walked.faults and walked.ended
     assert [(item.name, item.kind, item.dimensions, item.data[:6]) for item in found[1:]] == [
         ("LABELS", -1, (3, 2), b"abcdef")
     ]
@@ -33,8 +35,8 @@ def test_records_are_found_in_order(order):
 
 def test_the_last_record_may_end_without_a_distance():
     body = struct.pack("<bb1sHbBf", 1, 1, b"R", 0, 4, 0, 2.5)
-    _, found = walk_parameters(group(1, "G") + body, "<")
-    assert struct.unpack("<f", found[0].data) == (2.5,)
+    walked = walk_parameters(group(1, "G") + body, "<")
+    assert struct.unpack("<f", walked.records[0].data) == (2.5,) and not walked.faults
 
 
 @pytest.mark.parametrize(
@@ -52,5 +54,47 @@ def test_the_last_record_may_end_without_a_distance():
     ],
 )
 def test_damage_is_noticed(section, reason):
-    with pytest.raises(DamagedParameters, match=reason):
-        walk_parameters(section, "<")
+    found = walk_parameters(section, "<")
+    assert len(found.faults) == 1 and re.search(reason, found.faults[0]) and not found.records
+
+
+SOUND = group(1, "G") + parameter(1, "A", 1, (), b"\x05")
+
+
+@pytest.mark.parametrize(
+    ("odd", "lost"),
+    [
+        (parameter(7, "X", 2, (), b"\0\0"), ("", "X")),
+        (parameter(1, "X", 3, (), b"\0\0"), ("G", "X")),
+        (parameter(1, "X", 4, (200, 200), b"\0" * 8), ("G", "X")),
+        (parameter(1, "\x01", 1, (), b"\x07"), None),
+    ],
+)
+def test_a_damaged_record_costs_only_itself(odd, lost):
+    found = walk_parameters(SOUND + odd + parameter(1, "B", 1, (), b"\x06"), "<")
+    assert [(one.name, one.data) for one in found.records] == [("A", b"\x05"), ("B", b"\x06")]
+    assert len(found.faults) == 1 and found.ended and found.lost == ((lost,) if lost else ())
+    assert found.may_lack("G", ("X",)) == (lost is not None) and not found.may_lack("G", ("A", "B"))
+
+
+def test_a_record_that_points_beyond_the_section_is_its_last():
+    last = bytearray(parameter(1, "B", 1, (), b"\x06"))
+    struct.pack_into("<H", last, 3, 9000)
+    found = walk_parameters(SOUND + bytes(last), "<")
+    assert [one.name for one in found.records] == ["A", "B"] and not found.ended
+    assert found.faults == ("the record B points beyond the section",)
+    assert found.may_lack("G", ("A", "C")) and not found.may_lack("G", ("A", "B"))
+
+
+def test_after_damage_no_record_replaces_one_that_came_before():
+    twice = SOUND + parameter(1, "A", 1, (), b"\x06")
+    assert walk_parameters(twice, "<").records[0].data == b"\x06"
+    odd = SOUND + parameter(1, "X", 9, (), b"\0\0") + group(1, "H") + parameter(1, "A", 9, (), b"\x06")
+    found = walk_parameters(odd + parameter(1, "A", 1, (), b"\x06"), "<")
+    assert found.groups == {1: "G"} and [one.data for one in found.records] == [b"\x05"]
+
+
+def test_names_of_other_letters_and_filled_up_ones_are_text():
+    record = parameter(1, "Gr..e", 1, (), b"\x07").replace(b"..", b"\xf6\xdf")
+    found = walk_parameters(group(1, "G\0\0") + record, "<")
+    assert found.groups == {1: "G"} and found.records[0].name == "GRÖSSE" and not found.faults

@@ -64,21 +64,17 @@ CASES = {
     "cut in the data": WHOLE[:-600],
     "key of another format": with_bytes(1, b"\x51"),
     "parameters at block 0": with_bytes(0, b"\x00"),
+    "three points against two, where neither fills the file": word(2, 3) + bytes(512),
+    "no POINT:USED and points that do not fill the file": with_bytes(AT[b"USED"], b"USEX") + bytes(512),
     "parameters beyond the file": with_bytes(0, b"\xff"),
     "processor of nobody": with_bytes(515, b"\x07"),
-    "65535 points": word(2, 65535),
-    "no points against two": word(2, 0),
     "65535 analog numbers": word(4, 65535),
     "last frame before the first": word(8, 0),
     "60000 frames in a small file": word(8, 60000),
     "data at block 0": word(16, 0),
     "data beyond the file": word(16, 60000),
-    "POINT:USED renamed": with_bytes(AT[b"USED"], b"USEX"),
-    "POINT:USED of 255 dimensions": with_bytes(AT[b"USED"] + 7, b"\xff"),
-    "POINT:USED of another type": with_bytes(AT[b"USED"] + 6, b"\x09"),
     "next parameter before this one": word(AT[b"USED"] + 4, 0),
     "next parameter beyond the file": word(AT[b"USED"] + 4, 65535),
-    "LABELS of 255 x 255": with_bytes(AT[b"LABELS"] + 10, b"\xff\xff"),
     "POINT:RATE not a number": c3d_bytes(POINTS, rate_hz=float("nan")),
     "POINT:RATE negative": c3d_bytes(POINTS, rate_hz=-100.0),
     "POINT:RATE of 1e9 Hz": c3d_bytes(POINTS, rate_hz=1e9),
@@ -112,6 +108,57 @@ def test_a_plate_that_cannot_be_read_is_left_out_and_named(tmp_path, case):
     np.testing.assert_allclose(found.markers.positions_m, POINTS * 1e-3, atol=1e-6)
     assert found.plates == () and list(found.plates_left_out) == ["1"]
     assert [note for note in found.notes if note.startswith("force plate 1 is left out: ")]
+
+
+SOUND = {
+    "65535 points": (word(2, 65535), "POINT:USED is 2, the header counts 65535 points; 2 fill the file"),
+    "no points against two": (word(2, 0), "POINT:USED is 2, the header counts 0 points; 2 fill the file"),
+    "POINT:USED of sixty": (
+        word(AT[b"USED"] + 8, 60),
+        "POINT:USED is 60, the header counts 2 points; 2 fill",
+    ),
+    "POINT:USED renamed": (with_bytes(AT[b"USED"], b"USEX"), "POINT:USED is missing"),
+    "POINT:USED of 255 dimensions": (with_bytes(AT[b"USED"] + 7, b"\xff"), "USED has no valid type"),
+    "POINT:USED of another type": (with_bytes(AT[b"USED"] + 6, b"\x09"), "USED has no valid type"),
+    "LABELS of 255 x 255": (with_bytes(AT[b"LABELS"] + 10, b"\xff\xff"), "LABELS is longer than its record"),
+    "a name that is no text": (with_bytes(AT[b"RATE"] + 1, b"\x02"), "the name at byte"),
+    "a parameter of no group": (
+        c3d_bytes(POINTS, ANALOGS, extra=(*plate(), (9, "SCALE", 4, (), floats([5.0], INTEL)))),
+        "parameter SCALE belongs to no group",
+    ),
+    "a last record that points beyond the section": (
+        word(WHOLE.index(b"ORIGIN") + 6, 60000),
+        "the record ORIGIN points beyond the section",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SOUND)
+def test_what_is_sound_beside_damaged_parameters_is_read(tmp_path, case):
+    content, note = SOUND[case]
+    (tmp_path / "a.c3d").write_bytes(content)
+    found = read_capture(tmp_path / "a.c3d")
+    np.testing.assert_allclose(found.markers.positions_m, POINTS * 1e-3, atol=1e-6)
+    assert found.plates[0].force_n[:, 2] == pytest.approx(700.0) and found.markers.rate_hz == 100.0
+    assert any(note in one for one in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("at", "left_out"),
+    [
+        (WHOLE.index(b"SCALE", AT[b"SCALE"] + 20), "analog channels are left out"),
+        (WHOLE.index(b"OFFSET"), "analog channels are left out"),
+        (WHOLE.index(b"ORIGIN"), "force plates are left out"),
+        (WHOLE.index(b"CORNERS"), "force plates are left out"),
+    ],
+)
+def test_forces_are_left_out_where_damage_took_the_parameters_that_scale_them(tmp_path, at, left_out):
+    """The type of a record stands behind its name and the distance to the next one."""
+    name_ends = at + next(k for k in range(20) if not WHOLE[at + k : at + k + 1].isalpha())
+    (tmp_path / "a.c3d").write_bytes(with_bytes(name_ends + 2, b"\x09"))
+    found = read_capture(tmp_path / "a.c3d")
+    assert found.plates == () and any(left_out in note for note in found.notes)
+    np.testing.assert_allclose(found.markers.positions_m, POINTS * 1e-3, atol=1e-6)
 
 
 @pytest.mark.parametrize(
