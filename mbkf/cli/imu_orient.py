@@ -1,12 +1,12 @@
 """Orientation from accelerometer, gyroscope and magnetometer.
 
 Orientation of every sensor by an error-state Kalman filter with later readings (--filter smooth), without them (ekf),
-or by Madgwick's filter. Files: CSV tables with units in their
-column names, Xsens text exports (or a folder of them), MATLAB files of the BROAD and qmt sets.
+or by Madgwick's filter. Files: CSV tables with units in their column names, makers' exports (or a folder of them),
+MATLAB files of the BROAD and qmt sets.
 
 --compare sets a second filter beside the first, or the sensor's own quaternions: those in the same file (--compare
 file) or in another one, such as a maker's export of quaternions. --initial gives the first orientation, as a maker's
-calibration knows it; without it the filter takes that of the first readings.
+calibration knows it; without it the filter takes that of the first readings. A smoother corrects it by later ones.
 
 Examples:
   mbkf imu orient thigh.csv --frame ENU --out result

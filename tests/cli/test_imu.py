@@ -46,7 +46,7 @@ def test_orient_writes_tables_pictures_and_numbers(files, tmp_path, capsys):
     ]
     assert main(words) == 0
     shown = capsys.readouterr().out
-    assert "thigh: 400 samples, ekf in ENU; error" in shown
+    assert "thigh: 400 samples, smooth in ENU; error" in shown
     table = np.genfromtxt(tmp_path / "thigh.csv", delimiter=",", skip_header=2)
     assert table.shape == (400, 14)
     np.testing.assert_allclose(np.linalg.norm(table[:, 1:5], axis=1), 1.0, atol=1e-6)
@@ -84,7 +84,7 @@ def test_madgwick_beside_a_sensors_own_quaternions(tmp_path, capsys):
 
 def test_a_first_orientation_is_four_numbers_or_a_word(files, tmp_path, capsys):
     words = ["imu", "orient", str(files / "thigh.csv"), "--frame", "NWU", "--out", str(tmp_path / "o")]
-    assert main([*words, "--initial", "1,0,0,0"]) == 0
+    assert main([*words, "--filter", "ekf", "--initial", "1,0,0,0"]) == 0
     first = json.loads((tmp_path / "o" / "orientation.json").read_text())["initial"]["thigh"]
     assert first == pytest.approx([0.0, 0.0, 0.0, 1.0])
     for bad, told in (("1,0,0", "four numbers"), ("a", "four numbers")):
