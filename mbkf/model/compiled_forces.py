@@ -76,7 +76,7 @@ class CompiledForces:
 
     @classmethod
     def where_built(cls, body: Body, moving: BoolArray, levers: Array, frame: str) -> Self | None:
-        """None without a compiled kernel, or for joints that it does not know.
+        """The forces of a body, if the kernel is compiled and knows all of its joints; else nothing.
 
         Args:
             body: The body.

@@ -1,4 +1,4 @@
-"""How an error in the joints' own axes turns as a body moves: δ̇ = −ad(v) δ + δv, joint by joint."""
+"""Turning of errors in the joints' own axes while a body moves: δ̇ = −ad(v) δ + δv, joint by joint."""
 
 from __future__ import annotations
 
