@@ -74,6 +74,8 @@ def _stated_height(parameters: C3dParameters) -> float | None:
 def _read(path: Path, size: int, changed_ns: int) -> StatedPerson:
     del size, changed_ns  # a changed file is another one
     layout = check_layout(path)
-    parameters = C3dParameters(values_of(layout.groups, layout.records, Processor(layout.processor)))
+    parameters = C3dParameters(
+        values_of(layout.section.groups, layout.section.records, Processor(layout.processor))
+    )
     names = tuple(name for name in parameters.texts("SUBJECTS", "NAMES") if name)
     return StatedPerson(names, stated_mass(parameters), _stated_height(parameters))
