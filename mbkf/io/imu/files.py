@@ -152,6 +152,7 @@ def _stating_all(module: str, function: str) -> ReadImu:
 register_imu_reader(".mvnx", title="Xsens MVN export")(_stating_all("imu.mvnx", "read_mvnx"))
 register_imu_reader(".mat", title="MATLAB file of BROAD or qmt")(_stating_all("imu.mat", "read_imu_mat"))
 register_imu_reader(".h5", ".hdf5", title="APDM recording")(_stating_all("imu.apdm", "read_apdm"))
+register_imu_reader(".cwa", title="Axivity recording")(_stating_all("imu.cwa", "read_cwa"))
 register_imu_reader(".xdf", ".xdfz", title="Lab Streaming Layer recording")(
     _with_units("imu.xdf", "read_xdf")
 )
