@@ -18,7 +18,7 @@ BOUNDS = {
     "filters/tracking_loop.py followed": "the frame grows by one, and goes back at most eight times",
     "sensors/supports/sharing.py shares": "each round leaves out one of the parts",
     "labelling/keyframes.py _differing": "count frames",
-    "imu/checks.py _mean_force": "each round doubles the reach",
+    "imu/turned_force.py mean_force": "each round doubles the reach",
     "imu/segment_course.py configurations": "goes up a tree, which check_body has checked",
     "synthesis/cameras.py ghosts": "the time grows by two frames or more",
     "model/body_checks.py _tree": "each round shortens the chain",
