@@ -213,11 +213,12 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
     """
     used = _count(parameters.number("ANALOG", "USED"))
     stated = used * _samples_per_frame(parameters)
-    kinds = dict.fromkeys(
-        ((layout.analog_per_frame, layout.channels), (stated, used if stated else 0), (0, 0))
-    )
+    header = (layout.analog_per_frame, layout.channels)
+    kinds = dict.fromkeys((header, (stated, used if stated else 0), (0, 0)))
     for frames in stated_frames(layout, parameters):
         fits = [kind for kind in kinds if _fits(layout, frames, kind[0])]
+        if not layout.section.states("ANALOG", "USED") and header in fits:
+            fits = [header]
         if len(fits) == 1 or (fits and used == layout.channels):
             return DataLayout(frames, *fits[0], tuple(_remarks(layout, frames, fits[0][0])))
     fewer = _one_fewer(layout, used, _samples_per_frame(parameters))

@@ -94,6 +94,9 @@ def walk_parameters(section: bytes, order: str) -> ParameterSection:
             faults.append(str(error))
             lost.append((number, name))
             continue
+        if walk.at_last and _followed(body, record):
+            faults.append(f"what follows the record {name}, which is stated to be the last, is not read")
+            walk.ended = False
         if not (faults and (number, name) in found):
             found[number, name] = record
     for number, name in [key for key in found if key[0] not in groups]:
@@ -116,11 +119,12 @@ class _Walk:
 
     Attributes:
         ended: False once the walk has stopped at a damaged record.
+        at_last: True at a record that is stated to be the last.
     """
 
     def __init__(self, section: bytes, order: str, faults: list[str]) -> None:
         self._section, self._order, self._faults = section, order, faults
-        self.ended = True
+        self.ended, self.at_last = True, False
 
     def __iter__(self) -> Iterator[tuple[int, str, bytes]]:
         section, at = self._section, 0
@@ -134,7 +138,7 @@ class _Walk:
                 return
             name = _name(section[at + 2 : pointer])
             (step,) = struct.unpack_from(f"{self._order}H", section, pointer)
-            following = pointer + step
+            following, self.at_last = pointer + step, not step
             if name is None:
                 self._faults.append(f"the name at byte {at} is not text")
             if step in (1, 2) or following > len(section):
@@ -149,6 +153,12 @@ class _Walk:
     def _stop(self, fault: str) -> None:
         self._faults.append(fault)
         self.ended = False
+
+
+def _followed(body: bytes, record: ParameterRecord) -> bool:
+    """True where more than zeros stands after the data and the description of a record with such a body."""
+    after = body[2 + len(record.dimensions) + len(record.data) :]
+    return any(after[1 + after[0] :]) if after else False
 
 
 def _name(letters: bytes) -> str | None:

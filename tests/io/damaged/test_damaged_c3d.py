@@ -73,8 +73,6 @@ CASES = {
     "60000 frames in a small file": word(8, 60000),
     "data at block 0": word(16, 0),
     "data beyond the file": word(16, 60000),
-    "next parameter before this one": word(AT[b"USED"] + 4, 0),
-    "next parameter beyond the file": word(AT[b"USED"] + 4, 65535),
     "POINT:RATE not a number": c3d_bytes(POINTS, rate_hz=float("nan")),
     "POINT:RATE negative": c3d_bytes(POINTS, rate_hz=-100.0),
     "POINT:RATE of 1e9 Hz": c3d_bytes(POINTS, rate_hz=1e9),
@@ -120,6 +118,10 @@ SOUND = {
     "POINT:USED renamed": (with_bytes(AT[b"USED"], b"USEX"), "POINT:USED is missing"),
     "POINT:USED of 255 dimensions": (with_bytes(AT[b"USED"] + 7, b"\xff"), "USED has no valid type"),
     "POINT:USED of another type": (with_bytes(AT[b"USED"] + 6, b"\x09"), "USED has no valid type"),
+    "ANALOG:USED of another type": (
+        with_bytes(WHOLE.index(b"USED", AT[b"LABELS"]) + 6, b"\x09"),
+        "USED has no valid type",
+    ),
     "LABELS of 255 x 255": (with_bytes(AT[b"LABELS"] + 10, b"\xff\xff"), "LABELS is longer than its record"),
     "a name that is no text": (with_bytes(AT[b"RATE"] + 1, b"\x02"), "the name at byte"),
     "a parameter of no group": (
@@ -141,6 +143,16 @@ def test_what_is_sound_beside_damaged_parameters_is_read(tmp_path, case):
     np.testing.assert_allclose(found.markers.positions_m, POINTS * 1e-3, atol=1e-6)
     assert found.plates[0].force_n[:, 2] == pytest.approx(700.0) and found.markers.rate_hz == 100.0
     assert any(note in one for one in found.notes)
+
+
+@pytest.mark.parametrize("step", [0, 65535])
+def test_points_are_read_without_the_parameters_behind_a_damaged_record(tmp_path, step):
+    (tmp_path / "a.c3d").write_bytes(word(AT[b"USED"] + 4, step))
+    found = read_capture(tmp_path / "a.c3d")
+    np.testing.assert_allclose(found.markers.positions_m, POINTS * 1e-3, atol=1e-6)
+    assert found.markers.names == ("*0", "*1") and found.plates == found.analog == ()
+    for note in ("damaged parameters", "have no label", "no length unit", "analog channels are left out"):
+        assert any(note in one for one in found.notes)
 
 
 @pytest.mark.parametrize(
