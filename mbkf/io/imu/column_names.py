@@ -35,6 +35,9 @@ _OTHER = {
 }  # fmt: skip
 """Words of columns that are about a quantity, and not its reading."""
 
+_COUNTS = {"lsb", "lsbs", "count", "counts", "adc", "raw"}
+"""Units of readings that are not calibrated."""
+
 _GRAVITY_LESS = {"free", "linear", "user", "gravity"}
 _NOISE = {
     "cal", "calibrated", "ln", "low", "noise", "sensor", "wr", "wide", "range", "axis", "data", "is", "value",
@@ -91,7 +94,7 @@ def parse_column_name(name: str, kind: str = "") -> ColumnName | None:
     unit, rest = (bracketed, rest) if bracketed else _unit_words(found, lower, rest)
     if axis is None:
         axis, rest = _axis(found, lower, rest)
-    if axis is None:
+    if axis is None or unit.lower() in _COUNTS:
         return None
     before = [k for k in range(first) if lower[k] not in _GRAVITY_LESS]
     sensor = _sensor(plain, words, before, rest)

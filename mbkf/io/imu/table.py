@@ -27,6 +27,7 @@ from mbkf.io.imu.times import times_s
 from mbkf.io.imu.units import UNITS, plain_unit, unit_name
 
 _UNIT_ROWS = 3
+_COUNTED, _MG = 200.0, (700.0, 1400.0)
 _AXES = "xyzw"
 
 
@@ -292,6 +293,11 @@ def _factors(
             unknown.setdefault(kind, []).append(column)
     if unknown:
         first = next(iter(unknown.values()))[0].title
+        if _are_counts(numbers[:, [column.index for column in unknown.get("acc", ())]]):
+            raise InvalidInput(
+                f"{path}: column '{first}' and others hold whole numbers of a size that no unit has, so raw counts of "
+                "the sensor; multiply them by the scales of its data sheet, and state the units with --units"
+            )
         likely = ",".join(
             f"{kind}={_likely(kind, numbers[:, [column.index for column in own]])}"
             for kind, own in unknown.items()
@@ -301,6 +307,15 @@ def _factors(
             "(correct it where it is not)"
         )
     return factors
+
+
+def _are_counts(force: Array) -> bool:
+    """True for accelerations (T, n) in whole numbers whose size is neither that of g nor of mg."""
+    known = force[np.isfinite(force).all(axis=1)]
+    if not known.size or (known != np.round(known)).any():
+        return False
+    size = float(np.median(np.linalg.norm(known, axis=1)))
+    return size > _COUNTED and not _MG[0] < size < _MG[1]
 
 
 def _likely(kind: str, values: Array) -> str:

@@ -48,6 +48,7 @@ def test_readings(name, sensor, kind, axis, unit):
     [
         "PacketCounter", "Mat[1][1]", "gyro_bias_x [deg/s]", "Absolute acceleration (m/s^2)", "temperature_x", "x",
         "sd_up [deg]", "angular acceleration x", "EMG 1 [V]", "m_pelvis_x", "", "force_x", "knee_angle",
+        "Gyroscope X (lsb)", "acc_x [counts]",
     ],
 )  # fmt: skip
 def test_what_is_no_reading(name):

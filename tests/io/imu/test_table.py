@@ -65,6 +65,8 @@ def test_a_given_unit_overrules_a_wrong_one_in_the_file(tmp_path):
     ("lines", "options", "told"),
     [
         (["acc_x,acc_y,acc_z", "0,0,1", "0,0,1"], {"rate_hz": 10.0}, "--units acc="),
+        (["acc_x,acc_y,acc_z", "9,-4,1001", "0,2,998"], {"rate_hz": 10.0}, "--units acc=mg"),
+        (["acc_x,acc_y,acc_z", "9,-4,16001", "0,2,16400"], {"rate_hz": 10.0}, "raw counts"),
         (["acc_x [g],acc_y [g],acc_z [g]", "0,0,1", "0,0,1"], {}, "--rate"),
         (["acc_x [g],acc_y [g]", "0,0", "0,0"], {"rate_hz": 10.0}, "acc_z"),
         (["gyr_x [deg/s],b", "0,0", "0,0"], {"rate_hz": 10.0}, "no accelerometer"),
