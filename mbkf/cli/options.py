@@ -48,15 +48,16 @@ class AxesOptions(TypedDict):
     up: str | None
     axes: str | None
     unit: str | None
+    person: str | None
 
 
 def axes_options(args: argparse.Namespace) -> AxesOptions:
     """The values of :func:`add_axes_options` as arguments of a reader."""
-    return {"up": args.up, "axes": args.axes, "unit": args.unit}
+    return {"up": args.up, "axes": args.axes, "unit": args.unit, "person": args.person}
 
 
 def add_axes_options(parser: argparse.ArgumentParser) -> None:
-    """Adds ``--up``, ``--axes`` and ``--unit``, for files that state them wrongly or not at all."""
+    """Adds ``--up``, ``--axes``, ``--unit`` and ``--person``, for statements that files lack or have wrong."""
     parser.add_argument(
         "--up",
         metavar="AXIS",
@@ -69,6 +70,9 @@ def add_axes_options(parser: argparse.ArgumentParser) -> None:
         "triple such as x,z,y mirrors the capture. Begin with --axes=-x,… if the first has a sign",
     )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+    parser.add_argument(
+        "--person", metavar="NAME", help="of several persons in the file the one to take: its name or number"
+    )
 
 
 def add_out(

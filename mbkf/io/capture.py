@@ -17,6 +17,7 @@ from mbkf.io.atomic import check_file
 from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.files_read import check_regular, files_read
+from mbkf.io.persons import one_person
 from mbkf.io.plausible import plausible
 from mbkf.io.readable_plates import left_out_notes
 from mbkf.io.readers import FileFormat, FormatRegistry, either, lazily
@@ -128,6 +129,7 @@ def read_capture(
     tare: bool = True,
     axes: str | None = None,
     unneeded_plates: Sequence[str] = (),
+    person: str | None = None,
 ) -> Capture:
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
@@ -144,6 +146,8 @@ def read_capture(
             choice mirrors the file. They hold, whatever the body of the person looks like in them.
         unneeded_plates: Names of plates that will be withheld; a file of ground reactions may hold only those that
             cannot be read among them.
+        person: Of a capture of several persons ("Anna:LASI", "Ben:LASI") the one to take, by name or by number from 1
+            on.
 
     Returns:
         The capture in SI units and world axes. A plate that cannot be read is left out, with a remark.
@@ -151,7 +155,7 @@ def read_capture(
     Raises:
         FileFormatError: A file is missing, of an unknown kind, or broken.
         InvalidInput: No set of ``forces`` can be read, the length unit or a rate cannot be right, ``axes`` name no
-            axes, or contradict ``up``.
+            axes, or contradict ``up``, or the capture has no such person.
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
     path = _input(Path(path))
@@ -172,7 +176,7 @@ def read_capture(
         plates=forces is None,
         unneeded_plates=tuple(unneeded_plates),
     )
-    capture = _declared(kind.read(path, options), up)
+    capture = one_person(_declared(kind.read(path, options), up), person)
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
     capture = plausible(_with_left_out(capture, options), None if forces is None else Path(forces))

@@ -10,6 +10,7 @@ import numpy as np
 
 from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput, MbkfError, NotConverged, NotObservable
+from mbkf.io.persons import check_one_person
 from mbkf.io.records import Capture
 from mbkf.io.static_exchanges import STATIC_EXCHANGED_KEY
 from mbkf.io.subject import Subject
@@ -62,8 +63,8 @@ def scale(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: No trial, no mass, an impossible mass or height, a protocol placed on another body, or axes or a
-            unit that contradict the body.
+        InvalidInput: No trial, markers of several persons, no mass, an impossible mass or height, a protocol placed on
+            another body, or axes or a unit that contradict the body.
         UnknownName: The protocol or body does not exist, or it names unknown segments.
         FileFormatError: The body's or the protocol's file is missing or damaged.
         NotObservable: Too few markers of the protocol, or markers without a protocol among which no body is found.
@@ -72,6 +73,8 @@ def scale(
     captures = ([] if static is None else [static]) + list(trials)
     if not captures:
         raise InvalidInput("scaling needs captures: a static trial, or at least one --trial")
+    for capture in captures:
+        check_one_person(capture)
     if mass_kg is None:
         mass_kg = next((c.subject_mass_kg for c in captures if c.subject_mass_kg is not None), None)
     if mass_kg is None:

@@ -28,9 +28,11 @@ from mbkf.errors import InvalidInput
 def test_axes_and_unit_are_left_open():
     parser = argparse.ArgumentParser()
     add_axes_options(parser)
-    assert vars(parser.parse_args([])) == {"up": None, "axes": None, "unit": None}
-    given = parser.parse_args(["--up=-y", "--unit", "mm", "--axes", "x,-z,y"])
-    assert axes_options(given) == vars(given) == {"up": "-y", "axes": "x,-z,y", "unit": "mm"}
+    assert vars(parser.parse_args([])) == {"up": None, "axes": None, "unit": None, "person": None}
+    given = parser.parse_args(["--up=-y", "--unit", "mm", "--axes", "x,-z,y", "--person", "Anna"])
+    assert axes_options(given) == vars(given) == {
+        "up": "-y", "axes": "x,-z,y", "unit": "mm", "person": "Anna",
+    }  # fmt: skip
 
 
 def test_a_lag_is_given_in_milliseconds(capsys):
