@@ -196,7 +196,8 @@ def _shared_words(
 
 
 def _can_name(word: str) -> bool:
-    return len(word) >= SHORTEST_WORD and not word.isdecimal() and not TASKS.match(word)
+    shortest = LONG_NUMBER if word.isdecimal() else SHORTEST_WORD
+    return len(word) >= shortest and not TASKS.match(word)
 
 
 def _by_size(

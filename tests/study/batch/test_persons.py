@@ -27,6 +27,7 @@ def found(stems, **stated):
      "static_P01 walk1_P01 static_P02 walk1_P02", "P01static P01walk1 P02static P02walk1",
      "p01_static P01_walk p02_walk", "20140515T133244_static 20140515T133244_run 20140612T1_static 20140612T1_run",
      "HC032A_Static_HC032A01 HC032A_Straight_HC032A03 HC044A_Static_HC044A01 HC044A_Straight_HC044A15",
+     "HC032A_static HC032A_walk 2014001_ST_static 2014001_C1_01",
      "anna_static anna_walk ben_static ben_walk", "100433_static 100433_run 100434_static 100434_run"],
 )  # fmt: skip
 def test_codes_and_shared_words_tell_two_persons_apart(stems):
