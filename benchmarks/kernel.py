@@ -91,14 +91,22 @@ def run(context: Context) -> list[Check]:
 
 
 class Apart(NamedTuple):
-    """The largest differences: as a share of the array's largest value, and over the reference's own rounding."""
+    """The largest differences of arrays.
+
+    Attributes:
+        share: As a share of the array's largest value.
+        over_rounding: Over the reference's own rounding.
+        stable: The share, of arrays that the reference itself keeps within the bound when its input moves by the last
+            digit.
+    """
 
     share: float
     over_rounding: float
+    stable: float = 0.0
 
     def or_worse(self, other: Apart) -> Apart:
         """The larger of both."""
-        return Apart(max(self.share, other.share), max(self.over_rounding, other.over_rounding))
+        return Apart(*(max(mine, theirs) for mine, theirs in zip(self, other, strict=True)))
 
 
 def apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
@@ -119,8 +127,10 @@ def apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
         )
     shares = differences(reference, compiled)
     rounding = [differences(reference, one) for one in nudged]
-    over = [share / max(BOUND, *(one[name] for one in rounding)) for name, share in shares.items()]
-    return Apart(max(shares.values()), max(over))
+    own = {name: max(one[name] for one in rounding) for name in shares}
+    over = [share / max(BOUND, own[name]) for name, share in shares.items()]
+    stable = max(share for name, share in shares.items() if own[name] < BOUND)
+    return Apart(max(shares.values()), max(over), stable)
 
 
 def moved(subject: Subject, towards: float) -> Subject:
