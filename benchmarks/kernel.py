@@ -96,8 +96,8 @@ class Apart(NamedTuple):
     Attributes:
         share: As a share of the array's largest value.
         over_rounding: Over the reference's own rounding.
-        stable: The share, of arrays that the reference itself keeps within the bound when its input moves by the last
-            digit.
+        stable: The share, of arrays that the reference itself keeps within half the bound when its input moves by the
+            last digit: both computations round.
     """
 
     share: float
@@ -129,7 +129,7 @@ def apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
     rounding = [differences(reference, one) for one in nudged]
     own = {name: max(one[name] for one in rounding) for name in shares}
     over = [share / max(BOUND, own[name]) for name, share in shares.items()]
-    stable = max(share for name, share in shares.items() if own[name] < BOUND)
+    stable = max(share for name, share in shares.items() if own[name] < BOUND / 2.0)
     return Apart(max(shares.values()), max(over), stable)
 
 
