@@ -371,6 +371,7 @@ _INERTIAL = (
     _asked(
         "imu_orient_broad",
         *("imu", "orient", "{data}/imu_broad/11_undisturbed_slow_translation_B.mat", "--frame", "ENU"),
+        *("--filter", "ekf"),
     ),
     _asked("imu_stride_gaitmap", "imu", "stride", "{data}/imu_gaitmap_foot/imu_sample.csv"),
 )

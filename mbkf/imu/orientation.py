@@ -82,7 +82,7 @@ class OrientSettings:
         ekf: Noise model of the Kalman filter.
     """
 
-    method: str = "smooth"
+    method: str = "ekf"
     magnetometer: bool = True
     madgwick: MadgwickSettings = field(default_factory=MadgwickSettings)
     ekf: OrientationSettings = field(default_factory=OrientationSettings)
