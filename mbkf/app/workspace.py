@@ -75,11 +75,17 @@ class Workspace:
         """The work for a session, as ``mbkf batch`` plans it.
 
         Raises:
-            InvalidInput: The session has no moving trial.
+            InvalidInput: The session has no moving trial, or its folder holds captures of several persons.
         """
         trials = self._trials(self.folder(session))
         if not trials:
             raise InvalidInput("the session has no moving trial to reconstruct")
+        persons = dict.fromkeys(trial.person.name for trial in trials)
+        if len(persons) > 1:
+            raise InvalidInput(
+                f"the session's folder holds captures of several persons ({', '.join(persons)}): give each of them a "
+                "session of their own, or leave the others' trials out"
+            )
         return Plan(trials)
 
     def place(self, session: str) -> Path:

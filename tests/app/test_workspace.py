@@ -64,3 +64,18 @@ def test_a_session_of_standing_trials_only_has_no_plan(workspace):
         (workspace.root / "P1" / f"{name}.c3d").unlink()
     with pytest.raises(InvalidInput, match="no moving trial"):
         workspace.plan("P1")
+
+
+def test_a_session_is_of_one_person(workspace):
+    """No trial is reconstructed with the body of another person, and results lie where the page looks for them."""
+    folder = workspace.root / "P1"
+    for code in ("S01", "S02"):
+        for name in ("static", "walk1"):
+            shutil.copy(folder / f"{name}.c3d", folder / f"{code}_{name}.c3d")
+    for file in ("static", "walk1", "walk2"):
+        (folder / f"{file}.c3d").unlink()
+    with pytest.raises(InvalidInput, match=r"several persons \(P1-S01, P1-S02\): give each"):
+        workspace.plan("P1")
+    (folder / "S02_walk1.c3d").unlink()
+    (folder / "S02_static.c3d").unlink()
+    assert [trial.name for trial in workspace.plan("P1").trials] == ["S01_walk1"]
