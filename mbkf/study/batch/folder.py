@@ -1,7 +1,7 @@
 """A folder of captures understood: a folder with captures is a session, the first folder on the way to it a person.
 
-    study/P01/static.c3d, study/P01/walk1.c3d                  person P01
-    study/P01/monday/static.c3d, study/P01/monday/walk1.trc    person P01, session monday
+    study/P01/static.c3d, study/P01/walk1.c3d                      person P01
+    study/P01/monday/static.c3d, study/P01/monday/walk1.trc        person P01, session monday
     mixed/S01_static.c3d, mixed/S01_walk.c3d, mixed/S02_walk.c3d  persons S01 and S02 (:mod:`mbkf.study.batch.persons`)
 
 Standing trials are recognised by their names, else by standing still. Ground reactions lie beside their trial,
