@@ -41,7 +41,9 @@ def read_cwa(path: Path) -> tuple[ImuReadings, ...]:
     check_input(path, "name a recording of Axivity (.cwa)")
     content = read_bytes(path)
     if content[:2] != b"MD":
-        raise FileFormatError(path, "no recording of Axivity (its first bytes are not MD)")
+        raise FileFormatError(
+            path, "its first bytes are not MD, so it is another kind of file; name a recording of Axivity"
+        )
     whole = (len(content) - _HEADER_BYTES) // _BLOCK.itemsize
     blocks = (
         np.frombuffer(content, _BLOCK, max(0, whole), _HEADER_BYTES) if whole > 0 else np.zeros(0, _BLOCK)
@@ -96,10 +98,12 @@ def _times(path: Path, blocks: np.ndarray, rate_hz: float) -> Array:
     """(T,) s from the first sample: the line through the blocks' stamps, each valid at the sample that it names."""
     starts = np.empty(len(blocks))
     for k, block in enumerate(blocks):
-        stamp, fraction, offset = int(block["stamp"]), 0.0, float(block["offset"])
+        stamp, parts, offset = int(block["stamp"]), 0, int(block["offset"])
         if block["fraction"] & 0x8000:
-            fraction = (int(block["fraction"]) & 0x7FFF) / 32768.0
-        starts[k] = _seconds(path, stamp) + fraction - offset / rate_hz
+            # For readers of whole seconds, the sensor subtracts the fraction's samples from the offset.
+            parts = (int(block["fraction"]) & 0x7FFF) << 1
+            offset += (parts * int(rate_hz)) >> 16
+        starts[k] = _seconds(path, stamp) + parts / 65536.0 - offset / rate_hz
     stamps = [start + np.arange(n) / rate_hz for start, n in zip(starts, blocks["count"], strict=True)]
     return even_times(np.concatenate(stamps) - starts[0])
 

@@ -13,12 +13,16 @@ STAMP = (26 << 26) | (11 << 22) | (26 << 17) | (10 << 12) | (30 << 6)
 
 
 def block(number, samples, axes, per_block, stamp_s):
-    """One block: 16 g at 2048 counts for 1 g, 1000 deg/s; the stamp holds at its first sample."""
+    """One block: 16 g at 2048 counts for 1 g, 1000 deg/s; the stamp holds at its first sample.
+
+    The sensor's program subtracts the samples of the fraction from the sample that the stamp names.
+    """
     second = int(stamp_s)
-    fraction = 0x8000 | int((stamp_s - second) * 32768.0)
+    parts = int((stamp_s - second) * 32768.0)
+    fraction, offset = 0x8000 | parts, -((2 * parts * int(RATE_HZ)) >> 16)
     scales = (3 << 13) | (3 << 10)
     head = struct.pack(
-        "<2sHHIIIHHBBBBhH", b"AX", 508, fraction, 1, number, STAMP + second, scales, 0, 0, 0, 0x4A, axes << 4 | 2, 0,
+        "<2sHHIIIHHBBBBhH", b"AX", 508, fraction, 1, number, STAMP + second, scales, 0, 0, 0, 0x4A, axes << 4 | 2, offset,
         per_block,
     )  # fmt: skip
     body = (head + samples.astype("<i2").tobytes()).ljust(510, b"\0")
