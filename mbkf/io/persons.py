@@ -1,7 +1,7 @@
 """Several persons in one capture, by the name before each of their markers: ``Anna:LASI``, ``Ben:LASI``.
 
-Names before the markers of a tool or of a second marker set of one person are none: persons carry markers of the same
-names.
+Persons carry markers of the same names; a tool or a second marker set of one person does not. Sides (``L:TOE``,
+``R:TOE``) are parts of one person.
 """
 
 from __future__ import annotations
@@ -12,10 +12,16 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.errors import InvalidInput
+from mbkf.io.labels import unique_labels
 from mbkf.io.records import Capture
 
 FEWEST_MARKERS, SAME_SHARE = 6, 0.5
 """Markers that a person has at least, and the share of their names that another person's markers have as well."""
+
+SIDES = frozenset(
+    ("l", "r", "left", "right", "lt", "rt", "links", "rechts", "izq", "der", "izquierda", "derecha")
+)
+"""Words before markers that name a side of the body."""
 
 NEAR_M, NEAR_FRAMES = 0.1, 200
 """Distance of markers of two persons below which they may touch, and the frames in which it is looked at."""
@@ -30,7 +36,7 @@ def persons_by_prefix(names: Sequence[str]) -> dict[str, tuple[str, ...]]:
     by_prefix: dict[str, list[str]] = {}
     for name in names:
         prefix, colon, own = name.partition(":")
-        if colon and prefix and own:
+        if colon and prefix and own and prefix.lower() not in SIDES:
             by_prefix.setdefault(prefix, []).append(name)
     short = {prefix: {name.partition(":")[2] for name in names} for prefix, names in by_prefix.items()}
     found = {}
@@ -43,7 +49,7 @@ def persons_by_prefix(names: Sequence[str]) -> dict[str, tuple[str, ...]]:
 
 
 def check_one_person(capture: Capture) -> None:
-    """Refuses a capture of several persons of whom none was chosen.
+    """Refuses a capture of several persons without a choice.
 
     Raises:
         InvalidInput: It holds several persons.
@@ -88,8 +94,8 @@ def one_person(capture: Capture, person: str | None) -> Capture:
     others = {name for prefix, own in found.items() if prefix != chosen for name in own}
     markers = capture.markers
     kept = [k for k, name in enumerate(markers.names) if name not in others]
-    names = tuple(markers.names[k].removeprefix(f"{chosen}:") for k in kept)
     notes = [f"person {chosen} of {len(found)}; {len(others)} markers of the others are left out"]
+    names = tuple(unique_labels([markers.names[k].removeprefix(f"{chosen}:") for k in kept], notes))
     if capture.subject_mass_kg is not None:
         notes.append(
             f"the file states one mass for several persons, {capture.subject_mass_kg:.1f} kg: it is not used"

@@ -28,6 +28,7 @@ def test_persons_carry_markers_of_the_same_names():
     tool = [f"Anna:{name}" for name in OWN] + [f"Bat:{name}" for name in ("tip", "grip", "a", "b", "c", "d")]
     assert persons_by_prefix(tool) == {} and persons_by_prefix(OWN) == {}
     assert persons_by_prefix([*(f"Anna:{name}" for name in OWN), "Ball:M1", "Ball:M2"]) == {}
+    assert persons_by_prefix([f"{side}:{name}" for side in ("L", "R") for name in OWN]) == {}
 
 
 @pytest.mark.parametrize("choice", ["Ben", "2"])
