@@ -310,11 +310,11 @@ def _factors(
 
 
 def _are_counts(force: Array) -> bool:
-    """True for accelerations (T, n) in whole numbers whose size is neither that of g nor of mg."""
+    """True for accelerations (T, 3 N) of N sensors in whole numbers whose size is neither that of g nor of mg."""
     known = force[np.isfinite(force).all(axis=1)]
     if not known.size or (known != np.round(known)).any():
         return False
-    size = float(np.median(np.linalg.norm(known, axis=1)))
+    size = float(np.sqrt(3.0) * np.median(np.sqrt((known**2).mean(axis=1))))
     return size > _COUNTED and not _MG[0] < size < _MG[1]
 
 

@@ -22,8 +22,8 @@ def block(number, samples, axes, per_block, stamp_s):
     fraction, offset = 0x8000 | parts, -((2 * parts * int(RATE_HZ)) >> 16)
     scales = (3 << 13) | (3 << 10)
     head = struct.pack(
-        "<2sHHIIIHHBBBBhH", b"AX", 508, fraction, 1, number, STAMP + second, scales, 0, 0, 0, 0x4A, axes << 4 | 2, offset,
-        per_block,
+        "<2sHHIIIHHBBBBhH", b"AX", 508, fraction, 1, number, STAMP + second, scales, 0, 0, 0, 0x4A, axes << 4 | 2,
+        offset, per_block,
     )  # fmt: skip
     body = (head + samples.astype("<i2").tobytes()).ljust(510, b"\0")
     total = int(np.frombuffer(body, "<u2").sum(dtype=np.uint16))

@@ -21,7 +21,10 @@ NAMES = "acc_x [g],acc_y [g],acc_z [g]\n0,0,1\n0,0,1\n"
         ("Frequency: 100", 100.0),
         ("# sampling_rate = 51.2", 51.2),
         ("Sampling Frequency (Hz),60", 60.0),
+        ("Device,IMU,Frequency [Hz],100", 100.0),
         ("Heart rate: 70", None),
+        ("# Cutoff frequency: 6", None),
+        ("Filter,Low-pass frequency (Hz),15", None),
         ("# sample rate: 50\n# output rate: 100", None),
     ],
 )

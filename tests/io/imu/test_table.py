@@ -67,6 +67,11 @@ def test_a_given_unit_overrules_a_wrong_one_in_the_file(tmp_path):
         (["acc_x,acc_y,acc_z", "0,0,1", "0,0,1"], {"rate_hz": 10.0}, "--units acc="),
         (["acc_x,acc_y,acc_z", "9,-4,1001", "0,2,998"], {"rate_hz": 10.0}, "--units acc=mg"),
         (["acc_x,acc_y,acc_z", "9,-4,16001", "0,2,16400"], {"rate_hz": 10.0}, "raw counts"),
+        (
+            ["l_acc_x,l_acc_y,l_acc_z,r_acc_x,r_acc_y,r_acc_z", "9,-4,1001,5,1003,0", "0,2,998,7,999,3"],
+            {"rate_hz": 10.0},
+            "--units acc=mg",
+        ),
         (["acc_x [g],acc_y [g],acc_z [g]", "0,0,1", "0,0,1"], {}, "--rate"),
         (["acc_x [g],acc_y [g]", "0,0", "0,0"], {"rate_hz": 10.0}, "acc_z"),
         (["gyr_x [deg/s],b", "0,0", "0,0"], {"rate_hz": 10.0}, "no accelerometer"),
