@@ -10,7 +10,7 @@ Examples:
   mbkf batch study --out results --shard 3/16                        (one of 16 independent jobs)
 
 A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names the
-person. Captures of several persons in one folder are told apart by codes in their names and by subject, mass and height
+person. Captures of several persons in one folder are separated by codes in their names and by subject, mass and height
 in the files. Standing trials are known by their names (static, calibration, t-pose, …); ground reactions lie beside
 their trial under its name with "grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and
 plates do not. A list names them instead:

@@ -112,7 +112,7 @@ def motion_of(args: argparse.Namespace) -> BodyMotion:
     """The motion that the command names.
 
     Raises:
-        InvalidInput: An option belongs to another kind of file, or an .npz has no person.
+        InvalidInput: An option belongs to another kind of file, or an .npz lacks the person of --subject or --mass.
         FileFormatError: The file is missing or of another kind.
     """
     from mbkf.errors import InvalidInput

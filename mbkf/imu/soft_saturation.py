@@ -1,4 +1,4 @@
-"""Gyroscopes that clip softly: readings gather just below a limit that none of them passes, and no two are equal.
+"""Gyroscopes that clip softly: readings gather just below a limit that they never pass, without being equal.
 
 Found by two signs together: the histogram of an axis has its last bin far fuller than those before it, and gravity,
 turned into a fixed frame by the gyroscope, stays longer where these readings are taken for larger ones.

@@ -40,7 +40,7 @@ class C3dLayout:
         file_bytes: Size of the file.
         processor: 84 Intel, 85 DEC, 86 SGI-MIPS.
         section: The parameters as they stand in the file.
-        notes: What had to be settled about them.
+        notes: Remarks on damage and on counts that contradict each other.
     """
 
     points: int

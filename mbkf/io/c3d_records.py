@@ -37,7 +37,7 @@ class ParameterRecord:
 
 @dataclass(frozen=True)
 class ParameterSection:
-    """The sound records of a section, and what is wrong with the others.
+    """The sound records of a section, and the faults of the others.
 
     Attributes:
         groups: Names of the groups in capitals by their numbers, positive.
@@ -95,7 +95,7 @@ def walk_parameters(section: bytes, order: str) -> ParameterSection:
             lost.append((number, name))
             continue
         if walk.at_last and _followed(body, record):
-            faults.append(f"what follows the record {name}, which is stated to be the last, is not read")
+            faults.append(f"bytes after the record {name}, which is stated to be the last, are not read")
             walk.ended = False
         if not (faults and (number, name) in found):
             found[number, name] = record
@@ -162,7 +162,7 @@ def _followed(body: bytes, record: ParameterRecord) -> bool:
 
 
 def _name(letters: bytes) -> str | None:
-    """A name in capitals, without what fills it up; None where it is not text."""
+    """A name in capitals, without blanks and zeros at its end; None where it is not text."""
     name = letters.rstrip(b"\0 ").decode("latin-1")
     return name.strip().upper() if name.strip() and name.isprintable() else None
 

@@ -226,7 +226,7 @@ def _rows(file: TextFile) -> _Rows:
 
 
 def _without_cut_rows(rows: _Rows, points: int, notes: list[str]) -> _Rows:
-    """The frames without those of which no one can say which columns they lack, with remarks on short rows.
+    """The frames, with all markers missing in short rows whose lacking columns are unknown; remarks on short rows.
 
     Between tabs, the last columns are the ones that a short row lacks; between blanks, any of them may be.
     """
@@ -241,7 +241,8 @@ def _without_cut_rows(rows: _Rows, points: int, notes: list[str]) -> _Rows:
         notes.append(f"{found}; the markers of the columns they lack are missing there")
         return rows
     notes.append(f"{found}; blanks do not show which columns they lack, so all markers are missing there")
-    return replace(rows, rows=[[] if i in set(short) else row for i, row in enumerate(rows.rows)])
+    unknown = frozenset(short)
+    return replace(rows, rows=[[] if i in unknown else row for i, row in enumerate(rows.rows)])
 
 
 def _names(line: str, points: int) -> list[str]:

@@ -200,7 +200,9 @@ def _trials(
             for path, forces in moving
         ]
     lost = Person(*person_and_session(root, place))
-    reason = f"{place} holds several persons, and neither name nor mass tells whose capture this is; {APART}"
+    reason = (
+        f"{place} holds several persons, and neither name nor mass shows the owner of this capture; {APART}"
+    )
     return trials + [
         Trial(lost, path, None, folder_name(path.stem), fault=f"{path.name}: {reason}")
         for path in found.unknown

@@ -1,4 +1,4 @@
-"""Persons whose captures lie in one folder, told apart by subjects that files name, by codes in file names, by size.
+"""Persons whose captures lie in one folder, separated by subjects that files name, by codes in file names, by size.
 
 - Names of subjects (C3D SUBJECTS:NAMES) count where they can be persons: each has a standing trial or stands in the
   names of its files, or all are codes of one form. Some systems write a marker set's name there, another one for
@@ -46,7 +46,7 @@ PERSON_WORDS = frozenset(
 
 TASKS = re.compile(
     r"(?i)(walk|run|gait|march|gang|trial|take|cond|jump|squat|test|task|rep|set|day|visit|session|speed|sprint|land|hop"
-    r"|lunge|stair|step|turn|sit|stand|stat|cal|dyn|mov|motion|rec|capture|func|reach|lift|ex|left|right|slow|fast|pre"
+    r"|lunge|stair|step(?!h)|turn|sit|stand|stat|cal|dyn|mov|motion|rec|capture|func|reach|lift|ex|left|right|slow|fast|pre"
     r"|post|raw|filt|smooth|proc|edit|barefoot|shod|norm|neutral|pose|t$|l$|r$)"
 )
 """Beginnings of words that name a task, a condition or a repetition."""
@@ -80,8 +80,8 @@ class FolderPersons:
     """Persons of a folder.
 
     Attributes:
-        persons: They; one of an empty label where nothing tells captures apart.
-        unknown: Captures of a folder of several persons that are none of theirs for certain.
+        persons: One for each, or one of an empty label where nothing tells captures apart.
+        unknown: Captures of a folder of several persons that could be of any of them.
         subjects: Names of subjects in files of a folder whose captures nothing tells apart, where they differ.
     """
 

@@ -118,7 +118,7 @@ def test_a_stated_mass_is_only_that_of_the_person_whose_captures_state_it(tmp_pa
     assert found == {"60.3kg_1.58m": (61.0, 1.6), "39.4kg_1.45m": (None, None)}
     assert "states 61.0 kg, the captures 39.4 kg; the captures' mass is used" in plan.persons[1].remarks[-1]
     lost = [trial for trial in plan.trials if trial.fault]
-    assert [trial.path.name for trial in lost] == ["hop.c3d"] and "whose capture" in lost[0].fault
+    assert [trial.path.name for trial in lost] == ["hop.c3d"] and "owner of this capture" in lost[0].fault
 
 
 def test_a_stated_mass_far_from_that_of_the_captures_is_a_doubt_about_the_person(tmp_path, monkeypatch):
