@@ -7,7 +7,7 @@ import scipy.linalg
 
 from mbkf.conventions import Array
 from mbkf.filters.kinematic.plant import KinematicState
-from mbkf.filters.torque.noise import condition, load_variance, residual_variance
+from mbkf.filters.torque.noise import Conditioned, condition, load_variance, residual_variance
 from mbkf.filters.torque.plant import ForcedState, TorquePlant
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
@@ -21,7 +21,8 @@ class TorqueStart:
     """Makes a first state.
 
     Torques follow by inverse dynamics under the reactions (thesis eq. 3.12); so does their covariance. With consistent
-    noise, motion and reactions are first made to agree on a small residual.
+    noise, motion and reactions are first made to agree on a small residual, unless a foot's wrench is an unknown input:
+    the missing load is then part of the residual.
 
     Attributes:
         body: The forced body.
@@ -85,7 +86,10 @@ class TorqueStart:
         residual[:, motion_part] += np.hstack([torque.by_q, torque.by_v])[:6]
         spread = np.where(body.kinematic, 0.0, body.model.acceleration_sd)
         free = scipy.linalg.block_diag(motion.P, np.diag(spread**2), np.diag(load_sd**2))
-        bound = condition(free, residual, self._residual, -torque.torque[:6])
+        if np.isnan(motion.given).any():
+            bound = Conditioned(np.zeros(layout.size), free)
+        else:
+            bound = condition(free, residual, self._residual, -torque.torque[:6])
         whole = np.vstack([np.eye(motion_part.stop, layout.size), rows])
         return self.plant.retract(motion, whole @ bound.shift, whole @ bound.covariance @ whole.T)
 

@@ -179,6 +179,8 @@ def test_an_input_that_no_plate_reads_is_left_to_the_residual(model, motions):
     assert all(np.isnan(state.tau_sd).all() for state in run.states)
     assert all(np.isnan(state.foot_wrench_sd[1]).all() for state in run.states)
     assert not any(state.foot_wrench[1].any() for state in run.states)
+    dynamic = ~run.filter.body.kinematic
+    assert_near(run.states[0].a[dynamic], motions["squat"].a[0, dynamic], 1e-6)
 
 
 def test_an_unmeasured_foot_is_inferred(model, motions):
