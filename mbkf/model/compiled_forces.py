@@ -72,11 +72,11 @@ class CompiledForces:
         self._feet, self._moves = np.array(feet, dtype=np.int32), np.ascontiguousarray(body.supports[feet])
         self._still, self._unloaded = np.zeros(body.nv), np.zeros(FEET)
         self._in_world = frame == "world"
-        self._kept: tuple[Array, tuple[Array, Array]] | None = None
+        self._kept: tuple[bytes, tuple[Array, Array]] | None = None
 
     @classmethod
     def where_built(cls, body: Body, moving: BoolArray, levers: Array, frame: str) -> Self | None:
-        """The forces of a body, if the kernel is compiled and knows all of its joints; else nothing.
+        """The forces of a body, if the kernel is compiled and knows all of its joints; else None.
 
         Args:
             body: The body.
@@ -96,9 +96,10 @@ class CompiledForces:
         Raises:
             numpy.linalg.LinAlgError: It is not positive.
         """
-        if self._kept is None or self._kept[0] is not q:
-            self._kept = q, self._tree.mass_inverse(q, self._moving)
-        return self._kept[1]
+        kept, numbers = self._kept, q.tobytes()
+        if kept is None or kept[0] != numbers:
+            kept = self._kept = numbers, self._tree.mass_inverse(q, self._moving)
+        return kept[1]
 
     def wrenches(self, q: Array, state: Array, points_m: Array = _ORIGIN) -> Wrenches:
         """Wrenches of the feet.
