@@ -21,9 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.body import Body
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.model.layout import Layout
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact
@@ -128,12 +126,6 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         if settings.plate_vertical_force_n is not None:
             self._plate[2] = settings.plate_vertical_force_n
         self._air = np.repeat([settings.air_force_n, settings.air_moment_nm], 3)
-
-    def bind(self, layout: Layout, body: Body) -> None:
-        """Keeps the indices of positions and wrenches."""
-        super().bind(layout, body)
-        every = np.arange(layout.size)
-        self.columns = np.concatenate([every[layout.q], every[layout.wrench]])
 
     def begin(self) -> PlateMemory:
         """Memory without a loaded plate."""

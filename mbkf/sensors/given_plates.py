@@ -15,19 +15,14 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.body import Body
-from mbkf.model.layout import FEET, Layout
-from mbkf.sensors.block import Block, OperatingPoint
+from mbkf.model.layout import FEET
+from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.foot_plates import FootPlates, FootReading, PlateDecision
 from mbkf.sensors.states import ForceState
 
 
 class GivenPlates(FootPlates):
     """Plates whose wrenches are known, on a body with given loads."""
-
-    def bind(self, layout: Layout, body: Body) -> None:
-        """The layout has no wrenches to read."""
-        Block.bind(self, layout, body)
 
     def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> None:
         """No information: the wrenches are in the equations of motion."""
