@@ -36,6 +36,9 @@ SHAFT_M, HEAD_M, HEAD_RADIUS_M = 0.011, 0.09, 0.032
 ARROW_COLOURS = {"right": 0x0072B2, "left": 0xD55E00, "": 0x37424F}
 """Colours of arrows by side (mbkf/viz/assets/colours.js)."""
 
+OPPOSITE = 1e-9
+"""Size of an unnormalised quaternion below which a direction counts as opposite to y."""
+
 LOADS, MARKERS = "loads", "markers"
 """Nodes of the scene that hold arrows and markers."""
 
@@ -69,7 +72,8 @@ def play(
         raise InvalidInput(f"speed must be a positive number, not {speed}")
     if not result.tracked.any():
         raise InvalidInput(
-            f"the body is tracked in 0 of {result.frames} frames of '{result.trial}'; there is nothing to play"
+            f"the body is tracked in 0 of {result.frames} frames of '{result.trial}', so that no frame can be shown; "
+            "its warnings name the cause"
         )
     model = HumanModel.of(result.subject)
     shown = body_visualiser(model, geometry_model(model), viewer)
@@ -166,10 +170,11 @@ def _arrows(result: Reconstruction, rows: NDArray[np.int64]) -> Iterator[tuple[s
 
 
 def _turned_to(directions: Array) -> Array:
-    """(T, 4) quaternions (x, y, z, w) of the shortest turns from y to these directions, none opposite to y."""
+    """(T, 4) quaternions (x, y, z, w) of the shortest turns from y to these directions; to −y about x."""
     unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
     y = np.array([0.0, 1.0, 0.0])
     turns = np.column_stack([np.cross(y, unit), 1.0 + unit @ y])
+    turns[np.linalg.norm(turns, axis=1) < OPPOSITE] = [1.0, 0.0, 0.0, 0.0]
     return Rotation.from_quat(turns).as_quat()
 
 

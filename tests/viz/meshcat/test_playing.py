@@ -66,6 +66,18 @@ def test_arrows_stand_on_the_centre_of_pressure_and_point_along_the_force():
         assert f"{parts}/shaft/bar" in window.objects and f"{parts}/head/cone" in window.objects
 
 
+def test_an_arrow_points_along_the_opposite_of_its_own_axis():
+    r = leaning_walk()
+    wrench = np.zeros_like(r.foot_wrench)
+    wrench[..., 1] = -0.5 * r.subject.mass_kg * GRAVITY_M_S2
+    _, found = clips(replace(r, foot_wrench=wrench))
+    turns = keys(found[path("human18", "loads", "right_foot")], "quaternion")[1]
+    assert len(turns)
+    np.testing.assert_allclose(
+        Rotation.from_quat(turns).apply([0.0, 1.0, 0.0]), [[0, -1, 0]] * len(turns), atol=1e-12
+    )
+
+
 def test_the_unknown_is_hidden():
     """The body where it is lost, markers where they are unseen or taken away; the rest stays."""
     r = broken_walk()
