@@ -20,10 +20,8 @@ KNEE = np.array([0.0, 1.0, 0.0, 0.0])
 EXTENDS = np.array([1.0, -1.0, 1.0, -1.0])  # sign of the turn about y that extends each
 SIDES = np.array([2.0, 2.0, 2.0, 1.0])
 SECONDS, STANDING_DEG, ARMS_DEG, FRICTION = 2.4, 5.0, -80.0, 0.5
-TORQUE_NM, SMOOTH = (
-    100.0,
-    2e-3,
-)  # unit of torques in the objective; weight there of squared accelerations, s⁴/rad²
+TORQUE_NM = 100.0  # unit of torques in the objective
+SMOOTH = 2e-3  # weight there of squared accelerations, s⁴/rad²
 DEGREE = 3
 PLACES = ca.collocation_points(DEGREE, "radau")
 SLOPES, ENDS, WEIGHTS = ca.collocation_coeff(PLACES)
@@ -40,7 +38,7 @@ def mirrored_body(person):
 class PlanarBody:
     """The body on two flat feet: motion and forces from θ, θ̇, θ̈ and the reaction (F_x, F_z, −M_y) under each foot.
 
-    ``motion`` gives q, v, a and both feet's wrenches; ``forces`` what is left over at the pelvis (F_x, F_z, M_y), and
+    ``motion`` gives q, v, a and both feet's wrenches; ``forces`` the load left over at the pelvis (F_x, F_z, M_y), and
     the extending torques at the four joints, of one leg and the trunk.
     """
 
@@ -69,7 +67,7 @@ class PlanarBody:
         return self.dynamics.segments(q, np.zeros(self.body.nv))[0][row, :].T
 
     def _posture(self, theta):
-        """Q (nq,) with the ankles over the world's y axis."""
+        """Configuration (nq,) with the ankles over the world's y axis."""
         q, (ankle, knee, hip, lumbar) = ca.SX(self.body.neutral()), ca.vertsplit(theta)
         legs = {"foot": ankle, "shank": knee, "thigh": hip, "upper_arm": np.deg2rad(ARMS_DEG)}
         turns = {f"{side}_{part}": turn for side in ("right", "left") for part, turn in legs.items()}
@@ -82,7 +80,7 @@ class PlanarBody:
         return q
 
     def _velocity(self, q, theta, rate):
-        """V (nv,): turns about y, and the pelvis's path in its own axes."""
+        """Velocity (nv,): turns about y, and the pelvis's path in its own axes."""
         v, legs = ca.SX.zeros(self.body.nv), ca.sum1(theta[:3])
         for side in ("right", "left"):
             for part, own in zip(("foot", "shank", "thigh"), ca.vertsplit(rate[:3]), strict=True):
@@ -117,7 +115,7 @@ def optimal_squat(planar, motor_nm, depth_deg=90.0, intervals=16, iterations=300
     """The squat of least muscle torques with motors of 0 to ``motor_nm`` at the knees.
 
     Raises:
-        NotConverged: IPOPT found none.
+        NotConverged: IPOPT ended without a solution.
     """
     count, step, half_weight = intervals * DEGREE, SECONDS / intervals, planar.body.mass_kg * 9.81 / 2
     problem = ca.Opti()
@@ -125,7 +123,7 @@ def optimal_squat(planar, motor_nm, depth_deg=90.0, intervals=16, iterations=300
     accelerations, loads, motor = (problem.variable(rows, count) for rows in (4, 3, 1))
     unknowns = states[:4, :], states[4:, :], accelerations, half_weight * loads
     root, torques = planar.forces.map(count)(*unknowns)
-    problem.subject_to(ca.vec(root) / half_weight == 0)  # nothing but the ground pushes the body
+    problem.subject_to(ca.vec(root) / half_weight == 0)  # the ground alone pushes the body
     for k in range(intervals):
         own = slice(k * DEGREE, (k + 1) * DEGREE)
         curve = ca.horzcat(nodes[:, k], states[:, own])

@@ -129,7 +129,7 @@ class StateObservability:
 
     @property
     def gap(self) -> tuple[float, float]:
-        """Least singular value that counts and greatest that does not; NaN where there is no such."""
+        """Least singular value that counts and greatest that does not; NaN where all or 0 of them count."""
         values, rank = self.singular_values, self.rank
         counted = float(values[rank - 1]) if rank else np.nan
         return counted, float(values[rank]) if rank < len(values) else np.nan

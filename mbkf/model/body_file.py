@@ -45,7 +45,7 @@ AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 def load_body(body: str | Path = "human18") -> BodyDescription:
     """Reads a reference body by its name, or a user's own from a TOML or a URDF file.
 
-    A URDF file states segments, joints and inertias; roles, soles and what else a body has stand in a side file of the
+    A URDF file states segments, joints and inertias; roles, soles and all other entries stand in a side file of the
     same name with ``.toml`` at its end (``robot.urdf.toml``).
 
     Args:

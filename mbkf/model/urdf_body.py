@@ -1,8 +1,8 @@
 """A URDF file with its side file as the text of a body's file.
 
 The URDF file states segments, joints, masses and inertias, in SI units. The side file has the URDF file's name with
-``.toml`` at its end. It states what URDF has no place for: roles and sole; spreads and scale factors of segments, where
-they differ from :data:`SPREADS` and from one factor of size; and any other entry of a body's file.
+``.toml`` at its end. It states entries that URDF has no place for: roles and sole; spreads and scale factors of
+segments, where they differ from :data:`SPREADS` and from one factor of size; and any other entry of a body's file.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from mbkf.model.urdf_segments import UrdfSegments, urdf_segments
 from mbkf.model.urdf_tree import read_urdf_tree
 
 SIZE = "size"
-"""Name of the only scale factor of a body whose side file has none."""
+"""Name of the only scale factor of a body whose side file names no factors."""
 
 OVERRIDES = (
     "name",
@@ -42,7 +42,7 @@ SPREADS: dict[str, dict[str, list[float]]] = {
     },
     "": {"posture_sd_deg": [20.0], "acceleration_sd": [110.0], "movement_sd": [20.0]},
 }
-"""Spreads where the side file has none: the root's of ``human18``, and the medians of its joints for each axis."""
+"""Spreads unless the side file states others: the root's of ``human18``, and medians of its joints for each axis."""
 
 SIDE_KNOWN = {
     **KNOWN,

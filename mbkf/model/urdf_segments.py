@@ -39,7 +39,7 @@ class UrdfSegments:
     """Entries of a body's file.
 
     Attributes:
-        segments: Tables ``[[segment]]`` without what a URDF file does not hold: scale factors and spreads.
+        segments: Tables ``[[segment]]`` without scale factors and spreads, which a URDF file does not hold.
         landmarks: Tables ``[[landmark]]``.
         clinical_joints: Tables ``[[clinical_joint]]``.
     """

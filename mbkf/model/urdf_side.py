@@ -1,4 +1,4 @@
-"""The side file of an exported URDF file: what a body has besides segments, joints and inertias, scaled to the person.
+"""The side file of an exported URDF file: a body's entries besides segments, joints and inertias, scaled to the person.
 
 All scale factors of the body that both files make are 1 for this person.
 """

@@ -55,7 +55,7 @@ class UrdfTree:
     Attributes:
         name: Name of the robot.
         root: The link that is the child of no joint.
-        inertias: Inertia of each link in its frame, by name; zero where the file states none.
+        inertias: Inertia of each link in its frame, by name; zero for a link without <inertial>.
         joints: The joints by their parent link, in the file's order.
     """
 
@@ -94,7 +94,7 @@ def read_urdf_tree(path: Path) -> UrdfTree:
 
 
 def _robot(path: Path) -> yourdfpy.Robot:
-    """The file's links and joints as yourdfpy reads them; what is drawn is left out."""
+    """The file's links and joints as yourdfpy reads them, without visuals and collision shapes."""
     import yourdfpy
 
     content = read_bytes(path, SETTINGS_BYTES, "name a URDF file")
@@ -181,12 +181,16 @@ def _faults(
 ) -> Iterator[str]:
     """Faults of the joints, and of links that hang on no or on several joints."""
     if not inertias:
-        yield "it holds no link"
-    for what, names in (
+        yield "it holds 0 links; a body needs at least one <link>"
+    for kind, names in (
         ("links", [one.name for one in robot.links]),
         ("joints", [one.name for one in joints]),
     ):
-        yield from (f"two {what} are named {name}" for name in sorted(set(names)) if names.count(name) > 1)
+        yield from (
+            f"two {kind} are named {name}; give each a name of its own"
+            for name in sorted(set(names))
+            if names.count(name) > 1
+        )
     for joint in joints:
         if joint.kind not in KINDS:
             yield f"joint {joint.name} is {joint.kind}; a body's joints are {', '.join(KINDS)}"

@@ -82,7 +82,7 @@ def _half(a: Array | None, b: Array | None) -> Array | None:
 
 
 class ForceDensity(NamedTuple):
-    """Spectral density of plant noise: ``velocities`` (nv,) of each, ``forces`` (nu, nu); none in q."""
+    """Spectral density of plant noise: ``velocities`` (nv,) of each, ``forces`` (nu, nu); 0 in q."""
 
     velocities: Array
     forces: Array

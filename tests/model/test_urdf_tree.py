@@ -47,7 +47,7 @@ def test_links_and_joints_are_read_with_their_frames(tmp_path):
         (biped(link("p"), '<joint name="m" type="revolute"><parent link="p"/></joint>'), "joint m lacks <child"),
         (biped('<link name="p"><inertial><mass value="heavy"/></inertial></link>'), "not a valid URDF"),
         (biped("<link/>"), "a <link> .without a name. lacks its name"),
-        ([], "it holds no link"),
+        ([], "it holds 0 links"),
     ],
 )  # fmt: skip
 def test_a_tree_that_is_none_is_refused(tmp_path, parts, said):

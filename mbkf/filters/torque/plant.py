@@ -159,7 +159,7 @@ class TorquePlant(Plant[ForcedState, None, None]):
         self._advance = integrator(scheme.integrator)
         self._step_s = dt_s / max(1, scheme.substeps)
         self._fade: Array | None = None if drift is None else scipy.linalg.expm(self._step_s * drift)
-        # Of blocks the forces are random walks; a body without a model has a dozen states, which need none.
+        # Of blocks the forces are random walks; without a model a body has a dozen states: the dense form will do.
         self._compiled = drift is None and isinstance(body, HumanDynamics) and body.compiled is not None
         joints = model.joints.values() if self._compiled else ()
         self._joints = joint_ranges(joint.v for joint in joints)

@@ -60,14 +60,8 @@ class TorqueState:
             wrenches: Its wrench states carried to points in the world.
             state: Mean and covariance.
         """
-        q, v, u, P, nv, feet = (
-            state.q,
-            state.v,
-            state.forces,
-            state.P,
-            body.nv,
-            0 if body.loads_given else FEET,
-        )
+        q, v, u, P, nv = state.q, state.v, state.forces, state.P, body.nv
+        feet = 0 if body.loads_given else FEET
         a, torque = body.acceleration(q, v, u), body.joint_forces(q, v, u)
         tau = body.generalised(q, v, a, u)
         at_origin = wrenches.reading(q, u[-FEET:], np.zeros((2, 3)))

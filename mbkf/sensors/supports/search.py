@@ -190,7 +190,7 @@ def _missing(
         force = slow[run, :3].mean(axis=0)
         if lacks[run].sum() < LASTING_S * rate_hz or np.linalg.norm(force) < LASTING_SHARE * weight_n:
             continue
-        # A hand may hold something that moves; what a pelvis or a knee rests on does not.
+        # A hand may hold something that moves; a pelvis or a knee rests on things that do not.
         rests = bearings.placed & (bearings.grips | (np.median(speeds[run], axis=0) < STILL_M_S))
         parts = _fitting(bearings, rests, points[run] - body.centre_m[run, None], slow[run], weight_n)
         frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)

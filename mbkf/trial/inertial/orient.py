@@ -90,7 +90,7 @@ def orient(
         progress: Called as samples are done.
 
     Raises:
-        FileFormatError: The file of orientations is missing or holds none.
+        FileFormatError: The file of orientations is missing, or without any.
         InvalidInput: The readings are not plausible, or a start is not known; the message gives the remedy.
         UnknownName: Unknown sensor, frame or filter.
     """

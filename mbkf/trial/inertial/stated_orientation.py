@@ -34,8 +34,8 @@ def stated_orientations(
             reads. A table without times has one row per sample.
 
     Raises:
-        FileFormatError: The file is missing, broken, or holds no quaternions.
-        InvalidInput: A sensor's file holds none, or sensor and file have no time in common.
+        FileFormatError: The file is missing, damaged, or without quaternions.
+        InvalidInput: A sensor's file is without them, or sensor and file have no time in common.
         UnknownName: The file has no such sensor.
     """
     if str(source) == OWN:

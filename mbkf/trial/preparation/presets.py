@@ -92,7 +92,7 @@ def _refuse_other_filters(settings: ReconstructSettings, name: str) -> None:
     if not near or near[0] in known[settings.filter]:
         return
     others = [one for one in FILTERS if near[0] in known[one]]
-    meant = "this" if near[0] == name else f"there is no such setting; {near[0]}"
+    meant = "this" if near[0] == name else f"no filter has this setting; {near[0]}"
     raise InvalidInput(
         f"--set {name}: {meant} is a setting of the {' and the '.join(others)} filter, and the {settings.filter} "
         f"filter was chosen; give --filter {others[0]}"

@@ -118,7 +118,7 @@ def test_lists_of_numbers_are_settings_as_well():
         (["gate=3", "gate=4"], InvalidInput, "gate is given twice"),
         (["gat=3"], UnknownName, "unknown setting 'gat'; did you mean gate"),
         (["integrator=HE"], InvalidInput, "setting of the torque filter.*--filter torque"),
-        (["integrater=HE"], InvalidInput, "no such setting; integrator is a setting of the torque filter"),
+        (["integrater=HE"], InvalidInput, "this setting; integrator is a setting of the torque filter"),
         (["gate=wide"], InvalidInput, '--set: gate must be a positive number, got "wide"'),
     ],
 )
