@@ -1,4 +1,4 @@
-"""The rows of URDF files pass for what the export writes, and see a wrong mass and a moved joint."""
+"""The rows of URDF files pass for exported files, and see a wrong mass and a moved joint."""
 
 from dataclasses import replace
 
@@ -49,6 +49,6 @@ def test_a_difference_is_seen(monkeypatch, tmp_path, change, seen):
 
 
 def test_a_wrong_mass_is_seen_in_every_reader(monkeypatch, tmp_path):
-    monkeypatch.setattr("mbkf.model.urdf.LINK_MASS_KG", 1.0)
+    monkeypatch.setattr("mbkf.model.urdf.LINK_MASS_KG", 1e-4)
     found = failed(tmp_path)
     assert {"URDF in Pinocchio: total mass off", "URDF in MuJoCo: total mass off"} <= set(found)
