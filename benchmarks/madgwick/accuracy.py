@@ -154,7 +154,7 @@ class Accuracy:
         """Error of the source's filter by the segment that wears the sensor, walking, persons shown, degrees."""
         walks = [eight(person) for person in SHOWN_ON]
         names = [one.name for one in walks[0].readings]
-        return {name: pooled(walks, madgwick(THEIRS), (name,)) for name in names}
+        return {name: pooled(walks, printed, (name,)) for name in names}
 
 
 def _two(error: Callable[[float], float]) -> tuple[float, float]:

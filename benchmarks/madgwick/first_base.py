@@ -1,7 +1,7 @@
 """The source's first data base: motions of AMASS as virtual sensors, through files and commands, and its formulas.
 
 No file of AMASS is at hand (its licence asks each user to register), so that the file is made here: the joint rotations
-of a synthetic walk and of a standing person, in the format of AMASS. Everything after it is what a user would run.
+of a synthetic walk and of a standing person, in the format of AMASS. A user would run everything after it.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The source's sensors run an EKF of their maker that is not described. This one uses the same information as Madgwick's
 filter (gravity is the accelerometer's direction, north the field's horizontal part) after Sabatini, IEEE Trans. Biomed.
-Eng. 53 (2006) 1346-1356, and so tells what a Kalman filter gains by itself. Errors are small rotations in the world.
+Eng. 53 (2006) 1346-1356, and so shows the gain of a Kalman filter by itself. Errors are small rotations in the world.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The source took walks on nine surfaces (Luo et al., Sci. Data 7, 219, 2020), which are not among the captures at hand,
 and gave them up because the angles in them did not convince. BROAD is no human motion (a board moved by hand), but has
-what was missing there: true orientations.
+true orientations, which were missing there.
 """
 
 from __future__ import annotations

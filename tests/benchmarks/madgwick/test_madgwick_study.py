@@ -172,6 +172,9 @@ def test_verdicts_follow_the_numbers():
             found, third=replace(found.third, compared=[replace(found.third.compared[0], mean_qw=0.2)])
         ),
     }
+    shank = Made(0.06, 0.5, {})
+    shank.__dict__["by_segment"] = {**Made.by_segment, "right_shank": 7.5}
+    changed["5.3.3", "Thigh and foot are w"] = replace(found, accuracy=shank)
     for claim, other in changed.items():
         after = verdicts(other)
         assert {key for key in before if before[key] != after[key]} == {claim}
