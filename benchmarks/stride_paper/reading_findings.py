@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.stride_paper.readings import HEADS, NEAR_M, NUMBERS, PRINTED_M, Readings
-from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet
+from benchmarks.thesis_report.contents import CANNOT_BE_HAD, OPEN, Band, Claim, Findings, Row, Sheet
 
 LEAST_READINGS, NEAREST_SHOWN = 320, 10
 
@@ -69,4 +69,4 @@ def _claim(found: Readings, all_four: int) -> Claim:
         "for a first step without error and a second one that errs by all of it; the method treats both alike."
     )
     statement = "Clean and drift errors together: 0.32, 0.06, 0.47 and 0.12 m."
-    return Claim("Figures 5, 7", statement, measured, "cannot be had" if not all_four else "reproduced")
+    return Claim("Figures 5, 7", statement, measured, CANNOT_BE_HAD if not all_four else "reproduced")

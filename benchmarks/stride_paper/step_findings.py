@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.inertial.stride_measured import Compared
 from benchmarks.stride_paper import printed
 from benchmarks.stride_paper.steps import KALMAN, Estimated, LateStart, Signals
-from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet, redone
+from benchmarks.thesis_report.contents import CANNOT_BE_HAD, OPEN, Band, Claim, Findings, Row, Sheet, redone
 
 AS_PRINTED = "as printed"
 KALMAN_M, LEAST_GROWTH, LEAST_BIAS = 0.05, 1.5, 2.0
@@ -149,9 +149,7 @@ def _step_claim(kind: str, estimated: Sequence[Estimated]) -> Claim:
         + "; ".join(texts)
         + f". The Kalman filter errs by {min(kalman):.3f} to {max(kalman):.3f} m."
     )
-    return Claim(
-        _FIGURES[kind], f"{paper} m estimated of {expected:.2f} m walked.", measured, "cannot be had"
-    )
+    return Claim(_FIGURES[kind], f"{paper} m estimated of {expected:.2f} m walked.", measured, CANNOT_BE_HAD)
 
 
 def _bias_claim(late: Sequence[LateStart]) -> Claim:

@@ -15,7 +15,7 @@ from benchmarks.inertial.cubic_steps import cubic_steps
 from benchmarks.stride_paper import printed
 from benchmarks.stride_paper.errors import DIRECTIONS, signed_errors
 from benchmarks.stride_paper.printed import ALIGNED, AS_STUDIED
-from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet, redone
+from benchmarks.thesis_report.contents import CANNOT_BE_HAD, OPEN, Band, Claim, Findings, Row, Sheet, redone
 from mbkf.imu.key_points import KeyPointSettings
 
 OURS, BIAS, VELOCITY, BOTH = "ours", "bias left in", "velocity runs through rests", "both as the paper"
@@ -159,4 +159,4 @@ def _constant_claim(by: dict[tuple[str, int], Switched]) -> Claim:
         f"(half: {middle.clean[0]:.3f}), the largest with drift {effects[0].drift[:, 0].max():.3f} and "
         f"{effects[1].drift[:, 0].max():.3f} m (half: {middle.drift[:, 0].max():.3f})."
     )
-    return Claim("stride eq. 4", "c is a parameter of Hemminki 2014.", measured, "cannot be had")
+    return Claim("stride eq. 4", "c is a parameter of Hemminki 2014.", measured, CANNOT_BE_HAD)
