@@ -72,7 +72,7 @@ class Moved:
 
 
 def moved_trials(data: Path, quick: bool = False) -> list[Moved]:
-    """Twenty runs, landings and walks.
+    """Runs, landings and walks; the rules of contacts were set on the landing among them.
 
     Args:
         data: Folder of the reference captures.
