@@ -27,7 +27,7 @@ REAL_TIME = {"FDMC": 10.0, "FD": 6.0}
 
 COMPLETE = "FDMC, complete F"
 SIMPLIFIED = 0.85
-"""Greatest time of a step with the simplified F over one with the complete F: what the thesis saves."""
+"""Greatest time of a step with the simplified F over one with the complete F, that of thesis Table A.3."""
 
 LATENCY_MS = 8.0
 SECONDS, QUICK_SECONDS = 4.0, 1.0

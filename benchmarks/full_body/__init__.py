@@ -87,7 +87,7 @@ def _not_there(data: Path | None, quick: bool) -> Iterator[Check]:
 
 
 def _not_run() -> Iterator[Check]:
-    """What a quick run leaves out."""
+    """Rows that a quick run leaves out."""
     note = "--quick"
     yield left_out(f"{len(PERSONS) - 1} of {len(PERSONS)} persons", note)
     yield left_out(f"{SEEDS - 1} of {SEEDS} seeds of each movement", note)
@@ -110,7 +110,7 @@ def _texts(found: Survey, absent: list[Check], quick: bool) -> Texts:
         command="python -m benchmarks full_body",
         bands="What mbkf's filters have to keep. Splines and rigid-body filling know where a marker is after its gap; "
         "the dynamic filter, frame by frame, does not, and is compared with them all the same.",
-        claims="The thesis's statements on whole bodies, and what was measured"
+        claims="The thesis's statements on whole bodies, and their measurement"
         + (" on one person, one trial of each movement" if quick else ""),
         figures="Truth black, FCDI blue, FDMC per frame violet, FDMC ours green, dynamic orange.",
         remark="The synthetic persons are the filters' own body, so errors of the body itself are left out, but for "

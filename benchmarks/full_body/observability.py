@@ -72,7 +72,7 @@ def _claims(least: dict[str, dict[str, int]]) -> list[Claim]:
     return [
         Claim(
             "4.1.4.2",
-            "The rank (thesis eq. 4.14) tells whether a combination of force sensors determines the torques.",
+            "The rank (thesis eq. 4.14) shows whether a combination of force sensors determines the torques.",
             f"rank {on[COMPLETE]} of {STATES} with a plate under each foot, {off[COMPLETE]} without plates",
             judged(on[COMPLETE] == STATES and off[COMPLETE] == STATES - REACTIONS),
         ),

@@ -1,4 +1,4 @@
-"""MeshCat: what a headless browser draws of a person and of a played result, and where it has the segments."""
+"""MeshCat: pixels and places of segments of a person and of a played result, in a headless browser."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows of plates: what they measure on public captures, and what breaks them."""
+"""Rows of plates: their values on public captures, and faults that break them."""
 
 import numpy as np
 
