@@ -19,6 +19,9 @@ from mbkf.io.imu.table import read_orientation_csv
 OWN = "file"
 """Word for the orientations in the sensors' own file."""
 
+SAME_DURATION = 0.01
+"""Share by which the durations of one recording by two clocks may differ."""
+
 _TABLES = (".csv", ".tsv", ".txt")
 
 
@@ -87,10 +90,14 @@ def _of(name: str, signals: Sequence[Signal], sensors: int) -> Signal | None:
 
 
 def _at(one: ImuReadings, signal: Signal | None, path: Path) -> Array | None:
-    """(T, 4) the unit quaternions at a sensor's samples: row by row where there are as many, else by their times."""
+    """(T, 4) the unit quaternions at a sensor's samples: row by row where there are as many, and they last as long.
+
+    Else by their times. Clocks of two devices may differ in their zero.
+    """
     if signal is None:
         return None
     same = len(signal.values) == one.samples
+    same = same and abs(np.ptp(signal.time_s) - np.ptp(one.time_s)) <= SAME_DURATION * np.ptp(one.time_s)
     turns = np.array(signal.values) if same else resampled(signal, one.time_s)
     if not np.isfinite(turns).all(axis=1).any():
         raise InvalidInput(

@@ -59,6 +59,16 @@ def test_another_clock_is_followed(tmp_path):
         stated_orientations([ONE], "NWU", tmp_path / "far.csv")
 
 
+def test_as_many_samples_of_another_rate_are_followed_by_their_times(tmp_path):
+    made = turning(4.0)
+    whole, half = made.readings("thigh"), len(made.truth) // 2
+    first = replace(whole, orientation=None).at(whole.time_s[:half], lambda values, _: values[:half])
+    slow = whole.at(whole.time_s[::2][:half], lambda values, _: values[::2][:half])
+    write_imu_csv([slow], tmp_path / "slow.csv")
+    (course,), _ = stated_orientations([first], "NWU", tmp_path / "slow.csv")
+    assert apart_deg(course.quaternion, made.truth[:half]).max() < 0.1
+
+
 def test_of_several_sensors_names_decide(tmp_path):
     other = turning(2.0, 3).readings("foot")
     write_imu_csv([other, ONE], tmp_path / "both.csv")
