@@ -128,9 +128,9 @@ def _late_sheet(late: Sequence[LateStart]) -> Sheet:
         *(f"{name} m" for name in late[0].rms_m),
     )
     note = (
-        "Measured steps, windows of 5 carried sample by sample, which of three variants err least on the strides of this "
-        "capture; RMS error over both feet, one and two steps, ten phases. Starts after 0 s leave less standing before the first step. True bias: standing at the end of the "
-        "capture."
+        "Measured steps, windows of 5 carried sample by sample, which of three variants err least on the strides of "
+        "this capture; RMS error over both feet, one and two steps, ten phases. Starts after 0 s leave less standing "
+        "before the first step. True bias: standing at the end of the capture."
     )
     return Sheet("late_starts", "The paper's choices on measured steps", columns, rows, note)
 
@@ -174,7 +174,8 @@ def _velocity_claim(late: Sequence[LateStart]) -> Claim:
     ours, printed_m = (late[0].rms_m[name] for name in ("ours", "velocity runs through rests"))
     measured = (
         f"Measured steps: {printed_m:.2f} m RMS with stride eq. 6, {ours:.2f} m with zero velocity at key points, both "
-        "with windows of 5 carried sample by sample (windows of 10 err more in either way: table of the steps). Rests of a walk hold the velocity's error for as long as they last."
+        "with windows of 5 carried sample by sample (windows of 10 err more in either way: table of the steps). Rests "
+        "of a walk hold the velocity's error for as long as they last."
     )
     return Claim(
         "stride eq. 6", "The position is the double integral of the acceleration.", measured,
