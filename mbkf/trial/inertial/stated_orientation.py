@@ -90,14 +90,15 @@ def _of(name: str, signals: Sequence[Signal], sensors: int) -> Signal | None:
 
 
 def _at(one: ImuReadings, signal: Signal | None, path: Path) -> Array | None:
-    """(T, 4) the unit quaternions at a sensor's samples: row by row where there are as many, and they last as long.
+    """(T, 4) unit quaternions at a sensor's samples: row by row for as many that last as long, else by time.
 
-    Else by their times. Clocks of two devices may differ in their zero.
+    Row by row, the moment from which each of two devices counts time does not matter.
     """
     if signal is None:
         return None
-    same = len(signal.values) == one.samples
-    same = same and abs(np.ptp(signal.time_s) - np.ptp(one.time_s)) <= SAME_DURATION * np.ptp(one.time_s)
+    lasting_s = float(np.ptp(one.time_s))
+    alike = abs(float(np.ptp(signal.time_s)) - lasting_s) <= SAME_DURATION * lasting_s
+    same = alike and len(signal.values) == one.samples
     turns = np.array(signal.values) if same else resampled(signal, one.time_s)
     if not np.isfinite(turns).all(axis=1).any():
         raise InvalidInput(
