@@ -66,7 +66,8 @@ class TorqueStart:
             given: (12,) wrenches that are known inputs, or (0,).
         """
         a = np.where(self.body.kinematic, 0.0, acceleration)
-        u = self.body.forces(motion.q, motion.v, a, feet.wrench)
+        loads = np.nan_to_num(given).reshape(2, -1) if len(given) else feet.wrench
+        u = self.body.forces(motion.q, motion.v, a, loads)
         if self.settings.noise == "independent":
             return ForcedState(motion.q, motion.v, u, self._plain_covariance(motion, u), given=given)
         load_sd = np.where(np.isfinite(plate_sd), plate_sd, self._unmeasured)
