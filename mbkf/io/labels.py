@@ -8,11 +8,11 @@ _MOST_NAMED = 6
 
 
 def without_subject(labels: Sequence[str]) -> list[str]:
-    """Labels without the subject's name that stands before all of them ("Anna:LASI"), if it is only one."""
-    subjects = {label.partition(":")[0] for label in labels if ":" in label}
-    if len(subjects) != 1:
+    """Labels without the subject's name that stands before them ("Anna:LASI"), if two or more share it and no other."""
+    subjects = [label.partition(":")[0] for label in labels if ":" in label]
+    if len(subjects) < 2 or len(set(subjects)) > 1:
         return list(labels)
-    prefix = f"{subjects.pop()}:"
+    prefix = f"{subjects[0]}:"
     return [label.removeprefix(prefix) or label for label in labels]
 
 

@@ -15,7 +15,9 @@ from tests.io.reconstructions import made_up
 NAMES = ("walk.c3d", "person.toml", "imus.csv", "motion.h5", "labels.json", "page.html")
 """Inputs by kind, one of which each option takes; a command refuses before it reads them."""
 
-WRITES_NOTHING = {"info", "replay", "observability", "app", "protocol list", "protocol check", "imu replay"}
+WRITES_NOTHING = {
+    "info", "replay", "observability", "app", "presets", "protocol list", "protocol check", "imu replay",
+}  # fmt: skip
 """Commands that write no file that is named in their call; the page's files have tests of their own."""
 
 

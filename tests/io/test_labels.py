@@ -24,3 +24,4 @@ def test_what_was_renamed_is_told():
 def test_one_subjects_name_is_taken_off_and_several_are_kept():
     assert without_subject(["Anna:LASI", "Anna:RASI", "*3"]) == ["LASI", "RASI", "*3"]
     assert without_subject(["Anna:LASI", "Bea:LASI"]) == ["Anna:LASI", "Bea:LASI"]
+    assert without_subject(["Anna:LASI", "RASI"]) == ["Anna:LASI", "RASI"]
