@@ -36,7 +36,7 @@ class UrdfJoint:
         parent, child: The links that it joins.
         placement: The child's frame in the parent's at position zero.
         axis: (3,) unit vector that a hinge turns about, in the child's frame.
-        limits_rad: (2,) least and greatest position; ±inf without a limit.
+        limits_rad: (2,) least and greatest position; ±inf where the file gives neither.
     """
 
     name: str
@@ -162,8 +162,9 @@ def _joint(given: yourdfpy.Joint) -> UrdfJoint:
     if given.type in HINGES and not axis.any():
         raise ValueError(f"joint {given.name}: its axis is 0 0 0")
     limits = np.array([-np.inf, np.inf])
-    if given.type == "revolute" and limit is not None and None not in (limit.lower, limit.upper):
-        limits = np.array([limit.lower, limit.upper], dtype=float)
+    ends = () if given.type != "revolute" or limit is None else (limit.lower, limit.upper)
+    if any(end is not None for end in ends):  # one that is left out is 0 in URDF
+        limits = np.array([end or 0.0 for end in ends])
         if not limits[0] < limits[1]:
             raise ValueError(
                 f"joint {given.name}: its lower limit {limits[0]:g} must be below its upper {limits[1]:g}"

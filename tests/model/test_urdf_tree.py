@@ -26,6 +26,17 @@ def test_links_and_joints_are_read_with_their_frames(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("given", "limits"),
+    [('upper="2"', [0.0, 2.0]), ('lower="-1"', [-1.0, 0.0]), ("", [-np.inf, np.inf])],
+)
+def test_a_limit_that_is_left_out_beside_another_is_zero(tmp_path, given, limits):
+    """As the format of URDF has it."""
+    extra = f'<limit {given} effort="1" velocity="1"/>'
+    tree = read_urdf_tree(written(tmp_path, [link("a"), link("b"), joint("j", "a", "b", extra=extra)]))
+    np.testing.assert_array_equal(tree.joints["a"][0].limits_rad, limits)
+
+
+@pytest.mark.parametrize(
     ("parts", "said"),
     [
         (biped(joint("tie", "right_foot", "left_foot")), "child of the joints left_ankle, tie: a closed loop"),
