@@ -131,7 +131,9 @@ def _planned(
 ) -> _Planned:
     """The segment after a joint."""
     if first.kind == "floating":
-        raise ValueError(f"joint {first.name} is floating; the root of a body floats, and no other link")
+        raise ValueError(
+            f"joint {first.name} is floating; only the root of a body floats: give it another type"
+        )
     chain = _chain(tree, first)
     turn, axes = place.rotation, ""
     signs: list[int] = []
@@ -146,7 +148,7 @@ def _planned(
     if len(set(axes)) < len(axes):
         raise ValueError(
             f"the joints {', '.join(one.name for one in chain)} meet at one point, and turn about {', '.join(axes)} in "
-            "the root's axes; those of a joint are different ones of x, y and z"
+            "the root's axes; those of a joint are different ones of x, y and z: set one joint apart, or fix it"
         )
     last = chain[-1].child
     name = names.get(last, last)
@@ -179,7 +181,7 @@ def _axis(joint: UrdfJoint, turn: Array) -> tuple[str, int]:
     if np.linalg.norm(np.delete(axis, largest)) > SAME_AXIS_RAD:
         raise ValueError(
             f"joint {joint.name} turns about {np.round(axis, 4).tolist()} in the axes of the root; with all joints at "
-            "zero a body's hinges turn about the root's x, y or z"
+            "zero a body's hinges turn about the root's x, y or z: turn the posture at zero, or fix the joint"
         )
     return "xyz"[largest], int(np.sign(axis[largest]))
 

@@ -148,7 +148,7 @@ def _inertia(link: yourdfpy.Link) -> pin.Inertia:
     matrix = np.zeros((3, 3)) if stated.inertia is None else np.array(stated.inertia, dtype=float)
     place = _placement(stated.origin)
     if not (np.isfinite(mass) and np.isfinite(matrix).all() and np.isfinite(place.homogeneous).all()):
-        raise ValueError(f"link {link.name}: its <inertial> holds a number that is not finite")
+        raise ValueError(f"link {link.name}: its <inertial> holds a number that is not finite; correct it")
     if mass < 0.0:
         raise ValueError(f"link {link.name}: its mass is {mass:g} kg; a mass is positive")
     return pin.Inertia(mass, np.zeros(3), matrix).se3Action(place)
@@ -160,7 +160,7 @@ def _joint(given: yourdfpy.Joint) -> UrdfJoint:
     if axis.shape != (3,) or not (np.isfinite(axis).all() and np.isfinite(place.homogeneous).all()):
         raise ValueError(f"joint {given.name}: its <origin> and <axis> need three finite numbers each")
     if given.type in HINGES and not axis.any():
-        raise ValueError(f"joint {given.name}: its axis is 0 0 0")
+        raise ValueError(f"joint {given.name}: its axis is 0 0 0; give the direction that it turns about")
     limits = np.array([-np.inf, np.inf])
     ends = () if given.type != "revolute" or limit is None else (limit.lower, limit.upper)
     if any(end is not None for end in ends):  # one that is left out is 0 in URDF
@@ -194,10 +194,10 @@ def _faults(
         )
     for joint in joints:
         if joint.kind not in KINDS:
-            yield f"joint {joint.name} is {joint.kind}; a body's joints are {', '.join(KINDS)}"
+            yield f"joint {joint.name} is {joint.kind}; a body's joints are {', '.join(KINDS)}: replace or fix it"
         for link in (joint.parent, joint.child):
             if link not in inertias:
-                yield f"joint {joint.name} names the link {link}, which does not exist"
+                yield f"joint {joint.name} names the link {link}, which does not exist; add the link, or correct the name"
     children = [joint.child for joint in joints]
     for name in inertias:
         if children.count(name) > 1:
