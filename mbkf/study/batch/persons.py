@@ -163,7 +163,10 @@ def _by_words(captures: Sequence[Path], statics: Collection[Path]) -> dict[Path,
 
 
 def _codes(words: Mapping[Path, str], captures: Sequence[Path], statics: Collection[Path]) -> dict[Path, str]:
-    """Words that are codes of one form; not every capture needs one where several standing trials carry codes."""
+    """Words that are codes of one form; not every capture needs one where several standing trials carry codes.
+
+    Codes with other letters than those of persons that all differ are numbers of trials.
+    """
     found, forms = {}, set()
     for path, word in words.items():
         match = CODE.fullmatch(word)
@@ -177,7 +180,7 @@ def _codes(words: Mapping[Path, str], captures: Sequence[Path], statics: Collect
     every = {word.casefold() for word in found.values()}
     if len(found) < len(captures) and len(standing) < 2:
         return {}
-    is_person = bool(standing) or forms <= PERSON_WORDS
+    is_person = forms <= PERSON_WORDS or (bool(standing) and len(every) < len(found))
     if forms == {""}:  # a number may be a date or time as well
         is_person = standing == every
     return found if is_person else {}

@@ -28,7 +28,8 @@ def found(stems, **stated):
      "p01_static P01_walk p02_walk", "20140515T133244_static 20140515T133244_run 20140612T1_static 20140612T1_run",
      "HC032A_Static_HC032A01 HC032A_Straight_HC032A03 HC044A_Static_HC044A01 HC044A_Straight_HC044A15",
      "HC032A_static HC032A_walk 2014001_ST_static 2014001_C1_01",
-     "anna_static anna_walk ben_static ben_walk", "100433_static 100433_run 100434_static 100434_run"],
+     "anna_static anna_walk ben_static ben_walk", "stephan_static stephan_walk anna_static anna_walk",
+     "100433_static 100433_run 100434_static 100434_run"],
 )  # fmt: skip
 def test_codes_and_shared_words_tell_two_persons_apart(stems):
     persons, unknown = found(stems)
@@ -43,7 +44,8 @@ def test_codes_and_shared_words_tell_two_persons_apart(stems):
      "static_01 static_02 walk_01 walk_02", "walk1_left walk1_right walk2_left static",
      "slow_static slow_walk fast_static fast_walk", "101500_static 101730_walk1 102000_walk2",
      "S1_FlywheelSquat S1_StandingRef", "trial01_a trial02_a", "2014001_C1_01 2014001_ST_static",
-     "marche1_a marche2_a static", "day1_static day1_walk day2_static day2_walk", "hop_a kick_a static"],
+     "T1_walk T2_walk T3_static", "marche1_a marche2_a static",
+     "day1_static day1_walk day2_static day2_walk", "hop_a kick_a static"],
 )  # fmt: skip
 def test_tasks_conditions_and_numbers_of_trials_are_no_persons(stems):
     assert found(stems) == ({"": stems.split()}, [])
