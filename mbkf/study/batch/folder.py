@@ -191,7 +191,10 @@ def _trials(
     """The trials of one session's folder, of each person in it; remarks on several persons are added to the notes."""
     found = _persons_in(captures, stated)
     if len(found.persons) > 1:
-        notes.append(_several(place, found))
+        notes.append(
+            f"{_several(place, found)}. Each is scaled from their own captures; if these are one person's, name them "
+            "in a list"
+        )
     trials = []
     for one in found.persons:
         person, moving = _person(root, place, one, stated, found)
@@ -216,15 +219,12 @@ def _persons_in(captures: Sequence[Path], stated: SessionNotes) -> FolderPersons
 
 
 def _several(place: Path, found: FolderPersons) -> str:
-    """A remark on a folder of several persons."""
+    """The statement that a folder holds several persons."""
     persons = [
         f"{one.label} ({'' if one.mass_kg is None else f'{one.mass_kg:.1f} kg, '}{_counted(one.captures)})"
         for one in found.persons
     ]
-    return (
-        f"{place} holds captures of {len(persons)} persons: {', '.join(persons)}. "
-        "Each is scaled from their own captures; if these are one person's, name them in a list"
-    )
+    return f"{place} holds captures of {len(persons)} persons: {', '.join(persons)}"
 
 
 def _counted(captures: Sequence[Path]) -> str:
@@ -253,7 +253,7 @@ def person_of_folder(folder: Path) -> Person:
     strange_trials(notes, captures, place / SESSION_FILE)
     found = _persons_in(captures, notes)
     if len(found.persons) > 1:
-        raise InvalidInput(f"{_several(place, found).split('. ')[0]}; {APART}")
+        raise InvalidInput(f"{_several(place, found)}; {APART}")
     return replace(_person(place, place, found.persons[0], notes, found)[0], subject=None)
 
 
