@@ -24,7 +24,7 @@ TAKEN_AS_UNSIGNED = "analog samples are taken as numbers without a sign, since t
 def scaled_samples(
     samples: Array, channels: int, parameters: C3dParameters, integers: bool
 ) -> tuple[Array, tuple[str, ...]]:
-    """(C, S) scaled channels and remarks; a missing OFFSET is 0, a missing SCALE 1.
+    """(C, S) scaled channels and remarks; a missing OFFSET is 0, a missing SCALE or GEN_SCALE 1.
 
     Args:
         samples: (T, C · samples per frame) numbers as they are stored.
@@ -45,7 +45,14 @@ def scaled_samples(
     with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
         gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)
         scaled: Array = (raw - offset[:, None]) * gain[:, None]
-    return scaled, (TAKEN_AS_UNSIGNED,) if unsigned and not stated else ()
+    remarks = [TAKEN_AS_UNSIGNED] if unsigned and not stated else []
+    missing = [f"ANALOG:{name}" for name in ANALOG_SCALING if not parameters.all_numbers("ANALOG", name).size]
+    if missing:
+        remarks.append(
+            f"the file lacks {', '.join(missing)}: analog samples are scaled without; compare the plates with body "
+            "weight, or give their readings with --forces"
+        )
+    return scaled, tuple(remarks)
 
 
 def _fit_unsigned(raw: Array, offset: Array) -> bool:

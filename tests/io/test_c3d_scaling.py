@@ -35,6 +35,16 @@ def test_offsets_inside_the_signed_range_keep_their_sign(tmp_path):
     np.testing.assert_allclose(decode(path, check_layout(path)).analogs, ANALOGS.reshape(-1, 2).T, atol=1e-4)
 
 
+@pytest.mark.parametrize("name", [b"OFFSET", b"SCALE", b"GEN_SCALE"])
+def test_a_missing_scale_or_offset_is_reported(tmp_path, name):
+    content = c3d_bytes(POINTS, ANALOGS)
+    at = content.rindex(bytes([len(name), 2]) + name)  # its length and the group ANALOG stand before it
+    path = tmp_path / "x.c3d"
+    path.write_bytes(content[: at + 2] + b"Q" + content[at + 3 :])
+    notes = decode(path, check_layout(path)).notes
+    assert [note for note in notes if f"lacks ANALOG:{name.decode()}: " in note]
+
+
 @pytest.mark.parametrize("name", ["signed_real", "unsigned16_real", "unsigned16_integer"])
 def test_three_encodings_of_one_standing_load(real_data, name):
     plates = read_capture(real_data / "strangers3" / f"{name}.c3d").plates
