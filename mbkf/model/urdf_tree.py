@@ -197,7 +197,7 @@ def _faults(
             yield f"joint {joint.name} is {joint.kind}; a body's joints are {', '.join(KINDS)}: replace or fix it"
         for link in (joint.parent, joint.child):
             if link not in inertias:
-                yield f"joint {joint.name} names the link {link}, which does not exist; add the link, or correct the name"
+                yield f"joint {joint.name} names the link {link}, which does not exist; add it, or correct its name"
     children = [joint.child for joint in joints]
     for name in inertias:
         if children.count(name) > 1:
