@@ -7,7 +7,8 @@ Methods:
   smoother     Kalman filter with zero-velocity updates and backward smoother (default)
   filter       the same without the smoother, from earlier readings only
   key-points   stable windows, gravity carried between them, two integrations; its windows of 0.2 s hardly fit into
-               the rests of ordinary walking, so it is for slow or single steps; --as-printed runs it by the letter
+               the rests of ordinary walking, and on single and slow steps it errs more than the smoother, too;
+               --as-printed runs it by the letter
 
 A foot must rest on the ground for a moment in every stride, and should stand still for a second at the start. A capture
 with a sensor on each foot gives both feet in one frame, with step times and cadence.
