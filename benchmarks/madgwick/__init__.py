@@ -14,6 +14,7 @@ from benchmarks.madgwick.claims import claims
 from benchmarks.madgwick.drawings import drawings
 from benchmarks.madgwick.measured import Measured, measure
 from benchmarks.madgwick.scenes import CHOSEN_ON, SHOWN_ON
+from benchmarks.madgwick.second_base import SHOWN_TRIALS
 from benchmarks.thesis_report.contents import OPEN, Band, Claim, Row, Sheet
 from benchmarks.thesis_report.page import Report, Texts
 from mbkf.numerics.threads import single_threaded
@@ -80,7 +81,11 @@ def shown(found: Measured, judged: list[Claim]) -> list[Check]:
         for (name, movement, sensor), value in a.by_movement.items()
     ]
     if found.second is not None:
-        rows += [information(f"BROAD, {name}", value, "deg") for name, value in found.second.errors.items()]
+        trials = " and ".join(name[:2] for name in SHOWN_TRIALS)
+        rows += [
+            information(f"BROAD {trials}, {name}", value, "deg")
+            for name, value in found.second.errors.items()
+        ]
     verdicts = [one.verdict for one in judged]
     return [
         *rows,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.madgwick.accuracy import THEIRS
+from benchmarks.madgwick.accuracy import EKF, SOURCE, THEIRS, TUNED
 from benchmarks.madgwick.as_printed import printed_gains
 from mbkf.conventions import Array
 from mbkf.imu.madgwick import MadgwickSettings
@@ -25,6 +25,7 @@ from mbkf.io.imu.readings import ImuReadings
 CHOSEN_TRIAL = "16_undisturbed_fast_translation_B.mat"
 SHOWN_TRIALS = ("21_undisturbed_fast_combined.mat", "05_undisturbed_slow_rotation_with_breaks_B.mat")
 BETAS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.35)
+AT_REST = "Madgwick, gains at rest"
 ZETAS = (0.0, 1e-3, 1e-2, 7e-2)
 
 
@@ -42,7 +43,6 @@ class SecondBase:
         beta_at_rest, zeta_at_rest: Gains of Madgwick's own formulas at rest.
         beta_printed, beta_printed_deg: β by Madgwick eq. 46 as printed, of readings in rad/s and in °/s.
         zeta_printed, zeta_printed_deg: ζ by Madgwick eq. 48 likewise.
-        at_rest_deg: Error with the gains of Madgwick's formulas.
         example: The trial that is drawn, the true orientations and the source's filter on it.
     """
 
@@ -60,7 +60,6 @@ class SecondBase:
     beta_printed_deg: float
     zeta_printed: float
     zeta_printed_deg: float
-    at_rest_deg: float
     example: tuple[ImuReadings, Array]
 
 
@@ -85,10 +84,10 @@ def measure_second_base(data: Path) -> SecondBase:
     ]
     rest = MadgwickSettings(_mean([one.beta for one in gains]), _mean([one.zeta for one in gains]))
     errors = {
-        "Madgwick, tuned": _pooled(shown, MadgwickSettings(beta, zeta)),
-        "Madgwick, β 0.35": _pooled(shown, MadgwickSettings(THEIRS.beta)),
-        "Madgwick, gains at rest": _pooled(shown, rest),
-        "EKF": _pooled(shown, None),
+        TUNED: _pooled(shown, MadgwickSettings(beta, zeta)),
+        SOURCE: _pooled(shown, MadgwickSettings(THEIRS.beta)),
+        AT_REST: _pooled(shown, rest),
+        EKF: _pooled(shown, None),
     }
     return SecondBase(
         beta,
@@ -105,7 +104,6 @@ def measure_second_base(data: Path) -> SecondBase:
         _mean([one.beta for one in letter_deg]),
         _mean([one.zeta for one in letter]),
         _mean([one.zeta for one in letter_deg]),
-        errors["Madgwick, gains at rest"],
         (shown[0], _course(shown[0], MadgwickSettings(THEIRS.beta))),
     )
 
