@@ -236,11 +236,15 @@ def _without_cut_rows(rows: _Rows, points: int, notes: list[str]) -> _Rows:
         return rows
     first = short[0]
     place = f"line {rows.lines[first]} ({rows.widths[first]} of {full} columns)"
-    found = f"{len(short)} rows end early, the first in {place}"
+    found = (
+        f"1 row ends early, in {place}"
+        if len(short) == 1
+        else f"{len(short)} rows end early, the first in {place}"
+    )
     if rows.tabs:
-        notes.append(f"{found}; the markers of the columns they lack are missing there")
+        notes.append(f"{found}; markers of lacking columns are missing there")
         return rows
-    notes.append(f"{found}; blanks do not show which columns they lack, so all markers are missing there")
+    notes.append(f"{found}; blanks do not show which columns are lacking, so all markers are missing there")
     unknown = frozenset(short)
     return replace(rows, rows=[[] if i in unknown else row for i, row in enumerate(rows.rows)])
 

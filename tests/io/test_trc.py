@@ -129,7 +129,7 @@ def test_utf_16(tmp_path):
 def test_rows_cut_short_are_read_as_far_as_they_go_and_told(tmp_path):
     capture = read(tmp_path, text(rows=[ROWS[0], "2\t0.02\t101\t1501\t-51\t120", ROWS[2]]))
     check_values(capture)
-    note = "1 rows end early, the first in line 8 (6 of 8 columns)"
+    note = "1 row ends early, in line 8 (6 of 8 columns)"
     assert [one for one in capture.notes if one.startswith(note)]
 
 

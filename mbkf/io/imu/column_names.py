@@ -108,6 +108,11 @@ def parse_column_name(name: str, kind: str = "") -> ColumnName | None:
     )
 
 
+def in_counts(name: str) -> bool:
+    """True for a column whose unit is that of readings without calibration: ``acc_x [LSB]``."""
+    return split_unit(name.strip())[1].lower() in _COUNTS
+
+
 def names_quantity(name: str) -> bool:
     """True for a name of a quantity, with or without an axis."""
     lower = [word[0].lower() for word in _WORD.finditer(split_unit(name.strip())[0])]

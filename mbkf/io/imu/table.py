@@ -14,7 +14,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.imu.column_names import ColumnName, parse_column_name, time_unit
+from mbkf.io.imu.column_names import ColumnName, in_counts, parse_column_name, time_unit
 from mbkf.io.imu.even_times import even_times
 from mbkf.io.imu.known_tables import defaults_of
 from mbkf.io.imu.readings import ImuReadings
@@ -156,7 +156,9 @@ def table_signals(
 
 def _lacking(path: Path, titles: Sequence[str], needed: str) -> FileFormatError:
     found = ", ".join(title for title in titles[:8] if title)
-    return FileFormatError(path, f"no {_NEEDED[needed]} among {found}")
+    counted = next((title for title in titles if in_counts(title)), "")
+    hint = f"; '{counted}' holds raw counts: export calibrated readings" if counted else ""
+    return FileFormatError(path, f"no {_NEEDED[needed]} among {found}{hint}")
 
 
 def _head(text: TableText, kind: str, needed: str) -> tuple[int, int]:

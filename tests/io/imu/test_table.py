@@ -68,6 +68,11 @@ def test_a_given_unit_overrules_a_wrong_one_in_the_file(tmp_path):
         (["acc_x,acc_y,acc_z", "9,-4,1001", "0,2,998"], {"rate_hz": 10.0}, "--units acc=mg"),
         (["acc_x,acc_y,acc_z", "9,-4,16001", "0,2,16400"], {"rate_hz": 10.0}, "raw counts"),
         (
+            ["acc_x [LSB],acc_y [LSB],acc_z [LSB]", "9,-4,1", "0,2,1"],
+            {"rate_hz": 10.0},
+            "'acc_x \\[LSB\\]' holds raw",
+        ),
+        (
             ["l_acc_x,l_acc_y,l_acc_z,r_acc_x,r_acc_y,r_acc_z", "9,-4,1001,5,1003,0", "0,2,998,7,999,3"],
             {"rate_hz": 10.0},
             "--units acc=mg",
