@@ -225,7 +225,7 @@ def _searched(one: ImuReadings, args: argparse.Namespace) -> tuple[dict[str, Any
             )  # fmt: skip
         if args.figure is not None:
             write_sweep(found, reference, _shown(one, found, start, args), args.figure)
-    return (*_told(one, found, args.against), notes)
+    return (*_reported(one, found, args.against), notes)
 
 
 def _shown(
@@ -250,7 +250,7 @@ def _shown(
     return courses
 
 
-def _told(one: ImuReadings, found: SearchedGains, against: str) -> tuple[dict[str, Any], str]:
+def _reported(one: ImuReadings, found: SearchedGains, against: str) -> tuple[dict[str, Any], str]:
     beta, zeta, error = found.settings.beta, found.settings.zeta, math.degrees(found.error.total)
     text = (
         f"beta {beta:.4g}, zeta {zeta:.3g} differ least from the reference: {error:.2f} deg "
