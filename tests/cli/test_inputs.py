@@ -69,7 +69,9 @@ def test_every_command_that_takes_a_file_or_folder_to_write_is_guarded():
     assert {name for name in COMMANDS if name not in WRITING} == WRITES_NOTHING
     for name, parser in WRITING.items():
         known = {one.dest for one in parser.get_default(OUTPUTS)}
-        assert {one.dest for one in parser._actions if one.dest in {"out", "html", "curves", "figure"}} == known, name
+        assert {
+            one.dest for one in parser._actions if one.dest in {"out", "html", "curves", "figure"}
+        } == known, name
         assert any("--overwrite" in one.option_strings for one in parser._actions), name
 
 
