@@ -22,7 +22,6 @@ KNOWN_KG = {
     "biomechzoo_walk_turn/HC044A_Straight_HC044A15.c3d": 39.4,
     "bmc_walk_run/run.trc": 70.0,
     "cgm24_lowerlimb_walk/CGM24_Walking01.c3d": 77.6,
-    "flywheel_squat/S1_StandingRef.c3d": 81.3,
     "fukuchi_run/RBDS001runT35.c3d": 60.3,
     "functional_walk/FunctionalStatic.c3d": 60.0,
     "functional_walk/FunctionalWalk.c3d": 60.0,
@@ -30,7 +29,6 @@ KNOWN_KG = {
     "gaitalytics_walk/overground_fullbody_4plates.c3d": 63.6,
     "judgement/walk7_static.c3d": 71.86,
     "judgement/walk7_120frames.c3d": 71.86,
-    "opensim_gappy_walk/walking2.c3d": 67.0,
     "rajagopal_walk_run/motion_capture_run.trc": 72.84,
     "rajagopal_walk_run/motion_capture_walk.trc": 85.07,
     "stoop_lift_box/neu_t169_f250f350.c3d": 81.7,
@@ -39,11 +37,11 @@ KNOWN_KG = {
     "stoop_lift_box/stoop3_t169_f2101f2300.c3d": 81.7,
     "synthetic_exact_truth/subject01_walk2_markers.trc": 72.84,
 }
-"""Masses that the captures' readme files state, kg."""
+"""Masses that the captures' readme files state, kg; captures whose mass only their own plates show are left out."""
 
 HEAVIER_KG = {"flywheel_squat/S1_FlywheelSquat.c3d": 81.3, "opencap_s6_walk/s6_walking1.trc": 59.0}
-"""Captures whose plates carry more than the stated mass: a device pulls with 64 % of body weight; over one step of the
-walk they carry 63 kg."""
+"""Captures whose plates carry more than the person, kg: a device pulls with 64 % of body weight (mass by the plates of
+the standing trial before it); over one step of the walk they carry 63 kg."""
 
 FORCES = {
     "bmc_walk_run/run.trc": "run_grf.mot",
