@@ -93,7 +93,7 @@ def placement_findings(mapper: Mapper, *, quick: bool) -> Findings:
     claim = Claim(
         "4.1.1, Figure 4.1",
         "Moving every marker to its mean measured place takes the RMS distance from 10 to 15 mm to about 5 mm.",
-        f"{before:.1f} mm before, {after:.1f} mm after, {len(found)} persons",
+        f"{before:.1f} mm before, {after:.1f} mm after, {len(found)} of {len(PERSONS)} persons",
         judged(
             BEFORE_MM[0] / TOLERANCE < before < BEFORE_MM[1] * TOLERANCE and after < AFTER_MM * TOLERANCE,
             after < 0.6 * before,

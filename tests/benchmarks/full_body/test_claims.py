@@ -9,6 +9,7 @@ from benchmarks.full_body.claims import survey_claims
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME, FDMC_PRINTED
 from benchmarks.full_body.survey import Survey
 from benchmarks.full_body.trials import JUMP, LOST
+from benchmarks.thesis_report.contents import CANNOT_BE_HAD
 from tests.benchmarks.full_body.conftest import made_survey
 
 
@@ -73,6 +74,12 @@ def test_the_jump_is_judged_against_the_better_of_the_others():
     assert band(found, "torque").value == pytest.approx(0.5 / 0.8)
     assert band(found, "torque").kept
     assert not band(made_survey({DYNAMIC: 0.7, FDMC: 0.8}), "torque").kept
+
+
+def test_one_trial_does_not_show_that_a_result_depends_on_the_case():
+    words = "depends on the case"
+    assert verdict(made_survey({}, persons=1, seeds=1), words) == CANNOT_BE_HAD
+    assert verdict(made_survey({}), words) != CANNOT_BE_HAD
 
 
 def test_the_knee_is_judged_against_fcdi():

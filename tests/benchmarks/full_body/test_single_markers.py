@@ -10,6 +10,7 @@ from benchmarks.dynamic.synthetic import Case
 from benchmarks.full_body import single_markers
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC_PRINTED
 from benchmarks.full_body.single_markers import Change, Sensitivities, Slide
+from benchmarks.thesis_report.contents import CANNOT_BE_HAD
 from mbkf.synthesis.person import body_of
 from mbkf.trial.synth import synthesise
 
@@ -113,6 +114,17 @@ def test_tables_and_verdict_follow_the_changes():
     # The thesis's filter is no more sensitive here; ours is, by one marker in the median of two.
     assert findings.claims[0].verdict == "does not hold"
     assert f"{DYNAMIC} (holds)" in findings.claims[0].measured
+
+
+def test_without_the_thesis_filter_its_claim_has_no_verdict():
+    found = sensitivities()
+    ours = replace(
+        found,
+        changes={
+            slide: {k: v for k, v in by.items() if k != FDMC_PRINTED} for slide, by in found.changes.items()
+        },
+    )
+    assert single_markers.single_marker_findings(ours).claims[0].verdict == CANNOT_BE_HAD
 
 
 def test_persons_are_pooled(monkeypatch, case):
