@@ -75,3 +75,14 @@ def test_a_value_is_reproduced_where_one_phase_gives_both_numbers():
     study = Study({(method, case): found for method in (PRINTED, KEY_POINTS, KALMAN) for case in CASES})
     verdicts = [claim.verdict for claim in case_findings(study, 1).claims[:4]]
     assert verdicts == ["reproduced", "differs", "differs", "differs"]
+
+
+@pytest.mark.parametrize(("larger", "verdict"), [(6, "differs"), (8, "reproduced")])
+def test_an_effect_shows_in_most_draws(larger, verdict):
+    errors = {
+        (method, case): np.ones((10, 10, 2)) for method in (PRINTED, KEY_POINTS, KALMAN) for case in CASES
+    }
+    errors[PRINTED, "noise"] = np.tile(np.where(np.arange(10) < larger, 2.0, 0.5)[:, None], (10, 1, 2))
+    claim = case_findings(Study(errors), 10).claims[4]
+    assert claim.statement.startswith("Noise raises")
+    assert claim.verdict == verdict
