@@ -41,7 +41,7 @@ class Check:
 
     @property
     def left_out(self) -> bool:
-        """Whether the row was not measured, and so neither keeps nor breaks a bound."""
+        """True for a row without a measurement, which neither keeps nor breaks a bound."""
         return bool(self.note)
 
     @property

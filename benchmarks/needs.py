@@ -31,7 +31,7 @@ EXTRAS: Mapping[str, str] = {
 
 @dataclass(frozen=True)
 class Needs:
-    """What a benchmark needs.
+    """Libraries and captures of a benchmark.
 
     Attributes:
         libraries: Modules without which it does not run.

@@ -155,7 +155,7 @@ class Survey:
 
 
 def keys(*, quick: bool = False) -> list[Key]:
-    """What has to be measured, the longest first so that two workers end together; one person and seed when quick."""
+    """Trials to measure, the longest first so that two workers end together; of one person and one seed if quick."""
     made = sorted((*MOVEMENTS, *VARIANTS), key=lambda name: -SYNTHESISED[MADE_FROM.get(name, name)][1])
     persons, seeds = (1, 1) if quick else (len(PERSONS), SEEDS)
     return [

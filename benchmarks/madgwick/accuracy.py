@@ -133,7 +133,7 @@ class Accuracy:
 
     @cached_property
     def with_worse_sensors(self) -> dict[str, float]:
-        """The same with all sensors' errors enlarged."""
+        """Error by filter of the persons shown with all sensors' errors enlarged, degrees; without the smoother."""
         return {
             name: pooled(scenes(SHOWN_ON, worse=True), one)
             for name, one in self.filters.items()

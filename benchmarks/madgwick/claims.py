@@ -252,8 +252,8 @@ def _tuning(found: Measured) -> list[Claim]:
             "First sweep (0.1 to 1): least mean difference 0.11546 at β 0.34, ζ 0.01.",
             f"walking thigh against a textbook EKF: least at β {first.beta:.2f}, ζ {first.zeta:.2f} "
             f"({first.error_deg:.1f}°), the lower edge; from 0.01 on at β {wide.beta:.2f} ({wide.error_deg:.1f}°). "
-            "The optimum shows how the other filter is set, not which β is right; (0.34, 0.01) is no point of that "
-            "sweep, either",
+            "The optimum depends on the settings of the other filter; it does not show the right β. The sweep does not "
+            "contain the point (0.34, 0.01)",
             redone(abs(first.beta - 0.34) < 0.05),
         ),
         Claim(
@@ -317,7 +317,7 @@ def _results(found: Measured) -> list[Claim]:
             "5.3.2 and 5.4",
             f"A mean difference of {MEAN_QW} is a comparable accuracy.",
             f"where one component differs by that, the two orientations are {least_angle_deg(MEAN_QW):.1f}° apart or "
-            "more; and a difference between two filters is no error of either",
+            "more. A difference between two filters is not the error of one of them",
             redone(least_angle_deg(MEAN_QW) < 5.0),
         ),
     ]

@@ -1,8 +1,8 @@
 """The source's second data base: a public set with magnetometers, here BROAD, whose truth was measured by cameras.
 
 The source took walks on nine surfaces (Luo et al., Sci. Data 7, 219, 2020), which are not among the captures at hand,
-and gave them up because the angles in them did not convince. BROAD is no human motion (a board moved by hand), but has
-true orientations, which were missing there.
+and gave them up because the angles in them did not convince. In BROAD a hand moves a
+board; cameras give its true orientations, which the source's set lacks.
 """
 
 from __future__ import annotations

@@ -102,7 +102,7 @@ REFUSED = (
 
 
 class Reach(NamedTuple):
-    """Whether a setting with all its values is reached by a preset file and by every command."""
+    """Ways that reach a setting with all its values: preset files, and every command."""
 
     by_preset: bool
     by_command: bool

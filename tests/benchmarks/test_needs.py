@@ -1,4 +1,4 @@
-"""What a benchmark needs is looked for before it starts, stated in one line, and had by the extra that is named."""
+"""Libraries and captures of a benchmark are looked for before it starts; one line names those that it lacks."""
 
 import ast
 import re

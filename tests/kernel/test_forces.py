@@ -5,25 +5,13 @@ import pytest
 
 from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.forces import exact_step, light_step
-from mbkf.kernel.loading import library
 from mbkf.numerics.forced_error import ForceDensity, ForcedRates, LightStep, forced_step
 from tests.motions import random_model
 
+pytestmark = pytest.mark.usefixtures("products")
+
 MODEL, NU, DT = random_model(np.random.default_rng(4)), 13, 0.01
 RANGES = joint_ranges(joint.v for joint in MODEL.joints.values())
-
-
-@pytest.fixture(params=[True, False], ids=["own vectors", "BLAS"], scope="module", autouse=True)
-def products(request):
-    """Matrices multiplied by instructions of the kernel's own, where the processor has them, and by BLAS."""
-    kernel = library()
-    if kernel is None:
-        pytest.skip("the kernel is not compiled here")
-    kernel.choose_products(request.param)
-    if request.param and not kernel.vector_bits():
-        pytest.skip("the processor has no 512-bit vectors")
-    yield
-    kernel.choose_products(True)
 
 
 def spread(rng, size):

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.kernel.loading import library
 from mbkf.kernel.smoothing import SparseBackwardPass
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.numerics.transition import DenseTransition, RateTransition
@@ -74,19 +73,6 @@ def assert_follows(frames, tolerance, covariances=True):
         if covariances:
             difference = worst(by_parts.curvature - by_matrices.curvature)
             assert difference <= tolerance * worst(by_matrices.curvature)
-
-
-@pytest.fixture(params=[True, False], ids=["own vectors", "BLAS"], scope="module")
-def products(request):
-    """Matrices multiplied by instructions of the kernel's own, where the processor has them, and by BLAS."""
-    kernel = library()
-    if kernel is None:
-        pytest.skip("the kernel is not compiled here")
-    kernel.choose_products(request.param)
-    if request.param and not kernel.vector_bits():
-        pytest.skip("the processor has no 512-bit vectors")
-    yield
-    kernel.choose_products(True)
 
 
 @pytest.mark.usefixtures("products")
