@@ -20,6 +20,7 @@ def reading_findings(found: Readings) -> Findings:
     all_four = found.near(0, 1, 2, 3)
     bands = [
         Band("readings", "readings of the text that were run", float(count), LEAST_READINGS, OPEN, "", False),
+        Band("readings", f"of these, four printed numbers given to {NEAR_M} m", float(all_four), -OPEN, 0.0, "", False),
         Band("readings", "the nearest reading's largest distance", float(found.distances_m.min()), NEAR_M, OPEN, "m",
              False),
     ]  # fmt: skip
