@@ -194,6 +194,22 @@ NEEDS: Mapping[str, Needs] = {
             "unipd_walk",
         )
     ),
+    "strangers": Needs(
+        captures=(
+            *_GAIT,
+            "bmc_walk_run",
+            "breaker",
+            "cgm24_lowerlimb_walk",
+            "flywheel_squat",
+            "fukuchi_run",
+            "functional_walk",
+            "judgement",
+            "opencap_s6_walk",
+            "stoop_lift_box",
+            "strangers3",
+            "synthetic_exact_truth",
+        )
+    ),
     "stride_paper": Needs(("matplotlib",), ("imu_gaitmap_foot",), synthetic=True),
     "verdict": Needs(
         captures=(

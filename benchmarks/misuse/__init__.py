@@ -9,14 +9,13 @@ from __future__ import annotations
 import ast
 import importlib
 import pkgutil
-import shutil
 import signal
 from collections.abc import Iterator
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from benchmarks.checks import Check, Context
-from mbkf.errors import UnknownName
+from benchmarks.parts import part_rows
 
 ENTRY_POINT = "rows"
 """A module or package of this folder that defines a function of this name is a part."""
@@ -28,22 +27,17 @@ def run(context: Context) -> list[Check]:
     Raises:
         UnknownName: A part of ``--only`` does not exist.
     """
-    known = parts()
     signal.signal(
         signal.SIGINT, signal.default_int_handler
     )  # a job in a shell's background is born ignoring it
-    for name in context.only:
-        if name not in known:
-            raise UnknownName("part", name, known, "--only")
-    checks = []
-    for name in context.only or known:
-        folder = context.out / name
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        module = importlib.import_module(f"{__name__}.{name}")
-        found = getattr(module, ENTRY_POINT)(replace(context, out=folder))
-        checks += [replace(check, name=f"{name}: {check.name}") for check in found]
-    return checks
+    return part_rows(context, {name: partial(_rows, name) for name in parts()})
+
+
+def _rows(name: str, context: Context) -> list[Check]:
+    """Rows of one part, which is imported when it runs."""
+    module = importlib.import_module(f"{__name__}.{name}")
+    found: list[Check] = getattr(module, ENTRY_POINT)(context)
+    return found
 
 
 def parts() -> tuple[str, ...]:

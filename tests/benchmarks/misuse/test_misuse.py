@@ -1,39 +1,17 @@
-"""Parts of the misuse benchmark are found, chosen by name, and fail the benchmark when a row fails."""
+"""Parts of the misuse benchmark are found, and heed an interruption."""
 
 import re
 import signal
 from pathlib import Path
 from types import SimpleNamespace
 
-import pytest
-
 from benchmarks import misuse
-from benchmarks.checks import Check, Context
-from mbkf.errors import UnknownName
+from benchmarks.checks import Context
 
 
 def test_parts_are_modules_with_rows():
     assert "files" in misuse.parts()
     assert "calls" not in misuse.parts()
-
-
-def test_an_unknown_part_is_refused_with_those_that_exist(tmp_path):
-    with pytest.raises(UnknownName, match="files"):
-        misuse.run(Context(None, tmp_path, only=("file",)))
-
-
-def test_a_part_gets_an_empty_folder_and_names_its_rows(tmp_path, monkeypatch):
-    (tmp_path / "files").mkdir()
-    (tmp_path / "files" / "old").write_text("x")
-
-    def rows(context):
-        assert list(context.out.iterdir()) == []
-        return [Check("lost", 1.0, 0.0, "<=")]
-
-    monkeypatch.setattr(misuse.importlib, "import_module", lambda name: SimpleNamespace(rows=rows))
-    (check,) = misuse.run(Context(None, tmp_path, only=("files",)))
-    assert check.name == "files: lost"
-    assert not check.passed
 
 
 def test_the_page_of_promises_names_parts_that_exist():

@@ -1,0 +1,26 @@
+"""Files, sensors and studies of strangers: small inputs and whole captures against their right answers.
+
+``python -m benchmarks strangers --only PART`` runs one part; ``--only`` may be repeated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from benchmarks.any_capture.plates import plate_rows
+from benchmarks.checks import Check, Context
+from benchmarks.parts import Part, part_rows
+
+PARTS: Mapping[str, Part] = {
+    "plates": lambda context: plate_rows(context.require_data()),
+}
+"""Rows by the part's name."""
+
+
+def run(context: Context) -> list[Check]:
+    """Rows of all parts, or of those of ``--only``.
+
+    Raises:
+        UnknownName: A part of ``--only`` does not exist.
+    """
+    return part_rows(context, PARTS)
