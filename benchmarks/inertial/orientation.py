@@ -21,7 +21,7 @@ from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.orientation_ekf import OrientationSettings
 from mbkf.imu.orientation_error import OrientationError, error_angles, orientation_error
 from mbkf.imu.placement import typical_mounts
-from mbkf.imu.tuning import searched_gains, static_gains, still_stretch
+from mbkf.imu.tuning import GainComparison, searched_gains, static_gains, still_stretch
 from mbkf.imu.virtual import virtual_imus
 from mbkf.io.imu.files import read_imu
 from mbkf.io.imu.readings import ImuReadings
@@ -133,7 +133,7 @@ def _tuning_rows(name: str, one: ImuReadings, moving: BoolArray) -> Iterator[Che
     yield Check(f"{name}, tuned at rest: beta", gains.beta, math.inf, "<=")
     static = OrientSettings("madgwick", madgwick=MadgwickSettings(gains.beta, gains.zeta))
     yield _shown(f"{name}, tuned at rest: total", _error(one, moving, static).total)
-    found = searched_gains(one, one.orientation, frame="ENU", counted=moving)
+    found = searched_gains(GainComparison(one, one.orientation, "ENU", moving))
     yield Check(f"{name}, searched: beta", found.settings.beta, math.inf, "<=")
     yield Check(f"{name}, searched: zeta", found.settings.zeta, math.inf, "<=")
     yield _shown(f"{name}, searched: total", found.error.total)

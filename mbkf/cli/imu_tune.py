@@ -26,7 +26,7 @@ from mbkf.cli.options import add_out, time_window
 if TYPE_CHECKING:
     from mbkf.conventions import Array, StageCallback
     from mbkf.imu.orientation import Orientation
-    from mbkf.imu.tuning import SearchedGains
+    from mbkf.imu.tuning import GainComparison, SearchedGains
     from mbkf.io.imu.readings import ImuReadings
 
 
@@ -198,7 +198,7 @@ def _searched(one: ImuReadings, args: argparse.Namespace) -> tuple[dict[str, Any
 
     from mbkf.cli.progress import stages
     from mbkf.errors import InvalidInput
-    from mbkf.imu.tuning import searched_gains, swept_gains
+    from mbkf.imu.tuning import GainComparison, searched_gains, swept_gains
 
     if args.figure is not None:
         from mbkf.viz.imu.gain_sweep import write_sweep
@@ -209,31 +209,25 @@ def _searched(one: ImuReadings, args: argparse.Namespace) -> tuple[dict[str, Any
             raise InvalidInput(
                 f"sensor {one.name}: its reference states no first orientation; leave --initial out"
             )
-        magnetic = _magnetic(one, args)
+        comparison = GainComparison(
+            one, reference, args.frame, magnetometer=_magnetic(one, args), start=start
+        )
 
         def progress(done: int, total: int) -> None:
             report("Search", done, total)
 
         if args.betas is None and args.zetas is None:
-            found = searched_gains(
-                one, reference, frame=args.frame, magnetometer=magnetic, start=start, progress=progress
-            )
+            found = searched_gains(comparison, progress)
         else:
-            betas, zetas = args.betas or SWEPT_BETAS, args.zetas or (0.0,)
-            found = swept_gains(
-                one, reference, betas, zetas, frame=args.frame, magnetometer=magnetic, start=start, progress=progress
-            )  # fmt: skip
+            found = swept_gains(comparison, args.betas or SWEPT_BETAS, args.zetas or (0.0,), progress)
         if args.figure is not None:
-            write_sweep(found, reference, _shown(one, found, start, args), args.figure)
+            write_sweep(found, reference, _shown(comparison, found), args.figure)
     return (*_reported(one, found, args.against), notes)
 
 
-def _shown(
-    one: ImuReadings, found: SearchedGains, start: Array | None, args: argparse.Namespace
-) -> list[tuple[str, Orientation]]:
+def _shown(comparison: GainComparison, found: SearchedGains) -> list[tuple[str, Orientation]]:
     """Courses of the best gains, and of the least and greatest β beside them."""
     from mbkf.imu.madgwick import MadgwickSettings
-    from mbkf.imu.orientation import OrientSettings, orientations
 
     best = found.settings
     betas = sorted({beta for beta, _, _ in found.trials})
@@ -241,13 +235,7 @@ def _shown(
         best,
         *(MadgwickSettings(beta, best.zeta) for beta in (betas[0], betas[-1]) if beta != best.beta),
     ]
-    courses = []
-    for gains in chosen:
-        settings = OrientSettings("madgwick", _magnetic(one, args), gains)
-        begin = None if start is None else start[None]
-        (course,) = orientations([one], frame=args.frame, settings=settings, start=begin)
-        courses.append((f"β {gains.beta:.3g}, ζ {gains.zeta:.3g}", course))
-    return courses
+    return [(f"β {gains.beta:.3g}, ζ {gains.zeta:.3g}", comparison.course(gains)) for gains in chosen]
 
 
 def _reported(one: ImuReadings, found: SearchedGains, against: str) -> tuple[dict[str, Any], str]:

@@ -202,10 +202,8 @@ class Filter(Generic[StateT]):
             memory: Of the frame before.
             frame: The readings.
         """
-        state, points, notes = prior.state, prior.points, Notes()
-        decided, statements = [], []
-        for block, at, kept in zip(self.blocks, points, memory.blocks, strict=True):
-            decided.append(block.decide(at, frame, kept, notes))
+        prior, decided, notes = self._decided(prior, memory, frame)
+        state, points, statements = prior.state, prior.points, []
         self.inflate(state.P, decided)
         for block, at, decision in zip(self.blocks, points, decided, strict=True):
             statements.append(block.linearise(at, decision))
@@ -236,6 +234,13 @@ class Filter(Generic[StateT]):
             Cached(remembered),
             Cached(lambda: self._spreads.innovations(memory.spreads, channels())),
         )
+
+    def _decided(
+        self, prior: Prior[StateT], memory: Memory, frame: Frame
+    ) -> tuple[Prior[StateT], list[Any], Notes]:
+        """The prior at which the frame's readings count, the decision of each block, and their notes."""
+        notes, blocks = Notes(), zip(self.blocks, prior.points, memory.blocks, strict=True)
+        return prior, [block.decide(at, frame, kept, notes) for block, at, kept in blocks], notes
 
     def inflate(self, P: Array, decided: Sequence[object]) -> None:
         """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""

@@ -18,7 +18,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import FRAMES, change_frame
 from mbkf.imu.madgwick import MadgwickSettings
-from mbkf.imu.orientation import OrientSettings, orientations
+from mbkf.imu.orientation import Orientation, OrientSettings, orientations
 from mbkf.imu.orientation_error import OrientationError, orientation_error
 from mbkf.io.imu.readings import ImuReadings
 
@@ -126,25 +126,55 @@ def static_gains(one: ImuReadings, first: int, last: int) -> StaticGains:
     )
 
 
-def searched_gains(
-    one: ImuReadings,
-    reference: Array,
-    *,
-    frame: str,
-    counted: BoolArray | None = None,
-    magnetometer: bool = True,
-    start: Array | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> SearchedGains:
-    """β (by Brent's method on its logarithm), then ζ, of least total error against a reference.
+@dataclass(frozen=True)
+class GainComparison:
+    """A sensor and the reference that its courses with different gains are compared with.
 
-    Args:
+    Attributes:
         one: Sensor.
         reference: (T, 4) orientations, NaN where unknown.
         frame: Its world: ENU, NED or NWU.
         counted: (T,) samples that count.
         magnetometer: Whether the field is used; without it headings are compared after one common turn.
         start: (4,) orientation at the first sample in ``frame``; by default that of a sensor at rest.
+    """
+
+    one: ImuReadings
+    reference: Array
+    frame: str
+    counted: BoolArray | None = None
+    magnetometer: bool = True
+    start: Array | None = None
+
+    def course(self, gains: MadgwickSettings) -> Orientation:
+        """The sensor's course with these gains."""
+        settings = OrientSettings("madgwick", self.magnetometer, gains)
+        start = None if self.start is None else self.start[None]
+        (course,) = orientations([self.one], frame=self.frame, settings=settings, start=start)
+        return course
+
+    def error(self, gains: MadgwickSettings) -> OrientationError:
+        """Error of that course.
+
+        Raises:
+            InvalidInput: Nothing to compare with.
+        """
+        q = self.course(gains).quaternion
+        error = orientation_error(
+            q if self.magnetometer else _turned(q, self.reference), self.reference, self.counted
+        )
+        if not error.samples:
+            raise InvalidInput(f"sensor {self.one.name}: the reference has no sample to compare with")
+        return error
+
+
+def searched_gains(
+    comparison: GainComparison, progress: Callable[[int, int], None] | None = None
+) -> SearchedGains:
+    """β (by Brent's method on its logarithm), then ζ, of least total error against a reference.
+
+    Args:
+        comparison: Sensor and reference.
         progress: Called with runs done and expected.
 
     Raises:
@@ -152,7 +182,7 @@ def searched_gains(
     """
     from scipy.optimize import minimize_scalar
 
-    runs = _Runs(one, reference, frame, counted, magnetometer, progress, 20 + len(ZETAS), start)
+    runs = _Runs(comparison, progress, 20 + len(ZETAS))
     low, high = np.log(BETA_RANGE)
     grid = np.exp(np.linspace(low, high, 8))
     best = int(np.argmin([runs.error(float(beta), 0.0) for beta in grid]))
@@ -168,28 +198,17 @@ def searched_gains(
 
 
 def swept_gains(
-    one: ImuReadings,
-    reference: Array,
+    comparison: GainComparison,
     betas: Sequence[float],
     zetas: Sequence[float],
-    *,
-    frame: str,
-    counted: BoolArray | None = None,
-    magnetometer: bool = True,
-    start: Array | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> SearchedGains:
     """The gains of least total error among all pairs of given ones, as the source swept them.
 
     Args:
-        one: Sensor.
-        reference: (T, 4) orientations, NaN where unknown.
+        comparison: Sensor and reference.
         betas: Gains β.
         zetas: Gains ζ.
-        frame: Its world: ENU, NED or NWU.
-        counted: (T,) samples that count.
-        magnetometer: Whether the field is used; without it headings are compared after one common turn.
-        start: (4,) orientation at the first sample in ``frame``; by default that of a sensor at rest.
         progress: Called with runs done and expected.
 
     Raises:
@@ -197,8 +216,7 @@ def swept_gains(
     """
     if not len(betas) or not len(zetas):
         raise InvalidInput("a sweep needs one beta and one zeta at least")
-    expected = len(betas) * len(zetas)
-    runs = _Runs(one, reference, frame, counted, magnetometer, progress, expected, start)
+    runs = _Runs(comparison, progress, len(betas) * len(zetas))
     for beta in betas:
         for zeta in zetas:
             runs.error(float(beta), float(zeta))
@@ -207,27 +225,16 @@ def swept_gains(
 
 @dataclass
 class _Runs:
-    """Runs of the filter with different gains, against one reference."""
+    """Runs of the filter with different gains."""
 
-    one: ImuReadings
-    reference: Array
-    frame: str
-    counted: BoolArray | None
-    magnetometer: bool
+    comparison: GainComparison
     progress: Callable[[int, int], None] | None
     expected: int
-    start: Array | None = None
     trials: dict[tuple[float, float], OrientationError] = field(default_factory=dict)
 
     def error(self, beta: float, zeta: float) -> float:
         """Total error with these gains, rad."""
-        settings = OrientSettings("madgwick", self.magnetometer, MadgwickSettings(beta, zeta))
-        start = None if self.start is None else self.start[None]
-        (course,) = orientations([self.one], frame=self.frame, settings=settings, start=start)
-        q = course.quaternion if self.magnetometer else _turned(course.quaternion, self.reference)
-        error = orientation_error(q, self.reference, self.counted)
-        if not error.samples:
-            raise InvalidInput(f"sensor {self.one.name}: the reference has no sample to compare with")
+        error = self.comparison.error(MadgwickSettings(beta, zeta))
         self.trials[beta, zeta] = error
         if self.progress is not None:
             self.progress(min(len(self.trials), self.expected), self.expected)

@@ -1,10 +1,19 @@
 """Gains from rest are the noise's; the search finds what follows the reference."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
-from mbkf.imu.tuning import reference_of, searched_gains, static_gains, still_stretch, swept_gains
+from mbkf.imu.tuning import (
+    GainComparison,
+    reference_of,
+    searched_gains,
+    static_gains,
+    still_stretch,
+    swept_gains,
+)
 from mbkf.io.imu.readings import ImuReadings
 from tests.imu.turning import RATE_HZ, turning
 
@@ -45,7 +54,7 @@ def test_the_search_beats_its_neighbours():
     made = turning(12.0, shake_mps2=2.0)
     gyro = made.gyro + np.random.default_rng(0).normal(0.0, 0.05, made.gyro.shape) + [0.03, -0.02, 0.02]
     one = made.readings(gyro=gyro)
-    found = searched_gains(one, made.truth, frame="NWU")
+    found = searched_gains(GainComparison(one, made.truth, "NWU"))
     best = min(error for _, _, error in found.trials)
     assert found.error.total == best
     assert 0.02 < found.settings.beta < 0.6
@@ -54,20 +63,21 @@ def test_the_search_beats_its_neighbours():
 
 def test_a_sweep_tries_every_pair_from_the_start_it_is_given():
     made = turning(3.0, shake_mps2=2.0)
-    one, askew = made.readings(), np.array([0.0, 1.0, 0.0, 0.0])
-    found = swept_gains(one, made.truth, (0.05, 0.4), (0.0, 0.02), frame="NWU")
+    compared = GainComparison(made.readings(), made.truth, "NWU")
+    askew = np.array([0.0, 1.0, 0.0, 0.0])
+    found = swept_gains(compared, (0.05, 0.4), (0.0, 0.02))
     assert [trial[:2] for trial in found.trials] == [(0.05, 0.0), (0.05, 0.02), (0.4, 0.0), (0.4, 0.02)]
     assert found.error.total == min(error for _, _, error in found.trials)
-    lost = swept_gains(one, made.truth, (0.05,), (0.0,), frame="NWU", start=askew)
+    lost = swept_gains(replace(compared, start=askew), (0.05,), (0.0,))
     assert lost.error.total > 5.0 * found.trials[0][2]
     with pytest.raises(InvalidInput, match="one beta"):
-        swept_gains(one, made.truth, (), (0.0,), frame="NWU")
+        swept_gains(compared, (), (0.0,))
 
 
 def test_a_reference_without_samples_is_refused():
     made = turning(2.0)
     with pytest.raises(InvalidInput, match="no sample"):
-        searched_gains(made.readings(), np.full_like(made.truth, np.nan), frame="NWU")
+        searched_gains(GainComparison(made.readings(), np.full_like(made.truth, np.nan), "NWU"))
 
 
 def test_the_files_orientation_is_the_reference_where_its_world_is_known():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -184,20 +184,16 @@ class TorqueFilter(Filter[ForcedState]):
         blocks = torque_blocks(sensor, noise_m, body, detector, dt_s, settings)
         return cls(sensor, noise_m, dt_s, body, settings, blocks)
 
-    def correct(self, prior: Prior[ForcedState], memory: Memory, frame: Frame) -> TorqueStep:
-        """Correction of a prior by one frame; given loads of the frame replace those of the frame before first.
-
-        Args:
-            prior: The prediction; its covariance is changed in place.
-            memory: Of the frame before.
-            frame: The readings.
-        """
+    def _decided(
+        self, prior: Prior[ForcedState], memory: Memory, frame: Frame
+    ) -> tuple[Prior[ForcedState], list[Any], Notes]:
+        """Decisions; given loads of the frame then replace those of the frame before."""
+        prior, decided, notes = super()._decided(prior, memory, frame)
         if self.body.loads_given:
-            kept = memory.blocks[self.blocks.index(self.plates)]
-            decision = self.plates.decide(OperatingPoint(prior.state, None), frame, kept, Notes())
-            state = replace(prior.state, given=self._given(decision.reading))
+            reading = decided[self.blocks.index(self.plates)].reading
+            state = replace(prior.state, given=self._given(reading))
             prior = prior._replace(state=state, points=[at._replace(state=state) for at in prior.points])
-        return super().correct(prior, memory, frame)
+        return prior, decided, notes
 
     def _given(self, feet: FootReading) -> Array:
         """(12,) wrenches of the feet where they are known inputs, else (0,)."""

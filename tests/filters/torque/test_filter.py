@@ -37,12 +37,13 @@ class Told:
     """A detector that is told each foot's wrench: a measured foot that carries nothing is in the air."""
 
     def __init__(self, measured):
-        self.measured = measured
+        self.measured, self.decided = measured, 0
 
     def begin(self):
         return ContactMemory((), (), float("nan"), (0.0, 0.0))
 
     def decide(self, memory, q, v, a, wrench):
+        self.decided += 1
         loaded = (wrench != 0.0).any(axis=1)
         kinds = [
             Contact.UNMEASURED if not known else Contact.MEASURED if on else Contact.AIR
@@ -167,6 +168,11 @@ def test_plates_as_inputs_are_followed_without_wrench_states(model, motions, nam
     assert_near(found, run.wrench, 1e-9)
     assert not any(state.foot_wrench_sd.any() for state in run.states)
     assert all(np.isfinite(state.tau_sd[run.filter.body.torque_dofs]).all() for state in run.states)
+
+
+def test_contact_is_decided_once_a_frame_with_plates_as_inputs(model, motions):
+    run = Run(model, motions["squat"], replace(preset("FDMC"), plates="inputs"), frames=4)
+    assert run.told.decided == 4
 
 
 @pytest.mark.parametrize("literal", [False, True])
