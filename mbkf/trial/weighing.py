@@ -69,7 +69,9 @@ def _weighed(subject: Subject, capture: Capture) -> Finding:
             except NotObservable:
                 return finding
             person = subject.in_neutral_posture()
-            inputs, recording = trial_inputs(markers, checked.plates, person, ReconstructSettings())
+            inputs, recording = trial_inputs(
+                markers, checked.plates, person, ReconstructSettings(), body_errors=False
+            )
             motion = markers_alone(inputs, recording)
             model, times = inputs.sensor.model, markers.times_s
             found = plate_checks(model, motion, times, markers.rate_hz, inputs.plates)

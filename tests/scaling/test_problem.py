@@ -1,6 +1,7 @@
 """The scaling problem: every derivative against finite differences of residuals written out here."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -101,13 +102,18 @@ def bend(model, q, segment):
 def body_of_frame(problem, state, t):
     """The body whose shoulders are where they are in the trial of frame t, and (M, 3) displacements on the trunk."""
     if not state.girdle_m.size:
-        return HumanModel(BODY, state.factors, 80.0), np.zeros((len(MARKERS), 3))
+        return body_of(tuple(state.factors), ()), np.zeros((len(MARKERS), 3))
     raised = state.girdle_m.reshape(-1, 2, 3)[TRIAL[t]]
-    moved = dict(zip(shoulder_names(BODY), raised.ravel(), strict=True))
+    body = body_of(tuple(state.factors), tuple(raised.ravel()))
+    return body, problem.shoulders.girdle.on_trunk @ raised
+
+
+@cache
+def body_of(factors, raised_m):
+    """The body of these factors; most differences vary poses and places alone."""
+    moved = dict(zip(shoulder_names(BODY), raised_m, strict=True)) if raised_m else {}
     centres = np.array([moved.get(name, 0.0) for name in centre_names(BODY)])
-    return HumanModel(
-        BODY, state.factors, 80.0, centres_m=centres
-    ), problem.shoulders.girdle.on_trunk @ raised
+    return HumanModel(BODY, np.array(factors), 80.0, centres_m=centres)
 
 
 def residuals(problem, state):

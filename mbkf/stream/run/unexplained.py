@@ -15,8 +15,7 @@ from mbkf.sensors.contact.records import Contact, KeptContact
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 from mbkf.stream.run.contacts import ContactList
 from mbkf.trial.live.filter import LiveInputs
-from mbkf.trial.loads.balance import CentreOfMass
-from mbkf.trial.loads.running import RunningBalance, RunningLoad, StrayLoad
+from mbkf.trial.loads.running import RunningLoad, RunningLoads
 
 MOST = 100
 """Number of loads that are listed."""
@@ -52,10 +51,9 @@ class LoadWatch:
         """
         inputs = live.inputs
         self._model, self._rate_hz, self._note = inputs.sensor.model, rate_hz, note
-        self._running = RunningBalance(self._model.mass_kg, rate_hz)
+        self._running = RunningLoads(self._model, rate_hz)
         self._feet = ContactDetector(self._model, inputs.plates, inputs.dt_s) if inputs.plates else None
         self._memory: KeptContact | None = None if self._feet is None else self._feet.begin()
-        self._stray, self._centre = StrayLoad(self._model.mass_kg, rate_hz), CentreOfMass(self._model)
         self.contacts = ContactList(tuple(self._model.description.bearings), note)
         self._first: int | None = None
         self._loads: list[_Stated] = []
@@ -73,16 +71,17 @@ class LoadWatch:
             self._first = ready.number
         found = row[0]
         if found["started"]:
-            self._running.cut()
-        contacts_n, judged = self._contacts(ready, row)
+            self._running.balance.cut()
+        on_feet_n, judged = self._on_feet(ready, row)
         self.read = judged
         time_s = (ready.number - self._first) / self._rate_hz
         if self.contacts.push(found["support"], time_s, ready.number):
-            self._running.explained()
+            self._running.balance.explained()
             if self._acts and self._loads:
                 self._loads[-1].explained = True
-        centre_m = self._centre.at(found["q"]) if found["known"] else np.full(3, np.nan)
-        load = self._running.push(centre_m, contacts_n, judged)
+        q = found["q"] if found["known"] else None
+        others_n = np.nan_to_num(found["support"][:, :3]).sum(axis=0)
+        load = self._running.push(q, on_feet_n, others_n, ready.plates, judged)
         self._listed(load, time_s, ready.number)
         return load
 
@@ -109,11 +108,11 @@ class LoadWatch:
             )
         return found
 
-    def _contacts(self, ready: ReadyFrame, row: NDArray) -> tuple[Array, bool]:
-        """(3,) sum of the forces of all contacts, and whether plates read every loaded foot."""
+    def _on_feet(self, ready: ReadyFrame, row: NDArray) -> tuple[Array | None, bool]:
+        """(3,) force on the feet, None where that is not known, and whether plates read every loaded foot."""
         found = row[0]
         if self._feet is None or not found["known"]:
-            return np.full(3, np.nan), False
+            return None, False
         if found["footing"][0] != UNASKED:
             on_feet_n, footing = found["wrench"][:, :3].sum(axis=0), tuple(found["footing"])
         else:
@@ -122,9 +121,7 @@ class LoadWatch:
             self._memory, footing = decision.memory, decision.contacts
             wrench = decision.wrench if decision.shared is None else decision.shared.wrench
             on_feet_n = wrench[:, :3].sum(axis=0)
-        judged = bool(found["tracked"]) and Contact.UNMEASURED not in footing
-        others_n = np.nan_to_num(found["support"][:, :3]).sum(axis=0)
-        return self._stray.counted(on_feet_n, ready.plates) + others_n, judged
+        return on_feet_n, bool(found["tracked"]) and Contact.UNMEASURED not in footing
 
     def _listed(self, load: RunningLoad, time_s: float, number: int) -> None:
         """Lists a load, and notes where it begins."""

@@ -150,4 +150,4 @@ def _inputs(
     shown = markers_as_scaled(capture.markers, subject)
     fixed = settings.correct_markers
     subject = correct_markers(subject, shown) if fixed else subject.in_neutral_posture()
-    return trial_inputs(shown, capture.plates, subject, settings)
+    return trial_inputs(shown, capture.plates, subject, settings, body_errors=False)

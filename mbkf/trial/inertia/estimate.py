@@ -158,7 +158,7 @@ def _rows(regressor: InertialRegressor, subject: Subject, capture: Capture) -> T
     checked = checked_for_subject(capture, subject)
     shown = markers_as_scaled(checked.markers, subject)
     subject = correct_markers(subject, shown)
-    inputs, recording = trial_inputs(shown, checked.plates, subject, ReconstructSettings())
+    inputs, recording = trial_inputs(shown, checked.plates, subject, ReconstructSettings(), body_errors=False)
     motion = markers_alone(inputs, recording)
     evidence = Evidence.of(inputs.sensor.model, motion, shown.times_s, shown.rate_hz, inputs.plates)
     return trial_rows(regressor, motion, evidence, evidence.clear)

@@ -110,7 +110,9 @@ def checks_of(logged: Logged, subject: Subject, settings: ReconstructSettings) -
     """
     shown = measured_of(logged, CHECKED_S)
     try:
-        inputs, recording = trial_inputs(shown, logged.stream.plates, subject.in_neutral_posture(), settings)
+        inputs, recording = trial_inputs(
+            shown, logged.stream.plates, subject.in_neutral_posture(), settings, body_errors=False
+        )
         alone = markers_alone(inputs, recording) if inputs.plates else None
         return (*trial_checks(shown, subject, inputs, recording, alone), unseen_finding())
     except (MbkfError, *NUMERICAL):  # the first frames of a run may show nobody, or nonsense

@@ -22,8 +22,8 @@ from mbkf.model.body import Body
 from mbkf.numerics.runs import runs
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.supports.search import LASTING_S, LASTING_SHARE, LEAST_SHARE, other_contacts
-from mbkf.trial.loads.balance import CentreOfMass, LoadBalance
-from mbkf.trial.loads.running import RunningBalance, RunningLoad, StrayLoad
+from mbkf.trial.loads.balance import LoadBalance
+from mbkf.trial.loads.running import RunningLoad, RunningLoads
 from mbkf.trial.loads.unexplained import unexplained_loads
 
 SEARCHED_S, SEARCHED_HZ = 1.5, 100.0
@@ -91,7 +91,7 @@ class ContactOpener:
             unobservable: (nv,) dofs that move no marker; None: markers show every dof.
         """
         self._model, self._rate_hz, self._floor_m, self._unobservable = model, rate_hz, floor_m, unobservable
-        self._weight_n, self._centre = model.mass_kg * GRAVITY_M_S2, CentreOfMass(model)
+        self._weight_n, self._running = model.mass_kg * GRAVITY_M_S2, RunningLoads(model, rate_hz)
         self._every = max(1, round(rate_hz / SEARCHED_HZ))
         self._kept: deque[_Kept] = deque(maxlen=self._frames(CAUSES_S))
         self._none = np.zeros(len(model.description.bearings), dtype=bool)
@@ -99,8 +99,7 @@ class ContactOpener:
 
     def forget(self) -> None:
         """Begins anew: the next frame follows none of those noted."""
-        self._running = RunningBalance(self._model.mass_kg, self._rate_hz)
-        self._stray = StrayLoad(self._model.mass_kg, self._rate_hz)
+        self._running.forget()
         self._load: RunningLoad | None = None
         self._kept.clear()
         self.flags, self._lighter = self._none, float("nan")
@@ -116,16 +115,16 @@ class ContactOpener:
     def _judge(self, one: Noted) -> None:
         """Judges a frame."""
         estimate, plates = one
-        feet_n = estimate.wrench[:, :3]
-        on_feet_n = self._stray.counted(feet_n.sum(axis=0), plates)
         support = np.zeros((1, 6)) if estimate.support is None else estimate.support
         others_n = support[:, :3].sum(axis=0)
         read = estimate.contact is not None and Contact.UNMEASURED not in estimate.contact
         judged = bool(read and estimate.tracked and np.isfinite(plates).all())
-        centre_m = self._centre.at(estimate.q)
-        self._load = self._running.push(centre_m, on_feet_n + others_n, judged)
-        whole = judged and not self._stray.reads
-        self._kept.append(_Kept(estimate.q, estimate.v, centre_m, estimate.wrench, others_n, whole))
+        on_feet_n = estimate.wrench[:, :3].sum(axis=0)
+        self._load = self._running.push(estimate.q, on_feet_n, others_n, plates, judged)
+        whole = judged and not self._running.strays
+        self._kept.append(
+            _Kept(estimate.q, estimate.v, self._running.centre_m, estimate.wrench, others_n, whole)
+        )
         self._unjudged = 0 if whole else self._unjudged + 1
         self._stated = self._stated + 1 if self._load.acts else 0
         self._open += 1
@@ -134,7 +133,7 @@ class ContactOpener:
         """Takes the latest frames anew, with estimates that know of the contact that has opened."""
         for _ in range(min(len(frames), len(self._kept))):
             self._kept.pop()
-        self._running.explained()
+        self._running.balance.explained()
         for one in frames:
             self._judge(one)
         self._open = 0
@@ -168,7 +167,7 @@ class ContactOpener:
 
     def _change(self, flags: BoolArray) -> None:
         """Opens contacts, or closes them."""
-        self._running.explained()
+        self._running.balance.explained()
         self._open = self._stated = 0
         self.flags = flags
 

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
-from mbkf.trial.loads.balance import BRIDGE_S, GRAVITY, LoadBalance, Window
+from mbkf.model.body import Body
+from mbkf.trial.loads.balance import BRIDGE_S, GRAVITY, CentreOfMass, LoadBalance, Window
 from mbkf.trial.loads.flags import LIMITS, READ_SHARE, Limit
 
 RUNNING_LIMITS = (*LIMITS, Limit(0.25, 0.16))
@@ -173,6 +174,46 @@ class RunningBalance:
         required = self._by_position @ held[:, :3] - GRAVITY
         missing_n = self._mass_kg * required - self._by_force @ held[:, 3:]
         return np.where(fits[:, None], missing_n, 0.0), fits
+
+
+class RunningLoads:
+    """Judges a motion with its contacts, one frame after another.
+
+    Attributes:
+        balance: Newton's law over the latest frames.
+        centre_m: (3,) centre of mass in the latest frame; NaN where the body is not tracked.
+    """
+
+    def __init__(self, model: Body, rate_hz: float) -> None:
+        """Args: the body, and the frame rate."""
+        self._mass_kg, self._rate_hz, self._centre = model.mass_kg, rate_hz, CentreOfMass(model)
+        self.forget()
+
+    def forget(self) -> None:
+        """Begins anew: the next frame follows none of those before."""
+        self.balance = RunningBalance(self._mass_kg, self._rate_hz)
+        self._stray, self.centre_m = StrayLoad(self._mass_kg, self._rate_hz), UNKNOWN_N
+
+    @property
+    def strays(self) -> bool:
+        """True where the latest frame counts the load of a plate on which a foot is not recognised yet."""
+        return self._stray.reads
+
+    def push(
+        self, q: Array | None, on_feet_n: Array | None, others_n: Array, plates: Array, judged: bool
+    ) -> RunningLoad:
+        """The next frame.
+
+        Args:
+            q: (nq,) configuration; None where the body is not tracked.
+            on_feet_n: (3,) force on the feet by the contacts that were decided; None where they were not.
+            others_n: (3,) force on other parts.
+            plates: (K, 6) wrenches that the plates read.
+            judged: Plates read every loaded foot.
+        """
+        self.centre_m = UNKNOWN_N if q is None else self._centre.at(q)
+        contacts_n = UNKNOWN_N if on_feet_n is None else self._stray.counted(on_feet_n, plates) + others_n
+        return self.balance.push(self.centre_m, contacts_n, judged)
 
 
 def stated_frames(balance: LoadBalance) -> BoolArray:

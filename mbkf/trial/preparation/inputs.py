@@ -50,7 +50,12 @@ class FilterSettings(Protocol):
 
 
 def trial_inputs(
-    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, settings: FilterSettings
+    shown: MarkerTrajectories,
+    plates: tuple[PlateReadings, ...],
+    subject: Subject,
+    settings: FilterSettings,
+    *,
+    body_errors: bool = True,
 ) -> tuple[FilterInputs, Recording]:
     """Body, markers and plates of a trial, and its readings; the plates without readings that this person cannot cause.
 
@@ -59,6 +64,7 @@ def trial_inputs(
         plates: The plates that are read.
         subject: The person, with marker positions as they are to be used.
         settings: Settings of the filters.
+        body_errors: False leaves errors by the body out, which the spreads of an estimate need and its mean does not.
     """
     model = HumanModel.of(subject)
     plates, remarks = cleaned(plates, subject.mass_kg)
@@ -80,7 +86,7 @@ def trial_inputs(
         spread_m=spread_m,
         remarks=remarks,
         names=shown.names,
-        body=_body_errors(sensor, noise_m, shown.names, subject, unobservable),
+        body=_body_errors(sensor, noise_m, shown.names, subject, unobservable) if body_errors else None,
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)

@@ -85,6 +85,8 @@ def test_a_marker_that_scaling_did_not_see_may_be_anywhere_its_session_allows():
         known = BodyCovariance(factors, names, 1e-9 * np.eye(len(factors) + 3 * len(names)))
         inputs, _ = trial_inputs(markers, plates, replace(subject, covariance=known), settings)
         found.append(np.linalg.norm(inputs.body.pose_root(q), axis=1))
+    person = replace(subject, covariance=known)
+    assert trial_inputs(markers, plates, person, settings, body_errors=False)[0].body is None
     more = np.sqrt(np.maximum(found[1] ** 2 - found[0] ** 2, 0.0))
     largest = dof_names(inputs.sensor.model)[int(more.argmax())]
     assert largest.startswith(("right_thigh", "right_shank", "right_foot")) and more.max() > 0.01
