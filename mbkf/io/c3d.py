@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 
-from mbkf.errors import FileFormatError
 from mbkf.io.axes import (
     WORLD_AXES,
     axes_text,
@@ -17,7 +15,7 @@ from mbkf.io.axes import (
     up_axis,
 )
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
-from mbkf.io.c3d_decode import C3dContent, decode
+from mbkf.io.c3d_decode import decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_person import stated_mass
@@ -40,7 +38,7 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     remark.
 
     Raises:
-        FileFormatError: The file is missing, no C3D file, or cut short.
+        FileFormatError: The file is missing, no C3D file, cut short, or states no frame rate.
         InvalidInput: The length unit cannot be right.
         UnknownName: Unknown axis or unit.
     """
@@ -48,13 +46,13 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     content = decode(path, check_layout(path))
     parameters = content.parameters
     mass_kg = stated_mass(parameters)
-    rate_hz = _rate(path, content)
+    rate_hz = single_precision(content.rate_hz)
     start_s = max(content.first_frame - 1, 0) / rate_hz
 
     notes = list(content.notes)
     stated = StatedUnit("POINT:UNITS", parameters.text("POINT", "UNITS"), "mm")
     unit = stated.of(path, options, notes)
-    raw = raw_plates(path, content, unit, options) if options.plates else []
+    raw = raw_plates(path, content, unit, options, notes) if options.plates else []
     if options.up is None:
         up, source = _up_axis(parameters, raw, notes)
     else:
@@ -69,13 +67,14 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
         str(path),
         needs_one=False,
     )
+    instants = events(content, notes)
     return Capture(
         path=str(path),
         markers=markers,
         plates=tuple(plates),
         derived=derived,
         analog=analog_channels(content),
-        events=events(content),
+        events=instants,
         up_axis=up,
         length_unit=unit,
         notes=tuple(notes),
@@ -84,13 +83,6 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
         axes_source=source,
         processing=parameters.single_numbers("PROCESSING"),
     )
-
-
-def _rate(path: Path, content: C3dContent) -> float:
-    rate_hz = content.parameters.number("POINT", "RATE") or content.rate_hz
-    if not (math.isfinite(rate_hz) and rate_hz > 0.0):
-        raise FileFormatError(path, f"POINT:RATE is {rate_hz:g}, not a frame rate; export the trial again")
-    return single_precision(rate_hz)
 
 
 def single_precision(value: float) -> float:

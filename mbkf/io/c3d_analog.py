@@ -19,6 +19,11 @@ from mbkf.io.readable_plates import NO_CHANNELS, readable_plates
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import require_finite
 
+_NO_ORIGIN = (
+    "the file lacks FORCE_PLATFORM:ORIGIN: moments of its plates are taken about the middle of their surfaces; compare "
+    "the centres of pressure with the feet, or give the readings with --forces"
+)
+
 _OFF_PLATE_M = 0.1
 _OFF_PLATE_SHARE = 0.5
 
@@ -26,9 +31,8 @@ _OFF_PLATE_SHARE = 0.5
 def analog_rate_hz(content: C3dContent) -> float:
     """Sample rate of the analog channels in Hz, from their number per frame."""
     frames, samples = len(content.points), content.analogs.shape[1]
-    rate_hz = content.parameters.number("POINT", "RATE") or content.rate_hz
     per_frame = samples / frames if frames else 0.0
-    return float(str(np.float32(rate_hz * per_frame)))
+    return float(str(np.float32(content.rate_hz * per_frame)))
 
 
 def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
@@ -49,7 +53,9 @@ def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
     )
 
 
-def raw_plates(path: Path, content: C3dContent, unit: str, options: CaptureOptions) -> list[RawPlate]:
+def raw_plates(
+    path: Path, content: C3dContent, unit: str, options: CaptureOptions, notes: list[str]
+) -> list[RawPlate]:
     """The force plates a file declares, checked but not yet converted; empty where the file has none.
 
     Args:
@@ -57,20 +63,39 @@ def raw_plates(path: Path, content: C3dContent, unit: str, options: CaptureOptio
         content: The decoded file.
         unit: The file's length unit.
         options: Plates to withhold; receives those that cannot be read, or to which no channel belongs.
+        notes: Receives remarks on missing parameters.
     """
     analog, parameters = content.analogs, content.parameters
-    channels = parameters.per_plate("CHANNEL", (-1,))
+    count = _plate_count(parameters, notes)
+    listed = parameters.numbers("FORCE_PLATFORM", "CHANNEL")
+    rows = len(listed) // count if listed.ndim == 1 and count else -1
+    channels = parameters.per_plate("CHANNEL", (rows,)) if listed.size else []
     wired = []
-    for i in range(int(parameters.number("FORCE_PLATFORM", "USED"))):
+    for i in range(count):
         indices = channels[i].astype(int) - 1 if i < len(channels) else np.zeros(0, dtype=int)
         indices = indices[indices >= 0]
         if analog.size and indices.size:
             wired.append((str(i + 1), (i, indices)))
         else:
             options.left_out[str(i + 1)] = NO_CHANNELS
-    return readable_plates(
+    found = readable_plates(
         wired, lambda one: _raw_plate(path, content, unit, *one), options, str(path), needs_one=False
     )
+    if found and not parameters.numbers("FORCE_PLATFORM", "ORIGIN").size:
+        notes.append(_NO_ORIGIN)
+    return found
+
+
+def _plate_count(parameters: C3dParameters, notes: list[str]) -> int:
+    """Number of plates: USED or, where that is missing or cannot be a number, as many as TYPE lists."""
+    used = parameters.numbers("FORCE_PLATFORM", "USED").ravel()
+    if used.size and used[0] >= 0.0:
+        return int(used[0])
+    listed = parameters.numbers("FORCE_PLATFORM", "TYPE").size
+    if listed:
+        found = f"{used[0]:g}" if used.size else "missing"
+        notes.append(f"FORCE_PLATFORM:USED is {found}; TYPE lists {listed} plates, which are read")
+    return listed
 
 
 def _raw_plate(path: Path, content: C3dContent, unit: str, i: int, indices: NDArray[np.int_]) -> RawPlate:
@@ -173,26 +198,37 @@ def _doubts(name: str, plate: PlateReadings, corners: Array) -> list[str]:
     return doubts
 
 
-def events(content: C3dContent) -> tuple[CaptureEvent, ...]:
-    """Labelled instants in order of time, from EVENT:TIMES (minutes and seconds), else from the header."""
+def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
+    """Labelled instants in order of time, from EVENT:TIMES (minutes and seconds), else from the header.
+
+    Args:
+        content: The decoded file.
+        notes: Receives a remark on events without a time.
+    """
     parameters = content.parameters
     times = _event_times(parameters)
     labels, contexts = parameters.texts("EVENT", "LABELS"), parameters.texts("EVENT", "CONTEXTS")
-    found = []
     if times.size and times.shape[0] == 2:
-        seconds = 60.0 * times[0] + times[1]
-        for i, time_s in enumerate(np.atleast_1d(seconds)):
-            label = labels[i] if i < len(labels) else ""
-            context = contexts[i] if i < len(contexts) else ""
-            found.append(CaptureEvent(label, context, round(float(time_s), 6)))
+        seconds = np.atleast_1d(60.0 * times[0] + times[1]).tolist()
+        more = [""] * len(seconds)
+        found = list(zip(labels + more, contexts + more, seconds, strict=False))
     else:
-        found = [CaptureEvent(label, "", round(time_s, 6)) for label, time_s in content.events]
-    return tuple(sorted(found, key=lambda event: event.time_s))
+        found = [(label, "", time_s) for label, time_s in content.events]
+        if times.size:
+            notes.append("EVENT:TIMES holds no minutes and seconds; its events are left out")
+    timed = [
+        CaptureEvent(label, context, round(at_s, 6)) for label, context, at_s in found if np.isfinite(at_s)
+    ]
+    if len(timed) < len(found):
+        notes.append(f"{len(found) - len(timed)} of {len(found)} events have no time and are left out")
+    return tuple(sorted(timed, key=lambda event: event.time_s))
 
 
 def _event_times(parameters: C3dParameters) -> Array:
     """(2, n) minutes and seconds of EVENT:TIMES and of its continuations; another shape is returned as it is."""
     times, number = parameters.numbers("EVENT", "TIMES"), 2
+    if times.ndim == 1 and times.size == 2 * parameters.number("EVENT", "USED"):
+        times = times.reshape(2, -1, order="F")
     while times.ndim == 2 and len(times) == 2:
         more = parameters.numbers("EVENT", f"TIMES{number}")
         if more.ndim != 2 or len(more) != 2:

@@ -20,6 +20,7 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout
 from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_rate import frame_rate
 from mbkf.io.c3d_records import ParameterRecord
 from mbkf.io.c3d_scaling import ANALOG_SCALING, scaled_samples
 from mbkf.io.files_read import opened
@@ -84,7 +85,7 @@ class C3dContent:
         points: (T, N, 3) points in the file's axes and unit.
         residuals: (T, N) negative where a point was not seen.
         analogs: (C, S) analog channels, scaled.
-        rate_hz: Frame rate of the header.
+        rate_hz: Frame rate.
         first_frame: Number of the first frame, counted from 1.
         events: Labels and times in s of the header's events.
         notes: What had to be settled about the layout.
@@ -116,27 +117,65 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         header = file.read(BLOCK_BYTES)
         file.seek((layout.data_block - 1) * BLOCK_BYTES)
         data = file.read(frames * width * layout.bytes_per_number)
+        rest = file.read()
     whole = layout.bytes_per_number == 2
     numbers = (processor.integers(data) if whole else processor.floats(data)).reshape(frames, width)
     corners = numbers[:, : 4 * layout.points].reshape(frames, layout.points, 4)
     if shape.guessed and not _moves_steadily(corners[:, :, :3]):
         present = f"{layout.frames} frames promised, {layout.frames_present} present"
         raise FileFormatError(path, f"cut short: {present}; copy or export it again")
-    scale = abs(parameters.number("POINT", "SCALE") or float(processor.floats(header[12:16])[0]))
+    scale = _point_scale(path, parameters, float(processor.floats(header[12:16])[0])) if whole else 1.0
+    rate_hz, doubts = _rate(path, parameters, float(processor.floats(header[20:24])[0]), shape)
     analogs, remarks = scaled_samples(numbers[:, 4 * layout.points :], shape.channels, parameters, whole)
     if len(analogs) and layout.section.may_lack("ANALOG", ANALOG_SCALING):
         analogs = np.zeros((0, 0))
         remarks = ("analog channels are left out: damage may have taken the parameters that scale them",)
     return C3dContent(
         parameters,
-        corners[:, :, :3] * scale if whole else corners[:, :, :3],
+        corners[:, :, :3] * scale,
         corners[:, :, 3],
         analogs,
-        float(processor.floats(header[20:24])[0]),
+        rate_hz,
         _first_frame(layout, parameters),
         _header_events(header, processor),
-        (*layout.notes, *shape.notes, *remarks, *([_NO_PLATES] if without_plates else [])),
+        (
+            *layout.notes,
+            *shape.notes,
+            *_unread(rest, width * layout.bytes_per_number),
+            *doubts,
+            *remarks,
+            *([_NO_PLATES] if without_plates else []),
+        ),
     )
+
+
+def _unread(rest: bytes, frame_bytes: int) -> Iterator[str]:
+    """A remark on bytes after the last frame, but for the zeros that fill a block."""
+    if len(rest) >= BLOCK_BYTES and rest.strip(b"\0"):
+        frames = len(rest) // frame_bytes if frame_bytes else 0
+        yield f"{len(rest)} bytes after the last frame are not read" + (
+            f" ({frames} frames)" if frames else ""
+        )
+
+
+def _point_scale(path: Path, parameters: C3dParameters, header: float) -> float:
+    """Length of one step of integer points: the scale that is positive, as for integers, else without its sign."""
+    scales = [
+        scale for scale in (parameters.number("POINT", "SCALE"), header) if scale and np.isfinite(scale)
+    ]
+    if not scales:
+        reason = "its points are integers, and neither POINT:SCALE nor the header states their size"
+        raise FileFormatError(path, f"{reason}; export it again")
+    return next((scale for scale in scales if scale > 0.0), abs(scales[0]))
+
+
+def _rate(
+    path: Path, parameters: C3dParameters, header_hz: float, shape: DataLayout
+) -> tuple[float, list[str]]:
+    """The frame rate in Hz, and remarks on it."""
+    samples = shape.analog_per_frame // shape.channels if shape.channels else 0
+    analog_hz = parameters.number("ANALOG", "RATE") / samples if samples else 0.0
+    return frame_rate(path, parameters.number("POINT", "RATE"), header_hz, analog_hz)
 
 
 def _moves_steadily(points: Array) -> bool:
@@ -213,14 +252,15 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
     """
     used = _count(parameters.number("ANALOG", "USED"))
     stated = used * _samples_per_frame(parameters)
-    header = (layout.analog_per_frame, layout.channels)
+    channels = used if stated == layout.analog_per_frame else layout.channels
+    header = (layout.analog_per_frame, channels)
     kinds = dict.fromkeys((header, (stated, used if stated else 0), (0, 0)))
     for frames in stated_frames(layout, parameters):
         fits = [kind for kind in kinds if _fits(layout, frames, kind[0])]
         if not layout.section.states("ANALOG", "USED") and header in fits:
             fits = [header]
-        if len(fits) == 1 or (fits and used == layout.channels):
-            return DataLayout(frames, *fits[0], tuple(_remarks(layout, frames, fits[0][0])))
+        if len(fits) == 1 or (fits and used == channels):
+            return DataLayout(frames, *fits[0], tuple(_remarks(layout, frames, *fits[0])))
     fewer = _one_fewer(layout, used, _samples_per_frame(parameters))
     if fewer is not None:
         return fewer
@@ -232,10 +272,10 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
         raise FileFormatError(path, f"{reason}, and no other entry states their number; export it again")
     if layout.frames <= 0:
         raise FileFormatError(path, "its header counts no frames; export the trial again")
-    if used != layout.channels:
+    if used != channels:
         reason = f"ANALOG:USED is {used}, the header counts {layout.channels}; export it again"
         raise FileFormatError(path, reason)
-    return DataLayout(layout.frames, layout.analog_per_frame, layout.channels)
+    return DataLayout(layout.frames, *header, tuple(_remarks(layout, layout.frames, *header)))
 
 
 def _one_fewer(layout: C3dLayout, used: int, samples: int) -> DataLayout | None:
@@ -259,7 +299,7 @@ def _one_fewer(layout: C3dLayout, used: int, samples: int) -> DataLayout | None:
     if layout.file_bytes % BLOCK_BYTES or layout.counts_no_further or len(possible) != 1:
         return None
     ((frames, per_frame),) = possible
-    remarks = tuple(_remarks(layout, frames, per_frame))
+    remarks = tuple(_remarks(layout, frames, per_frame, layout.channels))
     return DataLayout(frames, per_frame, ways[frames, per_frame], remarks, guessed=True)
 
 
@@ -293,11 +333,13 @@ def _first_frame(layout: C3dLayout, parameters: C3dParameters) -> int:
     )
 
 
-def _remarks(layout: C3dLayout, frames: int, per_frame: int) -> Iterator[str]:
+def _remarks(layout: C3dLayout, frames: int, per_frame: int, channels: int) -> Iterator[str]:
     if frames != layout.frames and not layout.counts_no_further:
         yield f"the header counts {layout.frames} frames, the file has {frames}"
     if per_frame != layout.analog_per_frame:
         yield f"the header counts {layout.analog_per_frame} analog numbers a frame, the file has {per_frame}"
+    elif channels != layout.channels:
+        yield f"the header counts {layout.channels} analog channels, the file has {channels}"
 
 
 def _count(number: float) -> int:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d_records import ParameterSection, first_integer, walk_parameters
+from mbkf.io.c3d_records import ParameterSection, walk_parameters
 from mbkf.io.files_read import check_input, opened
 
 BLOCK_BYTES = 512
@@ -19,7 +19,7 @@ BLOCK_BYTES = 512
 
 _KEY = 0x50
 _BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, MIPS
-_INTEL = 84
+_SIGN_BYTES = {84: 3, 85: 1, 86: 0}
 _MOST_NAMED = 4
 LAST_FRAME_OF_HEADER = 65535
 """The header's 16-bit words cannot count further; longer files count in TRIAL:ACTUAL_END_FIELD."""
@@ -93,34 +93,37 @@ def check_layout(path: Path) -> C3dLayout:
         start = (header[0] - 1) * BLOCK_BYTES
         file.seek(max(start, 0))
         parameters = file.read(4)
-    if len(header) < BLOCK_BYTES or start < BLOCK_BYTES or len(parameters) < 4:
+    if len(header) < BLOCK_BYTES:
         raise FileFormatError(path, f"cut short inside its header ({size} bytes); copy or export it again")
+    if start < BLOCK_BYTES:
+        reason = f"its header puts the parameters into block {header[0]}, which is no block after it"
+        raise FileFormatError(path, f"{reason}; export it again")
+    if len(parameters) < 4:
+        raise FileFormatError(
+            path, f"cut short before its parameters ({size} bytes); copy or export it again"
+        )
     if parameters[3] not in _BYTE_ORDERS:
         raise FileFormatError(path, f"not a C3D file (processor type {parameters[3]}); export it as C3D")
-    if size < start + parameters[2] * BLOCK_BYTES:
-        raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); export it again")
     layout = _layout(header, parameters[3], size)
+    ends = [start + parameters[2] * BLOCK_BYTES, (layout.data_block - 1) * BLOCK_BYTES]
+    if size < min(end for end in ends if end > start or end == ends[0]):
+        raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); export it again")
     if layout.frames <= 0 and not layout.bytes_per_frame:
         raise FileFormatError(path, "its header counts no frames; export the trial again")
     return _with_parameters(path, layout, start, parameters[2], _BYTE_ORDERS[parameters[3]])
 
 
 def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> C3dLayout:
-    """The layout with the parameters' records and the number of points on which they, header and size agree."""
+    """The layout on which header, parameters and the file's size agree, with the parameters' records."""
     end = max(start + blocks * BLOCK_BYTES, (layout.data_block - 1) * BLOCK_BYTES)
     with opened(path) as file:
         file.seek(start + 4)
         section = file.read(end - start - 4)
-    if layout.data_block * BLOCK_BYTES < start + BLOCK_BYTES:
-        raise FileFormatError(path, "its data begin before its parameters end; export it again")
     found = walk_parameters(section, order)
     notes = _damage(found)
-    used = [
-        first_integer(one, order)
-        for one in found.records
-        if one.name == "USED" and found.groups[one.group] == "POINT"
-    ]
-    stated = used[-1] if used else None
+    layout = _with_data_block(path, replace(layout, section=found), start + 4, blocks, order, notes)
+    stated = found.integer("POINT", "USED", order)
+    layout = _with_number_size(layout, layout.points if stated is None else stated, notes)
     if stated is not None and stated != layout.points:
         fitting = [count for count in (layout.points, stated) if _fills(replace(layout, points=count))]
         reason = f"POINT:USED is {stated}, the header counts {layout.points}"
@@ -133,7 +136,49 @@ def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, ord
         raise FileFormatError(path, f"its parameters are damaged ({reason}); export it again")
     elif stated is None:
         notes.append(f"POINT:USED is missing; the header counts {layout.points} points, which fill the file")
-    return replace(layout, section=found, notes=tuple(notes))
+    return replace(layout, notes=tuple(notes))
+
+
+def _with_data_block(
+    path: Path, layout: C3dLayout, start: int, blocks: int, order: str, notes: list[str]
+) -> C3dLayout:
+    """The layout with data that begin after the parameters: by the header, POINT:DATA_START or the section's length."""
+    least = -(-(start + layout.section.length) // BLOCK_BYTES) + 1
+    if layout.data_block >= least:
+        return layout
+    stated = layout.section.integer("POINT", "DATA_START", order) or 0
+    possible = [block for block in (stated, start // BLOCK_BYTES + blocks + 1) if block >= least]
+    reason = f"its header puts the data into block {layout.data_block}, before its parameters end"
+    if not possible:
+        raise FileFormatError(path, f"{reason}; export it again")
+    notes.append(f"{reason}; they are read from block {possible[0]} on")
+    return replace(layout, data_block=possible[0])
+
+
+def _with_number_size(layout: C3dLayout, stated: int, notes: list[str]) -> C3dLayout:
+    """The layout with the size of a number that fills the file, where the header's scale has another one's sign.
+
+    Half of a file of floats may be as long as one of integers, so that for these POINT:SCALE has to be positive, too.
+    """
+    counts, scales = {layout.points, stated}, layout.section.found("POINT", "SCALE")
+    other = replace(layout, bytes_per_number=6 - layout.bytes_per_number)
+
+    def fills(one: C3dLayout) -> bool:
+        return any(_fills(replace(one, points=count)) for count in counts)
+
+    positive = bool(scales) and not _is_negative(scales[-1].data, layout.processor)
+    if fills(layout) or not fills(other) or (other.bytes_per_number == 2 and not positive):
+        return layout
+    kinds = {2: "integers", 4: "floats"}
+    notes.append(
+        f"the header's scale is that of {kinds[layout.bytes_per_number]}; {kinds[other.bytes_per_number]} fill the file"
+    )
+    return other
+
+
+def _is_negative(number: bytes, processor: int) -> bool:
+    """Sign of a float: it stands in the last byte on Intel, in the second on DEC, in the first on MIPS."""
+    return len(number) >= 4 and bool(number[_SIGN_BYTES[processor]] & 0x80)
 
 
 def _fills(layout: C3dLayout) -> bool:
@@ -153,8 +198,6 @@ def _damage(section: ParameterSection) -> list[str]:
 def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
     order = _BYTE_ORDERS[processor]
     words = struct.unpack(f"{order}256H", header)
-    # The sign bit of the point scale stands in its second word on Intel, in its first on DEC and MIPS.
-    scale_word = words[7] if processor == _INTEL else words[6]
     first, last = words[3], words[4]
     return C3dLayout(
         points=words[1],
@@ -163,7 +206,7 @@ def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
         first_frame=first,
         frames=last - first + 1 if last >= first else 0,
         data_block=words[8],
-        bytes_per_number=4 if scale_word & 0x8000 else 2,
+        bytes_per_number=4 if _is_negative(header[12:16], processor) else 2,
         file_bytes=size,
         processor=processor,
     )

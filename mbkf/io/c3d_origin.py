@@ -42,7 +42,7 @@ def turned_by_depth(stored_m: Array, name: str, notes: list[str]) -> Array:
     if not stored_m[2] > 0.0:
         return stored_m
     notes.append(
-        f"{name}: ORIGIN puts its transducers {1e3 * depth_m:.1f} mm above the surface; "
+        f"{name}: ORIGIN puts its transducers {1e3 * depth_m:.3g} mm above the surface; "
         "it is taken with the opposite sign"
     )
     return -stored_m

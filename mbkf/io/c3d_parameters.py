@@ -60,7 +60,7 @@ class C3dParameters:
         return {name: float(v[0]) for name, v in found.items() if len(v) == 1 and np.isfinite(v[0])}
 
     def texts(self, group: str, name: str) -> list[str]:
-        """A parameter as texts without surrounding blanks, its continuations (NAME2, NAME3 …) appended."""
+        """A parameter as texts without surrounding blanks, its continuations (NAME2, NAME3 …) appended; no numbers."""
         found: list[str] = []
         members = self._groups.get(group.upper(), {})
         for number in range(1, CONTINUATIONS):
@@ -68,8 +68,8 @@ class C3dParameters:
             if key not in members:
                 break
             value = members[key]
-            words = [value] if isinstance(value, str) else list(np.ravel(np.asarray(value, dtype=object)))
-            found += [str(word).strip() for word in words]
+            words = [value] if isinstance(value, str) else np.ravel(np.asarray(value, dtype=object))
+            found += [word.strip() for word in words if isinstance(word, str)]
         return found
 
     def text(self, group: str, name: str) -> str:

@@ -97,7 +97,7 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
     needed = CHANNELS_OF_TYPE[plate.kind]
     if plate.readings.shape[1] != needed:
         found = plate.readings.shape[1]
-        raise FileFormatError(path, f"{name} of type {plate.kind} needs {needed} channels, it has {found}")
+        raise FileFormatError(path, f"{name} needs {needed} channels, it has {found} (type {plate.kind})")
     with np.errstate(over="ignore"):
         usable = has_area(plate.corners.T * METRES_PER_UNIT[unit])
     if not usable:

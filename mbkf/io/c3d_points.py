@@ -65,7 +65,10 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
         count: Number of points.
         notes: Receives the changes.
     """
-    labels = parameters.texts("POINT", "LABELS")[:count]
+    listed = parameters.texts("POINT", "LABELS")
+    labels, beyond = listed[:count], [label for label in listed[count:] if label]
+    if beyond:
+        notes.append(f"POINT:LABELS names {len(beyond)} points more than the {count} of the data; not used")
     if len(labels) < count:
         notes.append(f"{count - len(labels)} of {count} points have no label; named by their number")
     labels += [""] * (count - len(labels))

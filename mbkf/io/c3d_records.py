@@ -45,6 +45,7 @@ class ParameterSection:
         faults: One text for each damaged record.
         lost: Group, "" where there is none of that number, and name of each parameter that was left out.
         ended: False where the walk stopped at a damaged record, so that later ones are unknown.
+        length: Bytes up to the end of its last record.
     """
 
     groups: Mapping[int, str] = field(default_factory=dict)
@@ -52,10 +53,33 @@ class ParameterSection:
     faults: tuple[str, ...] = ()
     lost: tuple[tuple[str, str], ...] = ()
     ended: bool = True
+    length: int = 0
 
     def states(self, group: str, name: str) -> bool:
         """True where a sound record states a parameter."""
-        return any(one.name == name and self.groups[one.group] == group for one in self.records)
+        return bool(self.found(group, name))
+
+    def found(self, group: str, name: str) -> list[ParameterRecord]:
+        """The parameters of a name, several where groups share theirs; the last one holds.
+
+        Args:
+            group: Name of the group in capitals.
+            name: Name of the parameter in capitals.
+        """
+        return [one for one in self.records if one.name == name and self.groups[one.group] == group]
+
+    def integer(self, group: str, name: str, order: str) -> int | None:
+        """First value of an integer parameter, without a sign; None where it is missing or of another type.
+
+        Args:
+            group: Name of the group in capitals.
+            name: Name of the parameter in capitals.
+            order: Byte order, "<" or ">".
+        """
+        found = self.found(group, name)
+        if not found or found[-1].kind != 2 or len(found[-1].data) < 2:
+            return None
+        return int(struct.unpack_from(f"{order}H", found[-1].data)[0])
 
     def may_lack(self, group: str, names: Sequence[str]) -> bool:
         """True where damage may have taken one of the parameters of a group."""
@@ -104,14 +128,7 @@ def walk_parameters(section: bytes, order: str) -> ParameterSection:
         lost.append((number, name))
         del found[number, name]
     named = tuple((groups.get(number, ""), name) for number, name in lost)
-    return ParameterSection(groups, tuple(found.values()), tuple(faults), named, walk.ended)
-
-
-def first_integer(parameter: ParameterRecord, order: str) -> int | None:
-    """First value of an integer parameter, read as unsigned; None for another kind."""
-    if parameter.kind != 2 or len(parameter.data) < 2:
-        return None
-    return int(struct.unpack_from(f"{order}H", parameter.data)[0])
+    return ParameterSection(groups, tuple(found.values()), tuple(faults), named, walk.ended, walk.length)
 
 
 class _Walk:
@@ -120,11 +137,12 @@ class _Walk:
     Attributes:
         ended: False once the walk has stopped at a damaged record.
         at_last: True at a record that is stated to be the last.
+        length: Bytes up to the end of the last record.
     """
 
     def __init__(self, section: bytes, order: str, faults: list[str]) -> None:
         self._section, self._order, self._faults = section, order, faults
-        self.ended, self.at_last = True, False
+        self.ended, self.at_last, self.length = True, False, 0
 
     def __iter__(self) -> Iterator[tuple[int, str, bytes]]:
         section, at = self._section, 0
@@ -137,22 +155,62 @@ class _Walk:
                 self._stop(f"the record at byte {at} reaches beyond the section")
                 return
             name = _name(section[at + 2 : pointer])
-            (step,) = struct.unpack_from(f"{self._order}H", section, pointer)
-            following, self.at_last = pointer + step, not step
             if name is None:
                 self._faults.append(f"the name at byte {at} is not text")
-            if step in (1, 2) or following > len(section):
-                self._stop(f"the record {name or f'at byte {at}'} points beyond the section")
+            (step,) = struct.unpack_from(f"{self._order}H", section, pointer)
+            self.at_last = not step
+            own = pointer + 2 + _own_length(section[pointer + 2 :], number)
+            following = self._following(pointer, step, own, name or f"at byte {at}")
+            self.length = following or min(own, len(section))
             if name is not None:
-                last = not step or not self.ended
-                yield number, name, section[pointer + 2 : len(section) if last else following]
-            if not step or not self.ended:
+                yield number, name, section[pointer + 2 : following]
+            if following is None:
                 return
             at = following
+
+    def _following(self, pointer: int, step: int, own: int, name: str) -> int | None:
+        """Byte of the next record: as the record states or, where that is impossible, after its own data."""
+        if not step:
+            return None
+        following = pointer + step
+        stated = step > 1 and (self._begins(following) or self._ends(following))
+        if stated and (following >= own or not self._begins(own)):
+            return following
+        within = following <= len(self._section)
+        fault = f"the record {name} points {'at no record' if within else 'beyond the section'}"
+        if self._begins(own):
+            self._faults.append(f"{fault}; its own length leads to the next")
+            return own
+        if step > 1 and within:
+            return following
+        self._stop(fault)
+        return None
+
+    def _begins(self, at: int) -> bool:
+        """True for a byte at which a record with a name begins."""
+        left = self._section[at : at + 2]
+        if len(left) < 2 or not all(left):
+            return False
+        length = abs(struct.unpack_from("b", left)[0])
+        return _name(self._section[at + 2 : at + 2 + length]) is not None
+
+    def _ends(self, at: int) -> bool:
+        """True for a byte at which the section is over."""
+        left = self._section[at : at + 2]
+        return at <= len(self._section) and not (len(left) == 2 and all(left))
 
     def _stop(self, fault: str) -> None:
         self._faults.append(fault)
         self.ended = False
+
+
+def _own_length(body: bytes, number: int) -> int:
+    """Length of a body by its type, dimensions and description; that of a group (negative number) has only the last."""
+    data = 0
+    if number > 0:
+        kind, count = struct.unpack_from("bB", body) if len(body) > 1 else (0, 0)
+        data = 2 + count + _TYPES.get(kind, 0) * math.prod(body[2 : 2 + count])
+    return data + 1 + (body[data] if data < len(body) else 0)
 
 
 def _followed(body: bytes, record: ParameterRecord) -> bool:

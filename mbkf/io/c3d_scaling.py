@@ -46,7 +46,13 @@ def scaled_samples(
         gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)
         scaled: Array = (raw - offset[:, None]) * gain[:, None]
     remarks = [TAKEN_AS_UNSIGNED] if unsigned and not stated else []
-    missing = [f"ANALOG:{name}" for name in ANALOG_SCALING if not parameters.all_numbers("ANALOG", name).size]
+    counts = {name: parameters.all_numbers("ANALOG", name).size for name in ANALOG_SCALING}
+    missing = [f"ANALOG:{name}" for name, count in counts.items() if not count]
+    remarks += [
+        f"ANALOG:{name} holds {counts[name]} of {channels} channels; channels without are scaled with {default:g}"
+        for name, default in (("OFFSET", 0.0), ("SCALE", 1.0))
+        if 0 < counts[name] < channels
+    ]
     if missing:
         remarks.append(
             f"the file lacks {', '.join(missing)}: analog samples are scaled without; compare the plates with body "

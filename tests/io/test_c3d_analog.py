@@ -96,7 +96,7 @@ def test_several_plates_of_different_kinds(tmp_path):
         (Plate(2, channels(), corners=np.zeros((3, 4))), "CORNERS"),
         (Plate(2, channels(), corners=CORNERS_MM[:, [0, 0, 2, 3]]), "CORNERS"),
         (Plate(2, channels(), corners=CORNERS_MM[:, [0, 2, 1, 3]]), "CORNERS"),
-        (Plate(3, channels()), "type 3 needs 8 channels, it has 6"),
+        (Plate(3, channels()), "needs 8 channels, it has 6"),
         (Plate(3, np.zeros((1000, 8)), units=("N",) * 8), "places of its sensors"),
         (Plate(2, BROKEN), "1 of 1000 samples of force or moment are not numbers, the first at 0.420 s"),
         (Plate(4, channels(), units=("V",) * 6), "CAL_MATRIX"),
@@ -125,6 +125,38 @@ def test_plates_without_channels_or_with_absent_ones_are_left_out(tmp_path):
     assert "names channel 8, the file has 6" in beyond.left_out["1"]
 
 
+def renamed(path, name):
+    """The file without a parameter of FORCE_PLATFORM, whose name becomes another."""
+    content = path.read_bytes()
+    at = content.index(name, content.index(b"FORCE_PLATFORM"))
+    path.write_bytes(content[:at] + b"Q" + content[at + 1 :])
+    return path
+
+
+def test_a_missing_origin_is_reported(tmp_path):
+    sound = made(tmp_path / "a.c3d", Plate(2, channels()))
+    assert not any("ORIGIN" in note for note in read_c3d(sound, CaptureOptions()).notes)
+    capture = read_c3d(renamed(sound, b"ORIGIN"), CaptureOptions())
+    assert len(capture.plates) == 1 and any("lacks FORCE_PLATFORM:ORIGIN" in note for note in capture.notes)
+
+
+@pytest.mark.parametrize("used", [None, -1])
+def test_plates_that_are_not_counted_are_those_of_their_types(tmp_path, used):
+    extra = {} if used is None else {("FORCE_PLATFORM", "USED"): used}
+    path = made(tmp_path / "a.c3d", Plate(2, channels()), Plate(2, channels()), extra=extra)
+    path = renamed(path, b"USED") if used is None else path
+    capture = read_c3d(path, CaptureOptions())
+    assert len(capture.plates) == 2 and any("TYPE lists 2 plates" in note for note in capture.notes)
+
+
+def test_channels_in_one_row_are_shared_out_among_the_plates(tmp_path):
+    extra = {("FORCE_PLATFORM", "CHANNEL"): np.arange(1.0, 13.0)}
+    path = made(tmp_path / "a.c3d", Plate(2, 0.5 * channels()), Plate(2, channels()), extra=extra)
+    first, second = read_c3d(path, CaptureOptions()).plates
+    np.testing.assert_allclose(first.force_n[500], 0.5 * FORCE_N, rtol=1e-6)
+    np.testing.assert_allclose(second.force_n[500], FORCE_N, rtol=1e-6)
+
+
 def test_doubtful_plates_are_remarked(tmp_path):
     pulling = read_c3d(made(tmp_path / "a.c3d", Plate(2, -channels())), CaptureOptions())
     assert any("pulls the body down" in note for note in pulling.notes)
@@ -144,3 +176,22 @@ def test_events_are_in_order_with_minutes_added(tmp_path):
     events = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions()).events
     found = [(event.time_s, event.context, event.label) for event in events]
     assert found == [(3.25, "Right", "Foot Strike"), (62.5, "Left", "Foot Off")]
+
+
+@pytest.mark.parametrize(
+    ("times", "used", "found", "remark"),
+    [
+        (np.array([0.0, 3.25, 1.0, 2.5]), 2, [3.25, 62.5], ""),
+        (np.array([3.25, 2.5, 1.0]), 2, [], "no minutes and seconds"),
+        (np.array([[0.0, 1.0], [3.25, np.nan]]), 2, [3.25], "1 of 2 events have no time"),
+    ],
+)
+def test_events_without_a_time_are_left_out_and_reported(tmp_path, times, used, found, remark):
+    extra = {("EVENT", "USED"): used, ("EVENT", "LABELS"): ["A", "B"], ("EVENT", "TIMES"): times}
+    capture = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions())
+    assert [event.time_s for event in capture.events] == found
+    assert (
+        any(remark in note for note in capture.notes)
+        if remark
+        else not any("event" in n for n in capture.notes)
+    )

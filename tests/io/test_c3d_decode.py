@@ -110,6 +110,31 @@ def test_a_file_that_lacks_more_than_a_frame_is_refused(tmp_path, blocks):
         decoded(tmp_path / "x.c3d", c3d_bytes(MANY, SAMPLES)[: -512 * blocks])
 
 
+@pytest.mark.parametrize(
+    ("stated", "header"), [(-1.0, 0.1), (0.0, 0.1), (0.1, 0.0), (np.nan, 0.1), (-0.1, 0.0)]
+)
+def test_integer_points_take_the_scale_that_can_be_one(tmp_path, stated, header):
+    content = bytearray(c3d_bytes(POINTS, scale=0.1, extra=((1, "SCALE", 4, (), floats([stated], INTEL)),)))
+    content[12:16] = floats([header], INTEL)
+    np.testing.assert_allclose(decoded(tmp_path / "x.c3d", content).points, POINTS, atol=1e-3)
+
+
+def test_integer_points_without_a_scale_are_refused(tmp_path):
+    content = bytearray(c3d_bytes(POINTS, scale=0.1, extra=((1, "SCALE", 4, (), floats([0.0], INTEL)),)))
+    content[12:16] = bytes(4)
+    with pytest.raises(MbkfError, match="neither POINT:SCALE nor the header"):
+        decoded(tmp_path / "x.c3d", content)
+
+
+@pytest.mark.parametrize(
+    ("added", "remark"), [(bytes(2048), ""), (b"made by X", ""), (b"x" * 600, "bytes after the last frame")]
+)
+def test_bytes_after_the_last_frame_are_reported(tmp_path, added, remark):
+    content = c3d_bytes(MANY, SAMPLES)
+    unread = [note for note in decoded(tmp_path / "x.c3d", content + added).notes if "not read" in note]
+    assert (remark in unread[0]) if remark else not unread
+
+
 LONG = 66000
 
 

@@ -7,9 +7,11 @@ import pytest
 
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d import read_c3d
+from mbkf.io.c3d_decode import decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
+from tests.io.c3d_bytes import DEC, INTEL, MIPS, c3d_bytes, floats
 
 
 @pytest.fixture(scope="module")
@@ -77,14 +79,66 @@ def test_size_of_a_number_follows_the_sign_of_the_scale(tmp_path, processor, ord
     assert check_layout(path).bytes_per_number == size
 
 
-@pytest.mark.parametrize("word", [2, 9])
-def test_header_and_parameters_must_agree(whole, tmp_path, word):
+def odd(whole, tmp_path, index, value):
+    """The file with another 16-bit word in its header, by the byte at which it stands."""
     content = bytearray(whole)
-    struct.pack_into("<H", content, 2 * word, 5)
+    struct.pack_into("<H", content, index, value)
     path = tmp_path / "odd.c3d"
     path.write_bytes(content)
+    return path
+
+
+def test_header_and_parameters_must_agree(whole, tmp_path):
     with pytest.raises(FileFormatError, match="header counts"):
+        read_c3d(odd(whole, tmp_path, 4, 5), CaptureOptions())
+
+
+@pytest.mark.parametrize("samples", [0, 1, 5])
+def test_channels_are_those_that_parameters_and_rates_make(whole, tmp_path, samples):
+    capture = read_c3d(odd(whole, tmp_path, 18, samples), CaptureOptions())
+    assert len(capture.analog) == 6 and capture.analog[0].rate_hz == 1000.0
+    assert any("analog channels, the file has 6" in note for note in capture.notes)
+
+
+@pytest.mark.parametrize("block", [0, 1, 2, 3])
+def test_data_that_would_begin_before_the_parameters_end_begin_after_them(whole, tmp_path, block):
+    layout = check_layout(odd(whole, tmp_path, 16, block))
+    assert layout.data_block == check_start(whole)
+    assert any(f"the data into block {block}" in note for note in layout.notes)
+
+
+@pytest.mark.parametrize("blocks", [0, 1, 255])
+def test_a_section_counted_wrong_ends_where_the_data_begin(whole, tmp_path, blocks):
+    path = tmp_path / "odd.c3d"
+    path.write_bytes(whole[:514] + bytes([blocks]) + whole[515:])
+    assert check_layout(path).section.records == check_layout_of(whole, tmp_path).section.records
+
+
+def check_layout_of(content, tmp_path):
+    path = tmp_path / "sound.c3d"
+    path.write_bytes(content)
+    return check_layout(path)
+
+
+@pytest.mark.parametrize("block", [0, 1])
+def test_parameters_cannot_stand_in_the_header(whole, tmp_path, block):
+    path = tmp_path / "odd.c3d"
+    path.write_bytes(bytes([block]) + whole[1:])
+    with pytest.raises(FileFormatError, match=f"the parameters into block {block}"):
         read_c3d(path, CaptureOptions())
+
+
+@pytest.mark.parametrize("processor", [INTEL, DEC, MIPS])
+@pytest.mark.parametrize(("stored", "stated"), [(None, 0.1), (0.1, -1.0)])
+def test_a_scale_of_the_wrong_sign_is_overruled_by_the_size_of_the_file(tmp_path, processor, stored, stated):
+    points = np.round(standing_points(40, 9), 1)
+    content = bytearray(c3d_bytes(points, scale=stored, processor=processor))
+    content[12:16] = floats([stated], processor)
+    path = tmp_path / "odd.c3d"
+    path.write_bytes(content)
+    content = decode(path, check_layout(path))
+    np.testing.assert_allclose(content.points, points, rtol=1e-5)
+    assert any("fill the file" in note for note in content.notes)
 
 
 def test_random_bytes_in_the_parameters_are_harmless_or_refused(whole, tmp_path):

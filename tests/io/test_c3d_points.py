@@ -19,6 +19,9 @@ from tests.io.c3d_builder import build_c3d, standing_points
         (["A", "A", "A"], ["A", "A_2", "A_3"], 1),
         (["A", "A_2", "A"], ["A", "A_2", "A_3"], 1),
         (["", "*1", ""], ["*0", "*1", "*2"], 0),
+        (["A", "B", "C", "", ""], ["A", "B", "C"], 0),
+        (["A", "B", "C", "D", ""], ["A", "B", "C"], 1),
+        (np.ones(3), ["*0", "*1", "*2"], 1),
     ],
 )
 def test_labels(stored, expected, remarks):

@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from mbkf.io.c3d_records import first_integer, walk_parameters
+from mbkf.io.c3d_records import walk_parameters
 
 
 def group(number: int, name: str, order: str = "<") -> bytes:
@@ -29,8 +29,8 @@ def test_records_are_found_in_order(order):
     assert [(item.name, item.kind, item.dimensions, item.data[:6]) for item in found[1:]] == [
         ("LABELS", -1, (3, 2), b"abcdef")
     ]
-    assert first_integer(found[0], order) == 41000
-    assert first_integer(found[1], order) is None
+    assert walked.integer("POINT", "USED", order) == 41000
+    assert walked.integer("POINT", "LABELS", order) is None
 
 
 def test_the_last_record_may_end_without_a_distance():
@@ -84,6 +84,28 @@ def test_a_record_that_points_beyond_the_section_is_its_last():
     assert [one.name for one in found.records] == ["A", "B"] and not found.ended
     assert found.faults == ("the record B points beyond the section",)
     assert found.may_lack("G", ("A", "C")) and not found.may_lack("G", ("A", "B"))
+
+
+@pytest.mark.parametrize(
+    ("step", "fault"), [(9000, "beyond the section"), (1, "at no record"), (5, "at no record")]
+)
+def test_a_record_that_points_elsewhere_is_followed_by_its_own_length(step, fault):
+    odd = bytearray(parameter(1, "B", 1, (), b"\x06"))
+    struct.pack_into("<H", odd, 3, step)
+    found = walk_parameters(SOUND + bytes(odd) + parameter(1, "C", 1, (), b"\x07") + bytes(9), "<")
+    assert [(one.name, one.data[:1]) for one in found.records] == [
+        ("A", b"\x05"),
+        ("B", b"\x06"),
+        ("C", b"\x07"),
+    ]
+    assert found.faults == (f"the record B points {fault}; its own length leads to the next",)
+    assert found.ended and not found.may_lack("G", ("X",)) and found.length == len(SOUND) + 2 * len(odd)
+
+
+def test_room_after_a_record_is_passed_over():
+    roomy = struct.pack("<bb1sHbBBB", 1, 1, b"B", 8, 1, 0, 6, 0) + b"\x02\x01"
+    found = walk_parameters(SOUND + roomy + parameter(1, "C", 1, (), b"\x07"), "<")
+    assert [one.name for one in found.records] == ["A", "B", "C"] and not found.faults
 
 
 def test_after_damage_no_record_replaces_one_that_came_before():

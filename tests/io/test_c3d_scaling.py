@@ -8,7 +8,7 @@ from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_scaling import TAKEN_AS_UNSIGNED
 from mbkf.io.capture import read_capture
 from tests.io.c3d_builder import standing_points
-from tests.io.c3d_bytes import c3d_bytes
+from tests.io.c3d_bytes import INTEL, c3d_bytes, floats, integers
 
 POINTS = standing_points(12, 5)
 ANALOGS = np.round(np.random.default_rng(0).normal(0.0, 50.0, (12, 3, 2)))
@@ -43,6 +43,19 @@ def test_a_missing_scale_or_offset_is_reported(tmp_path, name):
     path.write_bytes(content[: at + 2] + b"Q" + content[at + 3 :])
     notes = decode(path, check_layout(path)).notes
     assert [note for note in notes if f"lacks ANALOG:{name.decode()}: " in note]
+
+
+@pytest.mark.parametrize(("name", "default"), [("OFFSET", 0), ("SCALE", 1)])
+def test_channels_beyond_a_short_list_are_reported(tmp_path, name, default):
+    body = (2, (1,), integers([7], INTEL)) if name == "OFFSET" else (4, (1,), floats([2.0], INTEL))
+    path = tmp_path / "x.c3d"
+    path.write_bytes(c3d_bytes(POINTS, ANALOGS, extra=((2, name, *body),)))
+    found = decode(path, check_layout(path))
+    first, second = ANALOGS.reshape(-1, 2).T
+    np.testing.assert_allclose(found.analogs[0], first - 7 if name == "OFFSET" else 2.0 * first, atol=1e-3)
+    np.testing.assert_allclose(found.analogs[1], second, atol=1e-3)
+    remark = f"ANALOG:{name} holds 1 of 2 channels; channels without are scaled with {default}"
+    assert remark in found.notes
 
 
 @pytest.mark.parametrize("name", ["signed_real", "unsigned16_real", "unsigned16_integer"])

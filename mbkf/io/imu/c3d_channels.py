@@ -31,9 +31,8 @@ def read_c3d_sensors(path: Path, units: Mapping[str, str] | None = None) -> tupl
     channels = analog_channels(content)
     if not channels:
         raise FileFormatError(path, "no analog channels; export those of the inertial sensors, too")
-    frame_rate = content.parameters.number("POINT", "RATE") or content.rate_hz
     rate_hz = channels[0].rate_hz
-    times = max(content.first_frame - 1, 0) / frame_rate + np.arange(len(channels[0].values)) / rate_hz
+    times = max(content.first_frame - 1, 0) / content.rate_hz + np.arange(len(channels[0].values)) / rate_hz
     signals = channel_signals(
         path, [Channel(one.name, one.unit, one.values) for one in channels], times, units=units
     )
