@@ -199,6 +199,7 @@ NEEDS: Mapping[str, Needs] = {
             *_GAIT,
             "bmc_walk_run",
             "breaker",
+            "c3d_encodings",
             "cgm24_lowerlimb_walk",
             "flywheel_squat",
             "fukuchi_run",
@@ -208,6 +209,7 @@ NEEDS: Mapping[str, Needs] = {
             "stoop_lift_box",
             "strangers3",
             "synthetic_exact_truth",
+            "unipd_walk",
         )
     ),
     "stride_paper": Needs(("matplotlib",), ("imu_gaitmap_foot",), synthetic=True),

@@ -96,7 +96,12 @@ class C3dParts:
         return bytes(self.header).ljust((self.start - 1) * BLOCK, b"\0") + section + self.data
 
     def word(self, index: int, value: int | None = None) -> int:
-        """A 16-bit word of the header by its index from 0, changed where a value is given."""
+        """A 16-bit word of the header, changed where a value is given.
+
+        Args:
+            index: Its index from 0.
+            value: Its new value.
+        """
         if value is not None:
             struct.pack_into("<H", self.header, 2 * index, value % 65536)
         return int(struct.unpack_from("<H", self.header, 2 * index)[0])
@@ -116,7 +121,13 @@ class C3dParts:
         return next(one for one in self.records if one.number == number and one.name == name.encode())
 
     def put(self, group: str, name: str, body: bytes) -> None:
-        """Gives a parameter another body, or adds it."""
+        """Gives a parameter another body, or adds it.
+
+        Args:
+            group: Name of its group.
+            name: Its name.
+            body: Type, dimensions, data and description.
+        """
         if self.has(group, name):
             self.record(group, name).body = body
         else:

@@ -51,7 +51,13 @@ class OddC3d:
 
 
 def put(group: str, name: str, body: bytes) -> Edit:
-    """Gives a parameter another body, or adds it."""
+    """Gives a parameter another body, or adds it.
+
+    Args:
+        group: Name of its group.
+        name: Its name.
+        body: Type, dimensions, data and description.
+    """
     return lambda parts: parts.put(group, name, body)
 
 

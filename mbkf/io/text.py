@@ -22,6 +22,10 @@ COMMENT = "#"
 """Begins a line that people add to a table."""
 
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
+_LEAST_WHOLE = 3
+"""Numbers without a comma in a row whose commas may be those of thousands: frame, time, and a coordinate."""
+
 _UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 
 
@@ -88,7 +92,7 @@ def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
         line: Number of the line, from 1.
 
     Raises:
-        FileFormatError: A cell is not a number; names the line.
+        FileFormatError: A cell is not a number, or commas may be those of thousands; names the line.
     """
     try:
         return [float(cell) if cell.strip() else math.nan for cell in cells]
@@ -96,8 +100,18 @@ def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
         if any("," in cell for cell in cells) and not any("." in cell for cell in cells):
             with_points = [_with_point(cell) for cell in cells]
             if not any("," in cell for cell in with_points):
+                _check_thousands(cells, path, line)
                 return numbers(with_points, path, line)
         raise FileFormatError(path, f"not a number ({error}); correct or blank it", line) from error
+
+
+def _check_thousands(cells: Sequence[str], path: Path, line: int) -> None:
+    """Refuses a row of whole numbers some of which have a comma before their last three digits: "1,234" beside "567"."""
+    stripped = [cell.strip() for cell in cells if cell.strip()]
+    commas = [cell for cell in stripped if "," in cell]
+    if len(stripped) - len(commas) >= _LEAST_WHOLE and all(_THOUSANDS.fullmatch(cell) for cell in commas):
+        reason = f"'{commas[0]}' beside whole numbers may be a thousand or a decimal"
+        raise FileFormatError(path, f"{reason}; export the file without commas for thousands", line)
 
 
 def _with_point(cell: str) -> str:

@@ -57,9 +57,9 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
         FileFormatError: The file or its side file is missing or not a valid body description.
     """
     path = Path(body)
-    if path.suffix == ".urdf":
+    if path.suffix.lower() == ".urdf":
         return parse_body(urdf_body_text(path), f"{path} with {side_path(path).name}")
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         try:
             text = plain_text(path)
         except (OSError, ValueError) as error:

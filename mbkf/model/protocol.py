@@ -122,7 +122,7 @@ def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Prot
         FileFormatError: The file is not a valid protocol.
     """
     path = Path(name)
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         return _parse(path, body)
     return _shipped(str(name)) if body is None else _parse(_shipped_file(str(name)), body)
 
@@ -201,7 +201,7 @@ def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
 def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
     """The body a protocol was written for; the path of a file is relative to the protocol's folder."""
     name = str(table.get("body", "human18"))
-    return load_body(path.parent / name if name.endswith((".toml", ".urdf")) else name)
+    return load_body(path.parent / name if name.lower().endswith((".toml", ".urdf")) else name)
 
 
 def _markers(

@@ -48,6 +48,19 @@ def test_commas_are_decimal_in_a_row_without_points(tmp_path):
             numbers(cells, tmp_path, 3)
 
 
+@pytest.mark.parametrize("cells", [["1", "0", "1,234", "567", "-8,901"], ["1", "0", "999", "", "1,234"]])
+def test_commas_of_thousands_in_a_row_of_whole_numbers_are_no_decimals(tmp_path, cells):
+    with pytest.raises(FileFormatError, match="line 4: '1,234' beside whole numbers may be a thousand"):
+        numbers(cells, tmp_path, 4)
+
+
+@pytest.mark.parametrize(
+    "cells", [["101", "1", "123,456", "789,012"], ["1", "2", "3", "0,123"], ["1", "2", "3", "1,23"]]
+)
+def test_commas_that_can_only_be_decimal_stay_decimal(tmp_path, cells):
+    assert numbers(cells, tmp_path, 4) == [float(cell.replace(",", ".")) for cell in cells]
+
+
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(FileFormatError, match="no such file; name a TRC file"):
         read_text(tmp_path / "none", "a TRC file")

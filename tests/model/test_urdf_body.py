@@ -24,6 +24,13 @@ def test_roles_soles_and_defaults(tmp_path):
     assert HumanModel.scaled({"size": 1.1}, 40.0, body).nv == 12
 
 
+def test_a_suffix_in_capitals_is_the_same(tmp_path):
+    path = written(tmp_path, biped())
+    capitals = path.with_suffix(".URDF")
+    side_path(path).rename(side_path(capitals))
+    assert load_body(path.rename(capitals)).name == "small"
+
+
 def test_the_side_file_overrides_and_adds(tmp_path):
     side = SIDE.replace("reference", 'scale_factors = ["trunk", "legs"]\nname = "my robot"\nreference', 1) + """
 [left_sole]
