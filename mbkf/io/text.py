@@ -106,7 +106,7 @@ def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
 
 
 def _check_thousands(cells: Sequence[str], path: Path, line: int) -> None:
-    """Refuses a row of whole numbers some of which have a comma before their last three digits: "1,234" beside "567"."""
+    """Refuses a row of whole numbers, some with a comma before their last three digits: "1,234" beside "567"."""
     stripped = [cell.strip() for cell in cells if cell.strip()]
     commas = [cell for cell in stripped if "," in cell]
     if len(stripped) - len(commas) >= _LEAST_WHOLE and all(_THOUSANDS.fullmatch(cell) for cell in commas):
