@@ -12,7 +12,7 @@ import pytest
 
 from mbkf.scaling.records import ScalingSettings
 from mbkf.study.batch.progress import Progress
-from mbkf.study.batch.run import follow, plan_of
+from mbkf.study.batch.run import follow, plan_of, sorted_plan
 from mbkf.study.scaling.session import scale_from_session
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.synth import synthesise, write_folder
@@ -53,7 +53,8 @@ def batch_here(
 ) -> pa.Table:
     """A batch without workers."""
     plan = plan_of(source)
-    return follow(plan.from_standing() if static_only else plan, out, settings, ThisProcess())
+    plan = sorted_plan(plan.from_standing() if static_only else plan, ThisProcess())
+    return follow(plan, out, settings, ThisProcess())
 
 
 @contextmanager

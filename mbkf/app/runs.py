@@ -19,14 +19,14 @@ from dataclasses import asdict, dataclass, field
 from os import cpu_count
 from pathlib import Path
 
-from mbkf.app.workspace import Workspace
+from mbkf.app.workspace import Workspace, of_one_person
 from mbkf.io.atomic import write_text
 from mbkf.io.files_read import read_state
 from mbkf.study.batch.outcome import Outcome, Status, Task, failed
 from mbkf.study.batch.plan import Plan
 from mbkf.study.batch.progress import Progress, Watch
-from mbkf.study.batch.run import outcomes_of, sweep_plan
-from mbkf.study.batch.tasks import ReconstructTrial
+from mbkf.study.batch.run import outcomes_of, sorted_plan, sweep_plan
+from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -192,6 +192,7 @@ class Runs:
             workers = LocalWorkers(min(self._workers, state.total))
             ending.callback(workers.close)
             watched = _Watched(workers, _Notes(self, state))
+            plan = of_one_person(sorted_plan(plan, watched))
             found = outcomes_of(plan, self._workspace.out, ReconstructSettings(), watched)
         self._finish(state, plan, found)
 
@@ -248,7 +249,7 @@ class _Notes:
                 state.stage, state.done = "trials", state.done + 1
                 state.trials[task.trial.path.stem] = (found.status.value, found.reason)
                 state.under_way.pop(task.trial.path.stem, None)
-            else:
+            elif isinstance(task, ScalePerson):
                 state.stage, state.scaled_s = "scaled", state.seconds
             self._runs._save()
         self.check()

@@ -33,6 +33,27 @@ Stamp = tuple[tuple[int, int], ...]
 """Sizes and times of a capture's files."""
 
 
+def of_one_person(plan: Plan) -> Plan:
+    """The plan of a session, which is that of one person with markers put on once.
+
+    Args:
+        plan: The plan.
+
+    Raises:
+        InvalidInput: Names, statements or movements show several persons, or markers that were put on anew.
+    """
+    trials: dict[Path, list[str]] = {}
+    for trial in plan.trials:
+        trials.setdefault(trial.person.place, []).append(trial.path.stem)
+    if len(trials) > 1:
+        listed = "; ".join(f"{place.as_posix()}: {', '.join(names)}" for place, names in trials.items())
+        raise InvalidInput(
+            f"the session's folder holds captures of several persons or sessions ({listed}): put each into a folder of "
+            "its own, or leave the others' trials out"
+        )
+    return plan
+
+
 class Workspace:
     """Sessions of a folder; a survey of a capture is cached until its files change.
 
@@ -80,13 +101,7 @@ class Workspace:
         trials = self._trials(self.folder(session))
         if not trials:
             raise InvalidInput("the session has no moving trial to reconstruct")
-        persons = dict.fromkeys(trial.person.name for trial in trials)
-        if len(persons) > 1:
-            raise InvalidInput(
-                f"the session's folder holds captures of several persons ({', '.join(persons)}): give each of them a "
-                "session of their own, or leave the others' trials out"
-            )
-        return Plan(trials)
+        return of_one_person(Plan(trials))
 
     def place(self, session: str) -> Path:
         """The folder of a session's results, as for ``mbkf batch``."""

@@ -59,6 +59,9 @@ EXIT_FAILED = 1
 DOUBTS = "person_doubts"
 """Column of the table with the doubts about a trial's person."""
 
+SEPARATOR = "; "
+"""Text between two doubts."""
+
 REASONS = "verdict.reasons"
 """Column of the table with the reasons of verdicts."""
 
@@ -163,8 +166,13 @@ def _doubtful_persons(table: pa.Table) -> dict[str, str]:
     columns = ["subject", "session", DOUBTS]
     if DOUBTS not in table.column_names:
         return {}
-    rows = [tuple(row[name] for name in columns) for row in table.select(columns).to_pylist()]
-    return {f"{name}/{session}" if session else name: doubts for name, session, doubts in rows if doubts}
+    found: dict[str, dict[str, None]] = {}
+    for row in table.select(columns).to_pylist():
+        name, session, doubts = (row[column] for column in columns)
+        if doubts:
+            parts = found.setdefault(f"{name}/{session}" if session else name, {})
+            parts.update(dict.fromkeys(doubts.split(SEPARATOR)))
+    return {person: SEPARATOR.join(parts) for person, parts in found.items()}
 
 
 def _verdicts(table: pa.Table) -> Iterator[tuple[str, Verdict]]:

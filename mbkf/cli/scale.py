@@ -161,8 +161,11 @@ def _of_folder(args: argparse.Namespace) -> Subject:
     from mbkf.io.capture import read_capture
     from mbkf.study.batch.folder import person_of_folder
     from mbkf.study.batch.person import captures_used, scaled
+    from mbkf.study.batch.sorting import one_person
 
     person = replace(person_of_folder(Path(args.static)), **_stated(args))
+    if person.unsorted:
+        person = one_person(person)
     if args.trial:
         stated = {name: getattr(person, name) for name in ("mass_kg", "height_m", "protocol")}
         return _of_captures(args, next(iter(person.statics), None), stated)

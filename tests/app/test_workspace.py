@@ -74,7 +74,9 @@ def test_a_session_is_of_one_person(workspace):
             shutil.copy(folder / f"{name}.c3d", folder / f"{code}_{name}.c3d")
     for file in ("static", "walk1", "walk2"):
         (folder / f"{file}.c3d").unlink()
-    with pytest.raises(InvalidInput, match=r"several persons \(P1-S01, P1-S02\): give each"):
+    with pytest.raises(
+        InvalidInput, match=r"several persons .* \(P1-S01: S01_walk1; P1-S02: S02_walk1\): put"
+    ):
         workspace.plan("P1")
     (folder / "S02_walk1.c3d").unlink()
     (folder / "S02_static.c3d").unlink()

@@ -24,6 +24,7 @@ from mbkf.io.capture import CAPTURES, FORCES, folder_suffixes
 from mbkf.io.plain_data import plain_text
 from mbkf.io.results_folder import MOTION_FILE
 from mbkf.io.session import FROM_STATIC, SESSION_FILE, SessionNotes, TrialKind, read_session
+from mbkf.io.stated_markers import stated_markers
 from mbkf.io.toml_lines import line_of
 from mbkf.study.batch.persons import FolderPersons, PersonFiles, persons_of_files
 from mbkf.study.batch.plan import (
@@ -41,6 +42,9 @@ STATED_SHARE = 0.1
 
 APART = "put the captures of each person into a folder of their own, or name them in a list"
 """Mend for a folder of several persons."""
+
+SHARED_NAMES = 0.5
+"""Share of a trial's names of markers that its standing trial has as well, at least."""
 
 SUBJECT_FILE = "subject.toml"
 """A person scaled before, in the session's folder."""
@@ -202,14 +206,17 @@ def _trials(
             Trial(person, path, forces, folder_name(path.stem), stated.trial(path.stem).events)
             for path, forces in moving
         ]
-    lost = Person(*person_and_session(root, place))
-    reason = (
-        f"{place} holds several persons, and neither name nor mass shows the owner of this capture; {APART}"
-    )
-    return trials + [
-        Trial(lost, path, None, folder_name(path.stem), fault=f"{path.name}: {reason}")
-        for path in found.unknown
-    ]
+    if found.unknown:
+        files, persons = PersonFiles("", found.unknown), dict.fromkeys(trial.person for trial in trials)
+        lost, moving = _person(root, place, files, stated, FolderPersons((files,)))
+        hosts = tuple(replace(one, unsorted=()) for one in persons)
+        trials = [replace(one, person=replace(one.person, unsorted=())) for one in trials]
+        lost = replace(lost, mass_kg=None, height_m=None, subject=None, unsorted=tuple(moving), hosts=hosts)
+        trials += [
+            Trial(lost, path, forces, folder_name(path.stem), stated.trial(path.stem).events)
+            for path, forces in moving
+        ]
+    return trials
 
 
 def _persons_in(captures: Sequence[Path], stated: SessionNotes) -> FolderPersons:
@@ -286,7 +293,20 @@ def _person(
         notes.scaling == FROM_STATIC,
         _remarks(files, statics, notes, found),
     )
+    if person.subject is None and moving and _open(statics, moving):
+        person = replace(person, unsorted=tuple(moving))
     return person, moving
+
+
+def _open(statics: Sequence[Path], moving: Sequence[Files]) -> bool:
+    """True where captures may be of several persons: not one standing trial, or other markers than it has."""
+    if len(statics) != 1:
+        return len(statics) + len(moving) > 1
+    known = stated_markers(statics[0])
+    return any(
+        names and len(names & known) < SHARED_NAMES * min(len(names), len(known))
+        for names in (stated_markers(one.path) for one in moving)
+    )
 
 
 def _near(stated: float | None, in_files: float | None) -> bool:

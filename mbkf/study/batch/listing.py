@@ -36,7 +36,7 @@ class Listing:
             stated: Fields of a :class:`~mbkf.study.batch.plan.Person`.
             line: Line of the statements.
         """
-        person = self._persons.get(key, Person(*key))
+        person = self._persons.get(key, Person(*key, listed=True))
         for name, value in stated.items():
             before, where = getattr(person, name), self._stated.get((key, name))
             if (key, name) in self._stated and before != value:

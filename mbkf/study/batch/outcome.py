@@ -17,6 +17,7 @@ from mbkf.study.batch.progress import ignored
 
 if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
+    from mbkf.study.batch.plan import Sorted
 
 
 class Status(StrEnum):
@@ -37,7 +38,8 @@ class Outcome:
         seconds: How long it took.
         peak_memory_mb: Most memory that its worker had until then; None where the system does not state it.
         subject: The scaled person's file; None: a trial, or a failed scaling.
-        doubts: Doubts about the scaled person, in one line; empty without any.
+        doubts: Doubts about the scaled person, or about the trial's, in one line; empty without any.
+        captures: Captures sorted into persons; None: another task.
     """
 
     status: Status
@@ -46,6 +48,7 @@ class Outcome:
     peak_memory_mb: float | None = None
     subject: Path | None = None
     doubts: str = ""
+    captures: Sorted | None = None
 
 
 class Task(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -57,6 +57,10 @@ class Person:
         subject: A subject file to take instead of scaling.
         static_only: True: scaled from the standing trial alone, where there is one.
         remarks: Doubts about the person that follow from the folder or list.
+        unsorted: Captures of several persons, perhaps, which only their markers separate
+            (:mod:`mbkf.study.batch.sorting`); empty where names, a list or a single standing trial show the person.
+        hosts: Other persons of the folder, to whom these captures may belong.
+        listed: True where a list names the person, so that no trial is refused as another person's.
     """
 
     name: str
@@ -69,6 +73,9 @@ class Person:
     subject: Path | None = None
     static_only: bool = False
     remarks: tuple[str, ...] = ()
+    unsorted: tuple[Files, ...] = ()
+    hosts: tuple[Person, ...] = ()
+    listed: bool = False
 
     @property
     def place(self) -> Path:
@@ -103,6 +110,19 @@ class Trial:
 
 
 @dataclass(frozen=True)
+class Sorted:
+    """Captures sorted by their movements.
+
+    Attributes:
+        persons: The owner of each capture that has one.
+        faults: The reason of each other one.
+    """
+
+    persons: Mapping[Path, Person]
+    faults: Mapping[Path, str]
+
+
+@dataclass(frozen=True)
 class Plan:
     """All trials of a batch, and with them the persons.
 
@@ -125,6 +145,15 @@ class Plan:
             tuple(replace(one, person=replace(one.person, static_only=True)) for one in self.trials),
             self.notes,
         )
+
+    def with_persons(self, sorted_: Mapping[Person, Sorted | str]) -> Plan:
+        """The same with captures sorted into persons; one that belongs to nobody has that as its fault.
+
+        Args:
+            sorted_: By person, the owners of the captures, or a reason why they could not be compared.
+        """
+        trials = [_with_owner(one, sorted_.get(one.person)) for one in self.trials]
+        return planned(trials, "the captures", self.notes)
 
     def shard(self, number: int, count: int) -> Plan:
         """Every ``count``-th trial, from the ``number``-th (from 1) on.
@@ -173,6 +202,17 @@ def planned(trials: Sequence[Trial], where: str, notes: Sequence[str] = ()) -> P
             reason = f"{where}: {files[0]} and {files[1]} would both be written to {trial.place}; give one another name"
             found.append(replace(trial, fault=reason))
     return Plan(tuple(found), tuple(remarks))
+
+
+def _with_owner(trial: Trial, captures: Sorted | str | None) -> Trial:
+    """A trial with its person among sorted captures; as it is where these are None."""
+    if captures is None or trial.fault:
+        return trial
+    if isinstance(captures, str):
+        return replace(trial, fault=captures)
+    nobody = replace(trial.person, unsorted=(), hosts=())
+    person = captures.persons.get(trial.path, nobody)
+    return replace(trial, person=person, fault=captures.faults.get(trial.path, ""))
 
 
 def _same(one: Trial, other: Trial) -> bool:

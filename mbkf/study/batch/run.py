@@ -23,7 +23,7 @@ from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.plan import Person, Plan, Trial
 from mbkf.study.batch.tables import TABLES, write_tables
 from mbkf.study.batch.task_stages import TaskStages
-from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
+from mbkf.study.batch.tasks import BatchTask, ReconstructTrial, ScalePerson, SortCaptures
 from mbkf.study.batch.workers import Executor, LocalWorkers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
@@ -79,6 +79,7 @@ def batch(
     executor: Executor = LocalWorkers(count) if dask is None else ClusterWorkers(dask, count)
     suffix = "" if shard is None else f"-{shard[0]}-of-{shard[1]}"
     try:
+        plan = sorted_plan(plan, executor, progress)
         return follow(plan, target, settings or ReconstructSettings(), executor, progress, suffix)
     finally:
         executor.close()
@@ -126,6 +127,28 @@ def plan_of(source: Path) -> Plan:
     return LISTS[source.suffix.lower()](source)
 
 
+def sorted_plan(plan: Plan, executor: Executor, progress: StageCallback | None = None) -> Plan:
+    """The plan with captures that nothing states the person of sorted by their movements.
+
+    Args:
+        plan: The persons and trials.
+        executor: Who compares the captures.
+        progress: Called with the stage, items done and items in all.
+    """
+    persons = [person for person in plan.persons if person.unsorted]
+    if not persons:
+        return plan
+    found = _done([SortCaptures(person) for person in persons], executor, "Sorting", progress)
+    return plan.with_persons(
+        {
+            person: f"its captures could not be compared: {one.reason}"
+            if one.captures is None
+            else one.captures
+            for person, one in zip(persons, found, strict=True)
+        }
+    )
+
+
 def sweep_plan(plan: Plan, out: Path) -> None:
     """Removes the unfinished files and folders that killed workers left.
 
@@ -166,9 +189,10 @@ def outcomes_of(
     ready = [trial for trial in possible if scaled[trial.person].subject is not None]
     tasks = (ReconstructTrial(one, _subject(scaled, one.person), out, settings) for one in ready)
     found = dict(zip(ready, _done(tasks, executor, "Trials", progress, len(ready)), strict=True))
+    outcomes = [found.get(trial) or _undone(trial, scaled) for trial in plan.trials]
     return [
-        replace(found.get(trial) or _undone(trial, scaled), doubts=_doubts(trial.person, scaled))
-        for trial in plan.trials
+        replace(one, doubts="; ".join(filter(None, (_doubts(trial.person, scaled), one.doubts))))
+        for trial, one in zip(plan.trials, outcomes, strict=True)
     ]
 
 
@@ -180,7 +204,7 @@ def _doubts(person: Person, scaled: dict[Person, Outcome]) -> str:
 
 
 def _done(
-    tasks: Iterable[ScalePerson | ReconstructTrial],
+    tasks: Iterable[BatchTask],
     executor: Executor,
     stage: str,
     progress: StageCallback | None,

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from mbkf.conventions import StageCallback
 from mbkf.study.batch.progress import Progress
-from mbkf.study.batch.tasks import ReconstructTrial, ScalePerson
+from mbkf.study.batch.tasks import BatchTask
 
 
 class TaskStages:
@@ -21,9 +21,7 @@ class TaskStages:
         self._names: list[str] = []
         self._open: dict[str, int] = {}
 
-    def named(
-        self, tasks: Iterable[ScalePerson | ReconstructTrial]
-    ) -> Iterator[ScalePerson | ReconstructTrial]:
+    def named(self, tasks: Iterable[BatchTask]) -> Iterator[BatchTask]:
         """The tasks; their names are noted as they are asked for."""
         for task in tasks:
             self._names.append(task.name)

@@ -1,10 +1,10 @@
-"""Tasks of a batch: a person to be scaled, and a trial to be reconstructed."""
+"""Tasks of a batch: captures to be sorted, a person to be scaled, and a trial to be reconstructed."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mbkf.conventions import StageCallback
@@ -14,8 +14,31 @@ from mbkf.study.batch.outcome import Outcome, Status, failed, peak_memory_mb
 from mbkf.study.batch.person import doubts_of, subject_of
 from mbkf.study.batch.plan import Person, Trial
 from mbkf.study.batch.progress import ignored
-from mbkf.study.batch.trial import trial_done
+from mbkf.study.batch.sorting import sorted_captures
+from mbkf.study.batch.trial import trial_done, trial_doubts
 from mbkf.trial.preparation.settings import ReconstructSettings
+
+
+@dataclass(frozen=True)
+class SortCaptures:
+    """Sorts captures into persons.
+
+    Attributes:
+        person: The person of their folder.
+    """
+
+    person: Person
+
+    @property
+    def name(self) -> str:
+        """The person, as the folder of the results is called."""
+        return self.person.place.as_posix()
+
+    def __call__(self, progress: StageCallback = ignored) -> Outcome:
+        """The outcome, with the persons of the captures."""
+        return _outcome(
+            lambda: Outcome(Status.DONE, captures=sorted_captures(self.person, progress=progress))
+        )
 
 
 @dataclass(frozen=True)
@@ -71,9 +94,14 @@ class ReconstructTrial:
 
         def work() -> Outcome:
             done = trial_done(self.trial, self.subject, self.out, self.settings, progress)
-            return Outcome(Status.DONE if done else Status.UNCHANGED)
+            doubts = trial_doubts(self.trial, self.out)
+            return Outcome(Status.DONE if done else Status.UNCHANGED, doubts=doubts)
 
         return _outcome(work)
+
+
+BatchTask = SortCaptures | ScalePerson | ReconstructTrial
+"""A task of a batch."""
 
 
 def _outcome(work: Callable[[], Outcome]) -> Outcome:
@@ -85,4 +113,4 @@ def _outcome(work: Callable[[], Outcome]) -> Outcome:
     except Exception as error:  # one bad file costs only itself
         found = failed(error)
     seconds = time.perf_counter() - begin
-    return Outcome(found.status, found.reason, seconds, peak_memory_mb(), found.subject, found.doubts)
+    return replace(found, seconds=seconds, peak_memory_mb=peak_memory_mb())

@@ -16,6 +16,7 @@ from mbkf.io.subject import read_subject
 from mbkf.study.batch.curves import write_curves
 from mbkf.study.batch.inputs import RECORD, fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import named
+from mbkf.study.batch.other_person import checked_owner
 from mbkf.study.batch.plan import Trial
 from mbkf.study.batch.progress import READING, WRITING, ignored
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
@@ -24,6 +25,10 @@ from mbkf.trial.results.summary import summarise
 
 CURVES_FILE = "curves.parquet"
 """File of a trial's cycles in its result folder."""
+
+
+DOUBTS = "doubts"
+"""Key of a trial's record for doubts about its person."""
 
 
 def trial_done(
@@ -45,7 +50,7 @@ def trial_done(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        MbkfError: An input is unusable.
+        MbkfError: An input is unusable, or the trial is another person's.
         OSError: A file cannot be read or written; nothing half-written stays.
     """
     progress(READING, 0, 1)
@@ -61,6 +66,7 @@ def trial_done(
     check_folder(target, (*RESULT_FILES, CURVES_FILE))
     person = read_subject(subject)
     given = named(read_capture(trial.path, forces=trial.forces), person)
+    doubts = checked_owner(trial, given.capture, person)
     result = reconstruct(given.capture, person, settings=settings, progress=progress)
     progress(WRITING, 0, 1)
     result = replace(result, warnings=(*result.warnings, *given.warnings))
@@ -70,8 +76,21 @@ def trial_done(
         if given.summary is not None:
             labels = json.dumps(given.summary, indent=2) + "\n"
             write_text(partial / LABELS_FILE, labels)
-        write_record(partial / RECORD, made_from)
+        write_record(partial / RECORD, {**made_from, DOUBTS: doubts} if doubts else made_from)
     return True
+
+
+def trial_doubts(trial: Trial, out: Path) -> str:
+    """Doubts about the person of a trial that was done; empty without any.
+
+    Args:
+        trial: The trial.
+        out: The batch's folder.
+
+    Raises:
+        FileFormatError: Its record is missing or damaged.
+    """
+    return str(read_record(out / trial.place / RECORD).get(DOUBTS, ""))
 
 
 def curves_anew(trial: Trial, out: Path) -> bool:

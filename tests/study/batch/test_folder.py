@@ -114,11 +114,13 @@ def test_a_stated_mass_is_only_that_of_the_person_whose_captures_state_it(tmp_pa
     )
     made(tmp_path, "adult1.c3d", "child1.c3d", "hop.c3d", session_toml="mass_kg = 61\nheight_m = 1.6\n")
     plan = plan_of_folder(tmp_path)
-    found = {person.name: (person.mass_kg, person.height_m) for person in plan.persons}
+    persons = [person for person in plan.persons if not person.hosts]
+    found = {person.name: (person.mass_kg, person.height_m) for person in persons}
     assert found == {"60.3kg_1.58m": (61.0, 1.6), "39.4kg_1.45m": (None, None)}
-    assert "states 61.0 kg, the captures 39.4 kg; the captures' mass is used" in plan.persons[1].remarks[-1]
-    lost = [trial for trial in plan.trials if trial.fault]
-    assert [trial.path.name for trial in lost] == ["hop.c3d"] and "owner of this capture" in lost[0].fault
+    assert "states 61.0 kg, the captures 39.4 kg; the captures' mass is used" in persons[1].remarks[-1]
+    (open_,) = [person for person in plan.persons if person.hosts]
+    assert [files.path.name for files in open_.unsorted] == ["hop.c3d"] and open_.mass_kg is None
+    assert open_.hosts == tuple(persons)
 
 
 def test_a_stated_mass_far_from_that_of_the_captures_is_a_doubt_about_the_person(tmp_path, monkeypatch):
