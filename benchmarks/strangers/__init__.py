@@ -10,9 +10,11 @@ from collections.abc import Mapping
 from benchmarks.any_capture.plates import plate_rows
 from benchmarks.checks import Check, Context
 from benchmarks.parts import Part, part_rows
+from benchmarks.strangers.mixed_folders import mixed_folder_rows
 from benchmarks.strangers.odd_c3d import odd_c3d_rows
 
 PARTS: Mapping[str, Part] = {
+    "folders": lambda context: mixed_folder_rows(context.require_data(), context.out),
     "odd_c3d": lambda context: odd_c3d_rows(context.require_data()),
     "plates": lambda context: plate_rows(context.require_data()),
 }

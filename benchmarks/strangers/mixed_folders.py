@@ -261,9 +261,16 @@ def compared(
         len(done),
         tuple(f"{' and '.join(sorted(some))}: {name}" for name, some in persons.items() if len(some) > 1),
         tuple(f"{one}: {' and '.join(given)}" for one, given in names.items() if len(given) > 1),
-        tuple(f"{path.name}, {owners[path]}" for path, (_, body) in done.items() if body != {owners[path]}),
+        tuple(
+            f"{path.name}, {owners[path]}" for path, (_, body) in done.items() if not _own(body, owners[path])
+        ),
         tuple(f"{path.name}: {reason}" for path, reason in failed.items() if owners[path] in possible),
     )
+
+
+def _own(body: Collection[str], owner: str) -> bool:
+    """True where a body was scaled from captures of one person, the owner of a trial."""
+    return {one.removesuffix(ANEW) for one in body} == {owner.removesuffix(ANEW)}
 
 
 def _may_be_done(folder: Folder, data: Path) -> set[str]:

@@ -10,6 +10,7 @@ from mbkf.errors import MbkfError
 from mbkf.io.c3d_decode import Processor, values_of
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.files_read import opened
 from mbkf.io.labels import without_subject
 
 KEPT = 20_000
@@ -41,8 +42,7 @@ def _read(path: Path, size: int, changed_ns: int) -> frozenset[str]:
         values = values_of(layout.section.groups, layout.section.records, Processor(layout.processor))
         names = C3dParameters(values).texts("POINT", "LABELS")
     elif path.suffix.lower() == ".trc":
-        with path.open(encoding="utf-8-sig", errors="replace") as file:
-            names = [
-                name for line in islice(file, TRC_NAMES, TRC_NAMES + 1) for name in line.split()[TRC_FIRST:]
-            ]
+        with opened(path) as file:
+            lines = [line.decode("utf-8", "replace") for line in islice(file, TRC_NAMES, TRC_NAMES + 1)]
+        names = [name for line in lines for name in line.split()[TRC_FIRST:]]
     return frozenset(name for name in without_subject(names) if name)
