@@ -27,6 +27,20 @@ class Written:
     seconds: float
 
 
+@dataclass(frozen=True)
+class Ended:
+    """End of a command: its exit code, and the text on standard output and standard error."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def text(self) -> str:
+        """All that was printed."""
+        return self.out + self.err
+
+
 FILTER = ("--filter", "kinematic")
 """The main job's bounds are those of the marker filter followed by inverse dynamics."""
 
@@ -50,6 +64,21 @@ def mbkf(*words: str | Path, fresh: bool = False) -> float:
     if code:
         raise MbkfError(f"mbkf {arguments[0]} ended with {code}: {message.strip()}")
     return perf_counter() - start
+
+
+def typed(*words: str | Path) -> Ended:
+    """Runs one command in this process and keeps what it prints.
+
+    Args:
+        words: What follows ``mbkf``.
+    """
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            code = main([str(word) for word in words])
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else int(bool(end.code))
+    return Ended(code, out.getvalue(), err.getvalue())
 
 
 def read_folder(folder: Path, seconds: float = 0.0) -> Written:
@@ -85,13 +114,8 @@ def scale_and_reconstruct(
 
 
 def _here(arguments: list[str]) -> tuple[int, str]:
-    errors = io.StringIO()
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
-        try:
-            code = main(arguments)
-        except SystemExit as end:
-            code = int(end.code or 0)
-    return code, errors.getvalue()
+    ended = typed(*arguments)
+    return ended.code, ended.err
 
 
 def _in_process_of_its_own(arguments: list[str]) -> tuple[int, str]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Sequence
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.checks import Check, number
-from mbkf.cli.main import main
+from benchmarks.commands import typed
 from mbkf.io.axes import axes_matrix
 from mbkf.io.storage import read_storage
 from mbkf.io.subject import read_subject
@@ -35,6 +33,7 @@ class Stranger:
         static: Standing trial; the trial itself is scaled from where there is none.
         forces: Ground reactions beside the trial.
         mirrored: Whether the file is a mirror image, as its walker shows.
+        person: Of several persons in the file the one to take, as ``--person`` names it.
     """
 
     name: str
@@ -45,6 +44,7 @@ class Stranger:
     static: str | None = None
     forces: str | None = None
     mirrored: bool = False
+    person: str | None = None
 
 
 STRANGERS = (
@@ -113,11 +113,12 @@ def steps(one: Stranger, data: Path, out: Path) -> list[list[str]]:
     folder = data / one.folder
     trial, subject, result = str(folder / one.trial), str(out / "subject.toml"), str(out / "result")
     forces = [] if one.forces is None else ["--forces", str(folder / one.forces)]
+    person = [] if one.person is None else ["--person", one.person]
     scaled_from = ["--trial", trial] if one.static is None else [str(folder / one.static)]
     return [
-        ["info", trial, *forces],
-        ["scale", *scaled_from, "--mass", f"{one.mass_kg:g}", "--out", subject],
-        ["reconstruct", trial, "--subject", subject, *forces, "--out", result],
+        ["info", trial, *forces, *person],
+        ["scale", *scaled_from, *person, "--mass", f"{one.mass_kg:g}", "--out", subject],
+        ["reconstruct", trial, "--subject", subject, *forces, *person, "--out", result],
         ["report", result],
     ]
 
@@ -129,14 +130,9 @@ def said(words: Sequence[str], path: Path) -> int:
         words: What is typed after ``mbkf``.
         path: The file.
     """
-    text = io.StringIO()
-    with redirect_stdout(text), redirect_stderr(text):
-        try:
-            code = main(words)
-        except SystemExit as left:
-            code = left.code if isinstance(left.code, int) else 1
-    path.write_text(f"mbkf {' '.join(words)}\n{text.getvalue()}", encoding="utf-8")
-    return code
+    ended = typed(*words)
+    path.write_text(f"mbkf {' '.join(words)}\n{ended.text}", encoding="utf-8")
+    return ended.code
 
 
 def reflected(subject: Path) -> bool:

@@ -12,11 +12,15 @@ from benchmarks.checks import Check, Context
 from benchmarks.parts import Part, part_rows
 from benchmarks.strangers.mixed_folders import mixed_folder_rows
 from benchmarks.strangers.odd_c3d import odd_c3d_rows
+from benchmarks.strangers.shared_captures import shared_capture_rows
+from benchmarks.strangers.small_inputs import small_input_rows
 
 PARTS: Mapping[str, Part] = {
     "folders": lambda context: mixed_folder_rows(context.require_data(), context.out),
+    "known_masses": lambda context: plate_rows(context.require_data()),
     "odd_c3d": lambda context: odd_c3d_rows(context.require_data()),
-    "plates": lambda context: plate_rows(context.require_data()),
+    "shared_captures": lambda context: shared_capture_rows(context.require_data(), context.out),
+    "small_inputs": lambda context: small_input_rows(context.require_data(), context.out),
 }
 """Rows by the part's name."""
 
