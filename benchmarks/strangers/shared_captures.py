@@ -42,7 +42,7 @@ CAPTURES = (
     Shared(_shared("ric_run", "20140515T133244_run.c3d", 70.0, "20140515T133244_static.c3d"), BENT_KNEE_DEG),
     Shared(_shared("functional_walk", "FunctionalWalk.c3d", 60.0, "FunctionalStatic.c3d")),
     Shared(_shared("fukuchi_run", "RBDS001runT35.c3d", 60.3, "RBDS001static.c3d"), BENT_KNEE_DEG),
-    Shared(_shared("start_off_treadmill", "markers.trc", 70.0, forces="grf.mot")),
+    Shared(_shared("start_off_treadmill", "markers.trc", 63.3, forces="grf.mot")),
     Shared(_shared("landings", "doubleLegLanding.c3d", 70.0), BENT_KNEE_DEG),
     Shared(_shared("french_walk_no_pelvis", "marche281.c3d", 69.0)),
     Shared(_shared("unipd_walk", "Walking1.c3d", 82.9, "Static1.c3d")),

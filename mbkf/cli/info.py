@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options, axes_options
 from mbkf.cli.tables import terminal
+from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -91,12 +92,12 @@ def _overview(summary: CaptureSummary) -> Table:
         "axes, unit": f"{summary.up_axis} up, {summary.length_unit}",
         "axes checked": _axes(summary.axes),
         "markers": f"{summary.labelled} labelled, {summary.unlabelled} unlabelled; "
-        f"{100 * summary.missing_fraction:.2f} % of samples missing",
+        f"{percent(summary.missing_fraction, 2)} of samples missing",
         "extent": ", ".join(f"{axis} {a:.2f} … {b:.2f}" for axis, a, b in zip("xyz", *extent, strict=True))
         + " m (z up)"
         if extent
         else "",
-        "protocol": _protocol(summary.protocol),
+        "protocol": _protocol(summary.protocol, summary.refusal),
         "derived": _counted(summary.derived.items()) or "none",
         "plates": str(len(summary.plates) or "none"),
         "analog": _channels(summary),
@@ -131,19 +132,19 @@ def _channels(summary: CaptureSummary) -> str:
     return f"{len(summary.channels)} at {', '.join(f'{rate:g}' for rate in rates)} Hz: {names}"
 
 
-def _protocol(protocol: ProtocolSummary | None) -> str:
+def _protocol(protocol: ProtocolSummary | None, refusal: str) -> str:
     from mbkf.trial.preparation.coverage import listed
 
     if protocol is None:
-        return (
-            "no marker set knows these names, and the points show no standing body; scaling needs --protocol"
-        )
+        return refusal
     if protocol.told:
         return protocol.told
-    text = f"{protocol.name}, knows {protocol.known} of {protocol.markers} markers ({100 * protocol.share:.0f} %)"
+    text = (
+        f"{protocol.name}, knows {protocol.known} of {protocol.markers} markers ({percent(protocol.share)})"
+    )
     if protocol.ignored:
         text += f"; ignored: {listed(protocol.ignored)}"
-    return text if protocol.accepted else f"{text}; too few, scaling needs --protocol"
+    return text if protocol.accepted else f"{text}; too few, and {refusal}"
 
 
 def _axes(axes: AxesSummary) -> str:
@@ -153,9 +154,11 @@ def _axes(axes: AxesSummary) -> str:
 
 def _gaps(gaps: list[MarkerSummary], total: int) -> Table:
     shown = f"worst {len(gaps)} of {total}" if total > len(gaps) else str(total)
-    columns = 3
-    table = _bare(f"Gaps ({shown} markers)", *("marker", "missing>", "pieces>") * columns)
-    cells = [(m.name, f"{100 * m.missing_fraction:.1f} %", str(m.pieces)) for m in gaps]
+    columns = min(3, len(gaps))
+    table = _bare(
+        f"Gaps ({shown} marker{'s' if total > 1 else ''})", *("marker", "missing>", "pieces>") * columns
+    )
+    cells = [(m.name, percent(m.missing_fraction, 1), str(m.pieces)) for m in gaps]
     for start in range(0, len(cells), columns):
         table.add_row(*(cell for row in cells[start : start + columns] for cell in row))
     return table
@@ -171,7 +174,7 @@ def _plates(summary: CaptureSummary) -> Table:
             plate.name,
             f"{plate.rate_hz:g} Hz",
             f"{plate.offset_n:+.1f} N",
-            f"{100 * plate.loaded_fraction:.0f} %",
+            percent(plate.loaded_fraction),
             f"{plate.peak_n:.0f} N",
             corners,
         )

@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbkf.cli.options import CAPTURE_FILES, add_axes_options, add_out, axes_options, body_mass
+from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
@@ -158,12 +159,12 @@ def print_labels(summary: LabelSummary, out: Path) -> None:
     """Prints the counts, and the shares of right and wrong names where the truth is known."""
     print(
         f"{out}: {summary['markers']} markers in {summary['frames']} frames, "
-        f"{100 * summary['assigned_fraction']:.2f} % of marker-frames assigned, "
+        f"{percent(summary['assigned_fraction'], 2)} of marker-frames assigned, "
         f"{summary['ghosts_dropped']} ghost points dropped, {summary['swaps_repaired']} swaps repaired, "
         f"first labelled frame {summary['first_labelled_frame']}"
     )
     if "correct_fraction" in summary:
         print(
-            f"against the truth: {100 * summary['correct_fraction']:.3f} % correct, "
-            f"{100 * summary['wrong_fraction']:.3f} % wrong, {100 * summary['missed_fraction']:.3f} % missed"
+            f"against the truth: {percent(summary['correct_fraction'], 3)} correct, "
+            f"{percent(summary['wrong_fraction'], 3)} wrong, {percent(summary['missed_fraction'], 3)} missed"
         )

@@ -143,7 +143,7 @@ def _run(words: list[str]) -> int:
             sys.stdout.flush()  # so that a closed pipe is noticed here
         return code
     except MbkfError as error:
-        return _fail(str(error))
+        return _fail(_with_commands(str(error), args))
     except KeyboardInterrupt as interruption:
         remove_held()  # where it came while an unfinished file was being removed
         terminated = isinstance(interruption, Terminated)
@@ -161,6 +161,16 @@ def _run(words: list[str]) -> int:
             f"of the same command under {TRACEBACK_VARIABLE}=1",
             EXIT_BUG,
         )
+
+
+def _with_commands(message: str, args: argparse.Namespace) -> str:
+    """A message whose options are those of the running command, or stand with a command that has them."""
+    from mbkf.cli.named_options import OPTION, commands_of, with_commands
+
+    if not OPTION.search(message):
+        return message
+    command = f"{args.command} {getattr(args, f'{args.command}_command', '')}".strip()
+    return with_commands(message, command, dict(commands_of(build_parser())))
 
 
 def _fail(message: str, code: int = EXIT_BAD_INPUT) -> int:

@@ -26,6 +26,7 @@ import numpy as np
 
 from mbkf.cli.options import add_preset_options, comma_separated, with_chosen
 from mbkf.cli.tables import table, terminal
+from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -232,7 +233,7 @@ def _undetermined(found: Observability) -> Table:
     bent = np.median(found.unobserved_share[1:], axis=0)
     for i, name in enumerate(found.dofs):
         if name in {*found.unobserved, *found.sometimes_unobserved}:
-            shown.add_row(name, f"{100 * found.unobserved_share[0, i]:.0f} %", f"{100 * bent[i]:.0f} %")
+            shown.add_row(name, percent(found.unobserved_share[0, i]), percent(bent[i]))
     return shown
 
 

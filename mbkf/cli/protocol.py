@@ -18,6 +18,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbkf.cli.tables import table
+from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -39,8 +40,8 @@ def print_set(protocol: Protocol, console: Console) -> None:
         shown.add_column("probability", no_wrap=True)
     order = {segment.name: k for k, segment in enumerate(protocol.body.segments)}
     for m in sorted(protocol.markers, key=lambda one: order[one.segment]):
-        others = "".join(f", or {name.replace('_', ' ')} {100 * p:.0f} %" for name, p in m.alternatives)
-        probability = f"{100 * m.probability:.0f} %{others}" if m.probability < SURE else ""
+        others = "".join(f", or {name.replace('_', ' ')} {percent(p)}" for name, p in m.alternatives)
+        probability = f"{percent(m.probability)}{others}" if m.probability < SURE else ""
         shown.add_row(
             m.name,
             m.segment.replace("_", " "),

@@ -42,6 +42,7 @@ from mbkf.cli.options import (
     strict_exit,
     with_chosen,
 )
+from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
     from mbkf.io.results_folder import Summary
@@ -223,16 +224,13 @@ def print_summary(summary: Summary, folder: Path) -> None:
         ("settings", settings_line(summary["settings"])),
         ("later frames", summary["later_frames"]),
         ("frames", f"{summary['frames']} at {summary['rate_hz']:g} Hz"),
-        ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
+        ("markers", f"{summary['markers_used']}, {percent(summary['missing_fraction'] or 0, 1)} missing"),
         ("markers ignored", listed(summary["markers_ignored"])),
         ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
         ("pelvis angles", f"{along['kind']}, {along['heading_deg']:z.0f}° from the x axis"),
         ("frames with all loads known", str(summary["valid_frames"])),
         ("frames with all loads measured", str(summary["measured_frames"])),
-        (
-            f"residual at the pelvis{corrected}",
-            _residual(summary),
-        ),
+        (f"residual at the pelvis{corrected}", _residual(summary)),
         (
             "step median / 99 %",
             _pair(summary["step_seconds_median"], summary["step_seconds_p99"], "ms", 1e3),
@@ -243,7 +241,9 @@ def print_summary(summary: Summary, folder: Path) -> None:
         hidden = _pair(summary["hidden_marker_rms_mm"], summary["hidden_marker_max_mm"], "mm")
         rows.append(("hidden markers RMS / max", hidden))
     for name, value in (summary["truth"] or {}).items():
-        rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
+        rows.append(
+            (f"against the truth: {name.replace('_', ' ')}", "–" if value is None else f"{value:.3f}")
+        )
     rows.append(("unexplained loads", "\n".join(_unexplained(summary))))
     rows += [("checks", "\n".join(_checks(summary)))]
     title = f"{summary['trial']} ({summary['filter']} filter)"
@@ -251,7 +251,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
     table.add_column()
     table.add_column(justify="right")
     for name, text in rows:
-        if text or name not in ("settings", "markers ignored", "unexplained loads", "checks"):
+        if text:
             table.add_row(name, text)
     console = terminal()
     for line in verdict_lines(summary["trial"], summary["verdict"]):
@@ -287,11 +287,8 @@ def verdict_lines(trial: str, told: VerdictTold | None) -> list[str]:
         return []
     verdict = Verdict.of_table(told)
     others = verdict.sentences[1:]
-    more = (
-        [f"  and {len(others) - MOST_REASONS} more reasons in summary.json"]
-        if len(others) > MOST_REASONS
-        else []
-    )
+    left = len(others) - MOST_REASONS
+    more = [f"  and {left} more reason{'s' if left > 1 else ''} in summary.json"] if left > 0 else []
     return [f"{trial}: {verdict.line}", *(f"  {one}" for one in others[:MOST_REASONS]), *more]
 
 
@@ -321,8 +318,10 @@ def _pair(first: float | None, second: float | None, unit: str, factor: float = 
 def _residual(summary: Summary) -> str:
     """Force and moment, and both by body weight."""
     force, moment = summary["residual_force_rms_n"], summary["residual_moment_rms_nm"]
+    if force is None:
+        return ""
     found = _pair(force, moment, "N, N m")
     share, lever_m = summary["residual_force_share"], summary["residual_lever_m"]
     if share is None or lever_m is None:
         return found
-    return f"{found} ({100.0 * share:.1f} % of body weight, {1e3 * lever_m:.0f} mm)"
+    return f"{found} ({percent(share, 1)} of body weight, {1e3 * lever_m:.0f} mm)"

@@ -34,6 +34,7 @@ from mbkf.cli.options import (
     body_mass,
 )
 from mbkf.cli.tables import table, terminal
+from mbkf.numerics.printed import percent, rounded
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -219,7 +220,7 @@ def warn_of_markers(subject: Subject) -> None:
 
     inferred = subject.report.get("inferred")
     for name, odds in inferred["doubtful"].items() if isinstance(inferred, dict) else ():
-        segments = ", ".join(f"{segment.replace('_', ' ')} {100 * share:.0f} %" for segment, share in odds)
+        segments = ", ".join(f"{segment.replace('_', ' ')} {percent(share)}" for segment, share in odds)
         print(f"warning: the segment of marker {name} is uncertain: {segments}", file=sys.stderr)
     of_static = static_exchange_note(static_exchanges(subject))
     if of_static:
@@ -255,9 +256,10 @@ def _print(report: dict[str, Any], protocol: str, out: str, advice: str) -> None
     console.print(markers)
     if "inferred" in report:
         console.print(f"note: {report['inferred']['told']}", soft_wrap=True)
-    use = report["marker_use"]
-    names = f": {listed(use['ignored'])}" if use["ignored"] else ""
-    console.print(f"{use['told']}; {len(use['ignored'])} ignored{names}", soft_wrap=True)
+    else:
+        use = report["marker_use"]
+        names = f": {listed(use['ignored'])}" if use["ignored"] else ""
+        console.print(f"{use['told']}; {len(use['ignored'])} ignored{names}", soft_wrap=True)
     if "mass" in report:
         by = report["mass"]
         line = f"mass {by['kg']:.1f} kg ± {2 * by['sd_percent']:.1f} % by the plates of {by['capture']}"
@@ -271,7 +273,7 @@ def _print(report: dict[str, Any], protocol: str, out: str, advice: str) -> None
     if advice:
         console.print(f"note: {advice}", soft_wrap=True)
     console.print(
-        f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
+        f"{out}: protocol {protocol}, {report['frames']} frame{'s' if report['frames'] > 1 else ''}, markers fit to "
         f"{report['marker_rms_mm']:.1f} mm RMS",
         soft_wrap=True,
     )
@@ -284,8 +286,8 @@ def _print_inertia(console: Console, found: dict[str, Any]) -> None:
         shown = table(title, "segment", "mass %", "centre x mm", "centre y mm", "centre z mm")
         for name, own in found["segments"].items():
             shifts = zip(own["centre_shift_mm"], own["centre_shift_sd_mm"], strict=True)
-            cells = [f"{shift:+.0f} ± {sd:.0f}" for shift, sd in shifts]
-            mass = f"{own['mass_percent']:+.0f} ± {own['mass_percent_sd']:.0f}"
+            cells = [f"{rounded(shift, signed=True)} ± {rounded(sd)}" for shift, sd in shifts]
+            mass = f"{rounded(own['mass_percent'], signed=True)} ± {rounded(own['mass_percent_sd'])}"
             shown.add_row(name.replace("_", " "), mass, *cells)
         console.print(shown)
     console.print(found["told"], soft_wrap=True)

@@ -7,6 +7,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.printed import percent
 from mbkf.numerics.runs import runs
 
 SIZE_SHARE, DIP_RAD = 0.2, 0.26
@@ -43,8 +44,8 @@ def field_remarks(one: ImuReadings, quaternion: Array) -> tuple[str, ...]:
     worst_size = max((off_size[a:b][known[a:b]] for a, b in long), key=lambda x: np.abs(x).max(initial=0.0))
     worst_dip = max((off_dip[a:b][known[a:b]] for a, b in long), key=lambda x: np.abs(x).max(initial=0.0))
     return (
-        f"sensor {one.name}: its magnetic field is disturbed in {100 * share:.0f} % of the time ({times}{more}): "
-        f"its size by up to {100 * np.abs(worst_size).max(initial=0.0):.0f} %, its dip by up to "
+        f"sensor {one.name}: its magnetic field is disturbed in {percent(share)} of the time ({times}{more}): "
+        f"its size by up to {percent(np.abs(worst_size).max(initial=0.0))}, its dip by up to "
         f"{np.degrees(np.abs(worst_dip).max(initial=0.0)):.0f} deg; the heading is less sure then",
     )
 

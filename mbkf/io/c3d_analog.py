@@ -18,6 +18,7 @@ from mbkf.io.plate_table import plate_with_corners
 from mbkf.io.readable_plates import NO_CHANNELS, readable_plates
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import require_finite
+from mbkf.numerics.printed import percent
 
 _NO_ORIGIN = (
     "the file lacks FORCE_PLATFORM:ORIGIN: moments of its plates are taken about the middle of their surfaces; compare "
@@ -194,7 +195,9 @@ def _doubts(name: str, plate: PlateReadings, corners: Array) -> list[str]:
         half = np.abs(corners - corners.mean(axis=0)).max(axis=0) + _OFF_PLATE_M
         off = (np.abs(seen - corners.mean(axis=0)) > half).any(axis=1).mean()
         if off > _OFF_PLATE_SHARE:
-            doubts.append(f"{name}: centre of pressure is off the plate {off:.0%} of the time; check CORNERS")
+            doubts.append(
+                f"{name}: centre of pressure is off the plate {percent(off)} of the time; check CORNERS"
+            )
     return doubts
 
 

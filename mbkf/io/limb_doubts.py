@@ -75,9 +75,12 @@ class LimbDoubt:
         """The doubt in words: times, evidence, meaning and remedy."""
         evidence = [f"its markers lie {1e3 * self.misfit_m:.0f} mm (RMS) from the body"]
         if self.joint:
-            evidence.append(f"{self.joint} is {np.degrees(self.beyond_rad):.0f}° beyond its range")
+            evidence.append(
+                f"the {self.joint.replace('_', ' ')} is {np.degrees(self.beyond_rad):.0f}° beyond its range"
+            )
         when = f"from {self.from_s:.2f} to {self.to_s:.2f} s"
-        return f"{self.limb} was in doubt {when}: {', '.join(evidence)}; {self._remedy}"
+        limb = self.limb.replace("_", " ")
+        return f"the {limb} was in doubt {when}: {', '.join(evidence)}; {self._remedy}"
 
     @property
     def _remedy(self) -> str:

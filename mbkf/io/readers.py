@@ -97,9 +97,8 @@ class FormatRegistry(Generic[Format]):
         recognised = (one for one in own if one.recognises is not None and one.recognises(path))
         found = next(recognised, None) or next((one for one in own if one.recognises is None), None)
         if found is None:
-            reason = (
-                f"'{path.suffix}' files cannot be read as {self.content}; name a {either(self.suffixes)} file"
-            )
+            kind = f"'{path.suffix}' files" if path.suffix else "files without a suffix"
+            reason = f"{kind} cannot be read as {self.content}; name a {either(self.suffixes)} file"
             raise FileFormatError(path, reason)
         return found
 

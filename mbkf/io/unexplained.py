@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from mbkf.errors import InvalidInput
+from mbkf.numerics.printed import percent
 
 Cause = Literal["", "mass", "clock", "right_foot", "left_foot"]
 """Likelier than a load: the body's mass, the clocks of markers and plates, a foot that stands beside its plate."""
@@ -73,4 +74,4 @@ class UnexplainedLoad:
     @property
     def size(self) -> str:
         """Size, direction and share of body weight."""
-        return f"{self.force_n:.0f} N {self.direction} ({100.0 * self.share:.0f} % of body weight)"
+        return f"{self.force_n:.0f} N {self.direction} ({percent(self.share)} of body weight)"

@@ -12,6 +12,7 @@ from mbkf.conventions import Array
 from mbkf.errors import NotObservable
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.numerics.printed import percent
 
 MIN_PRESENT = 0.05
 """Least share of the chosen frames in which a marker is seen."""
@@ -80,7 +81,7 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
     keep = share >= MIN_PRESENT
     left_out.update(
         {
-            m.name: f"seen in {100 * s:.0f} % of the frames"
+            m.name: f"seen in {percent(s)} of the frames"
             for m, s, kept in zip(markers, share, keep, strict=True)
             if not kept
         }

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.printed import percent
 
 DOUBTFUL_SPREADS, IMPOSSIBLE_SPREADS = 2.5, 4.5
 """Spread of the factors about their mean, in units of the prior's of a proportion: doubtful, and refused."""
@@ -94,8 +95,8 @@ class FitQuality:
                 f"markers lie {self.rms_per_noise:.1f} times as far from the body as their noise explains"
             )
         if self.share_left_out > DOUBTFUL_SHARE:
-            share = 100.0 * self.share_left_out
-            found.append(f"{share:.0f} % of the samples lie too far from the body and were left out")
+            share = percent(self.share_left_out)
+            found.append(f"{share} of the samples lie too far from the body and were left out")
         return tuple(found)
 
 

@@ -7,16 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mbkf.errors import InvalidInput, MbkfError, UnknownName
-from mbkf.io.axes import axes_matrix, axes_text
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
-from mbkf.model.protocol import detect_protocol
+from mbkf.model.protocol import Protocol, detect_protocol
 from mbkf.numerics.runs import runs
 from mbkf.trial.axes.captures import find_axes_by_names
-from mbkf.trial.axes.decision import AxesFinding, applied
+from mbkf.trial.axes.decision import AxesFinding, Verdict, applied
 from mbkf.trial.checks.unscaled_mass import unscaled_mass_finding
 from mbkf.trial.preparation.coverage import use_by_protocol
 from mbkf.trial.protocol.choice import shipped_protocol
-from mbkf.trial.protocol.inferred import infer_marker_set
+from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
 
 
 @dataclass(frozen=True)
@@ -146,7 +145,8 @@ class CaptureSummary:
         labelled: Number of markers with a name of their own.
         unlabelled: Number of trajectories called ``*0``, ``*1`` ….
         missing_fraction: Share of missing samples over all markers, 0 to 1.
-        extent_m: Lowest and highest x, y, z of all markers in m (world axes), or None without markers.
+        extent_m: Lowest and highest x, y, z of all markers in m, in the axes that `mbkf scale` uses; None without
+            markers.
         markers: Each marker.
         plates: Each force plate.
         derived: Number of derived points by kind.
@@ -156,6 +156,7 @@ class CaptureSummary:
         axes: The axes as read, and as the body shows them.
         protocol: The marker set: a shipped protocol or an inferred one, else the protocol that knows most of the names;
             None without any.
+        refusal: Reason why `mbkf scale` takes no marker set by itself, with the remedy; "" where it takes one.
     """
 
     path: str
@@ -179,15 +180,18 @@ class CaptureSummary:
     notes: tuple[str, ...]
     axes: AxesSummary
     protocol: ProtocolSummary | None
+    refusal: str
 
 
 def describe(capture: Capture) -> CaptureSummary:
     """Counts, shares and ranges of a capture."""
     markers = capture.markers
     present = markers.present
-    seen = markers.positions_m[present]
     unlabelled = sum(name.startswith("*") for name in markers.names)
     axes = find_axes_by_names(capture)
+    found = _marker_set(capture)
+    upright = _upright(capture, axes, found)
+    seen = upright.markers.positions_m[present]
     extent = (tuple(seen.min(axis=0).tolist()), tuple(seen.max(axis=0).tolist())) if len(seen) else None
     return CaptureSummary(
         path=capture.path,
@@ -198,7 +202,7 @@ def describe(capture: Capture) -> CaptureSummary:
         up_axis=capture.up_axis,
         length_unit=capture.length_unit,
         subject_mass_kg=capture.subject_mass_kg,
-        plates_mass=_plates_mass(capture, axes),
+        plates_mass=_plates_mass(upright),
         labelled=len(markers.names) - unlabelled,
         unlabelled=unlabelled,
         missing_fraction=float(1.0 - present.mean()) if present.size else 0.0,
@@ -207,54 +211,79 @@ def describe(capture: Capture) -> CaptureSummary:
             MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, len(runs(column)))
             for name, column in zip(markers.names, present.T, strict=True)
         ),
-        plates=tuple(_plate(plate) for plate in capture.plates),
+        plates=tuple(_plate(plate) for plate in upright.plates),
         derived=dict(Counter(point.kind for point in capture.derived)),
         channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),
         events=capture.events,
         notes=capture.notes,
-        axes=_axes(capture, axes),
-        protocol=_protocol(capture),
+        axes=_axes(capture, axes, upright),
+        protocol=_protocol(capture, found),
+        refusal=found if isinstance(found, str) else "",
     )
 
 
-def _protocol(capture: Capture) -> ProtocolSummary | None:
-    """The shipped protocol that knows enough of the names, else an inferred one, else the one that knows most."""
-    inferred, protocol = None, shipped_protocol([capture])
+def _marker_set(capture: Capture) -> Protocol | InferredSet | str:
+    """The shipped protocol that knows enough of the names, else an inferred set, else why there is neither."""
+    shipped = shipped_protocol([capture])
+    if shipped is not None:
+        return shipped
     try:
-        if protocol is None:
-            inferred = infer_marker_set(None, [capture])
-            protocol = inferred.protocol
-    except MbkfError:
+        return infer_marker_set(None, [capture])
+    except MbkfError as error:
+        return str(error).removeprefix(f"{capture.path or 'capture'}: ")
+
+
+def _protocol(capture: Capture, found: Protocol | InferredSet | str) -> ProtocolSummary | None:
+    """The marker set that was found, else the protocol that knows most of the names."""
+    line, doubts = "", {}
+    if isinstance(found, InferredSet):
+        protocol, line, doubts = found.protocol, found.line, found.doubts
+    elif isinstance(found, Protocol):
+        protocol = found
+    else:
         try:
             protocol = detect_protocol(capture.markers.names)
         except UnknownName:
             return None
     use = use_by_protocol([capture.markers], protocol)
     known = use.markers - len(use.unknown)
-    line, doubts = ("", {}) if inferred is None else (inferred.line, inferred.doubts)
     return ProtocolSummary(
         use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored), line, doubts
     )
 
 
-def _plates_mass(capture: Capture, axes: AxesFinding) -> PlatesMass | None:
-    """The mass by the plates, in the axes that other commands would use."""
+def _upright(capture: Capture, axes: AxesFinding, found: Protocol | InferredSet | str) -> Capture:
+    """The capture in the axes that other commands would use; as it is where they refuse it."""
+    if isinstance(found, InferredSet):
+        return found.captures[0]
+    try:
+        return applied(capture, axes)
+    except InvalidInput:
+        return capture
+
+
+def _plates_mass(capture: Capture) -> PlatesMass | None:
+    """The mass by the plates of an upright capture."""
     if not capture.plates:
         return None
     try:
-        found = unscaled_mass_finding(applied(capture, axes))
+        found = unscaled_mass_finding(capture)
     except InvalidInput:
         return None
     return PlatesMass(found.better, found.verdict, found.hint)
 
 
-def _axes(capture: Capture, found: AxesFinding) -> AxesSummary:
+def _axes(capture: Capture, found: AxesFinding, upright: Capture) -> AxesSummary:
+    """The axes as read and as used; of an inferred set, as the body of that set shows them."""
+    verdict, note = found.verdict, found.note
+    if upright.axes != capture.axes and verdict is not Verdict.PUT_RIGHT:
+        verdict, note = Verdict.PUT_RIGHT, upright.notes[-1]
     return AxesSummary(
         read=capture.axes,
         source=capture.axes_source.value,
-        verdict=found.verdict.value,
-        used=axes_text(found.turn @ axes_matrix(capture.axes)),
-        note=found.note,
+        verdict=verdict.value,
+        used=upright.axes,
+        note=note,
     )
 
 

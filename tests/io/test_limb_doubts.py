@@ -11,8 +11,8 @@ BAD = LimbDoubt("left_thigh", "fits badly", 1.2, 1.5, "left_shank", np.radians(3
 
 def test_evidence_and_remedy_of_a_limb_that_stays_in_doubt():
     assert BAD.sentence == (
-        "left_thigh was in doubt from 1.20 to 1.50 s: its markers lie 31 mm (RMS) from the body, left_shank is 30° "
-        "beyond its range; no better pose was found: check the names of its markers and the subject file"
+        "the left thigh was in doubt from 1.20 to 1.50 s: its markers lie 31 mm (RMS) from the body, the left shank is "
+        "30° beyond its range; no better pose was found: check the names of its markers and the subject file"
     )
 
 

@@ -224,7 +224,7 @@ def test_half_a_second_without_markers_is_restarted_and_told(name):
     found = made(filter=name, hide=(Hidden(every, start + 0.195, start + 0.695),))
     lost = found.hidden.all(axis=1)
     assert lost.sum() == 50
-    assert "the filter started anew at frames 70" in found.warnings
+    assert "the filter started anew at frame 70" in found.warnings
     told = [w for w in found.warnings if w.startswith("50 of 80 frames have too few markers within the gate")]
     assert len(told) == 1
     np.testing.assert_array_equal(found.tracked, ~lost)

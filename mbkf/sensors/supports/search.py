@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
+from mbkf.numerics.printed import percent
 from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import bridged, dilated
 from mbkf.sensors.contact.soles import sole_points
@@ -54,6 +55,10 @@ ON_FLOOR_M, RESTS_M_S, RESTS_S = 0.05, 0.4, 0.1
 ALWAYS_SHARE = 0.9
 """A force missing in more than this share of the frames is an error of mass or plates, not a contact, unless more is
 missing than a mass is wrong by, and feet bear the rest: then a person sits throughout."""
+
+WRONG_MASS = "check the mass, the plates' scale and the axes"
+RIGHT_MASS = "the mass is not the cause; check clocks and axes, or the motion is faster than skin follows"
+"""Remedies where the mean of the missing force is vertical, and where it is not."""
 
 MASS_SHARE, SEATED_SHARE = 0.4, 0.02
 """No mass is wrong by the first share; feet of a seated person bear at least the second."""
@@ -174,10 +179,11 @@ def _missing(
     lacks = clear & (np.linalg.norm(slow[:, :3], axis=1) > LEAST_SHARE * weight_n)
     if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
         share = float(np.mean(slow[lacks, 2])) / weight_n
+        whole = float(np.mean(np.linalg.norm(slow[lacks, :3], axis=1))) / weight_n
         if abs(share) < MASS_SHARE or np.median(given[lacks, 2]) < SEATED_SHARE * weight_n:
             remark = (
-                f"the motion requires {100.0 * share:+.0f} % of body weight more than the plates read, throughout: "
-                "check the mass, the plates' scale and the axes"
+                f"motion and plates differ by {percent(whole)} of body weight on average, throughout, vertically by "
+                f"{percent(share, signed=True)}: {WRONG_MASS if abs(share) > LASTING_SHARE else RIGHT_MASS}"
             )
             return OtherContacts(flags, (remark,))
     lighter = _lighter(slow[:, 2], given[:, 2], clear & ~lacks, rate_hz)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
+from mbkf.numerics.printed import percent
 from mbkf.trial.axes.captures import turned_like_subject
 from mbkf.trial.label import label
 from mbkf.trial.label_nameless import label_nameless
@@ -83,6 +84,6 @@ def named(capture: Capture, subject: Subject) -> Named:
     turned = turned_like_subject(capture, subject)
     found = label(turned, subject)
     doubts = () if found.doubts is None else tuple(found.doubts.warnings())
-    share = f"{100.0 * found.assigned_fraction:.1f} % of the marker samples have a point"
+    share = f"{percent(found.assigned_fraction, 1)} of the marker samples have a point"
     note = f"the points had no names and were labelled: {share}"
     return Named(labelled_capture(turned, found), label_summary(found), (note, *doubts))

@@ -18,6 +18,7 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.io.session import TrialKind
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
+from mbkf.numerics.printed import percent
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_most_markers, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -119,7 +120,7 @@ class StandingBody:
         stray = float((apart[np.isfinite(apart)] > STRAY_M).mean())
         if stray > MOST_STRAY:
             raise NotObservable(
-                f"{100 * stray:.0f} % of the markers lie more than {1e3 * STRAY_M:.0f} mm from the body of the "
+                f"{percent(stray)} of the markers lie more than {1e3 * STRAY_M:.0f} mm from the body of the "
                 "standing trial: exchanged names, or another person"
             )
         return poses

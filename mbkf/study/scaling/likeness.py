@@ -15,6 +15,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
+from mbkf.numerics.printed import percent
 from mbkf.trial.preparation.static_names import markers_as_scaled
 
 LEAST_COVERAGE = 0.5
@@ -77,7 +78,7 @@ class StandingMarkers:
         """
         coverage = self.coverage(own)
         if coverage < LEAST_COVERAGE:
-            return f"it shows {100 * coverage:.0f} % of the markers of the standing trial"
+            return f"it shows {percent(coverage)} of the markers of the standing trial"
         changed = self.changed_mm(own)
         if changed is not None and changed > MOST_CHANGED_MM:
             return (

@@ -20,6 +20,7 @@ from mbkf.io.axes import (
 )
 from mbkf.io.records import AxesSource, Capture
 from mbkf.io.turning import recentred, turned
+from mbkf.numerics.printed import percent
 from mbkf.trial.axes.evidence import FLAT_SINE, BodyAttitude, MarkerPlaces, body_attitude
 from mbkf.trial.axes.plates import contradiction, pushed_away
 
@@ -47,6 +48,10 @@ within segments that it may have (0.05 to 0.32; names in a wrong order 0.64 and 
 
 POSSIBLE_M, PLAUSIBLE_M = (0.65, 2.6), (1.0, 2.2)
 """Heights of a person outside which a unit is refused, and between which another is proposed."""
+
+LOWEST_PERCENT, FLOOR_M, UNDER_FLOOR_M = 1.0, (-0.05, 0.15), -0.05
+"""Percentile of heights that counts as the lowest; where it lies along the axis that a person stands along, the origin
+being on the floor; and below which the axis that the file is read with puts the person under the floor."""
 
 _AXES = {name: np.array(rows[2], dtype=np.float64) for name, rows in WORLD_AXES.items()}
 """World directions by the names of axes."""
@@ -205,7 +210,7 @@ def _up(capture: Capture, body: BodyAttitude) -> _Up:
     if axis == "z":
         return _Up("z")
     stored = _stored(axis, axes_matrix(capture.axes))
-    share = f"in {100 * _along(body, axis):.0f} % of frames the body extends along {stored} of the file"
+    share = f"in {percent(_along(body, axis))} of frames the body extends along {stored} of the file"
     if capture.axes_source is AxesSource.UP_GIVEN:
         return _Up("z", f"{share}; up is {capture.up_axis}, as given")
     if axis == main and _stands_along(body, axis):
@@ -217,8 +222,17 @@ def _up(capture: Capture, body: BodyAttitude) -> _Up:
             "z",
             f"{share}, but stands on its feet along {capture.up_axis} only; {capture.up_axis} is taken as up",
         )
+    if capture.axes_source is AxesSource.DEFAULT and np.isnan(body.feet).all() and _on_floor(capture, axis):
+        return _Up(axis)
     hint = f"name the axis that points up with --up (--up={capture.up_axis} if the person lies)"
     return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", unclear=True)
+
+
+def _on_floor(capture: Capture, axis: str) -> bool:
+    """True where the lowest markers lie over the origin as feet do along an axis, and under it along z."""
+    seen = capture.markers.positions_m[capture.markers.present]
+    lowest = np.percentile(seen @ np.stack([_AXES[axis], _AXES["z"]], axis=1), LOWEST_PERCENT, axis=0)
+    return bool(FLOOR_M[0] <= lowest[0] <= FLOOR_M[1] and lowest[1] < UNDER_FLOOR_M)
 
 
 def _stored(axis: str, matrix: Array) -> str:
@@ -273,9 +287,7 @@ def _evidence(body: BodyAttitude, axis: str, mirrored: bool, old: Array) -> str:
     """Reason for corrected axes, in words."""
     words = []
     if axis != "z":
-        words.append(
-            f"the body stands along {_stored(axis, old)} in {100 * _along(body, axis):.0f} % of frames"
-        )
+        words.append(f"the body stands along {_stored(axis, old)} in {percent(_along(body, axis))} of frames")
     if mirrored:
         words.append("right markers lay left of the left ones")
     return " and ".join(words)

@@ -14,6 +14,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.io.records import PlateReadings
+from mbkf.numerics.printed import rounded
 from mbkf.trial.checks.evidence import Evidence
 
 NAME = "clocks of markers and plates"
@@ -61,7 +62,7 @@ def clock_finding(evidence: Evidence) -> Finding:
     sd_ms = 1e3 * STEP_S * float(np.sqrt(2.0 * at / curve / independent))
     if sd_ms > LEAST_SD_MS:
         return not_judged(NAME, "ms", BOUND_MS, "needs movement, as in walking, squats or jumps")
-    hint = f"plates are {abs(1e3 * lag_s):.0f} ms {'late' if lag_s > 0 else 'early'}"
+    hint = f"plates are {rounded(abs(1e3 * lag_s))} ms {'late' if lag_s > 0 else 'early'}"
     remedy = ": shift them, or look for a filter or a trigger that delays them"
     return judged(NAME, 1e3 * lag_s, float(np.hypot(sd_ms, BODY_MS)), "ms", BOUND_MS, hint, remedy)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.findings import Finding, judged, not_judged
+from mbkf.numerics.printed import percent
 from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.checks.newton import expected_force
 
@@ -61,7 +62,7 @@ def gain_finding(evidence: Evidence) -> Finding:
     off, sd, name = max(found, key=lambda one: abs(one[0]) / one[1])
     if sd > MOST_SD_PERCENT:
         return not_judged(NAME, "%", BOUND_PERCENT, f"the motion determines gains to {sd:.0f} % only")
-    hint = f"plate '{name}' reads {abs(off):.0f} % {'more' if off > 0 else 'less'} than the others"
+    hint = f"plate '{name}' reads {percent(abs(off) / 100.0)} {'more' if off > 0 else 'less'} than the others"
     remedy = ": check the gains and units of both" if len(names) == 2 else ": check its gain and unit"
     return judged(NAME, off, sd, "%", BOUND_PERCENT, hint, remedy)
 

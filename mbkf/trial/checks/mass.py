@@ -14,6 +14,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.numerics.printed import percent
 from mbkf.numerics.runs import stretches
 from mbkf.trial.checks.evidence import Evidence
 
@@ -95,8 +96,10 @@ def impulse_finding(loads: VerticalLoads, others: BoolArray, plates_agree: bool 
         spread = float(np.sqrt(np.average((ratio - ratio.mean()) ** 2, weights=per_kg)))
         if spread * loads.mass_kg <= 0.01 * PARTS_PERCENT * mass_kg:
             return _judged(loads, mass_kg, per_kg, parts, plates_agree)
+    low, high = loads.mass_kg * ratio.min(), loads.mass_kg * ratio.max()
     return undetermined(
-        f"parts of the trial differ by {100 * spread * loads.mass_kg / mass_kg:.0f} %: "
+        f"parts of the trial give {low:.1f} to {high:.1f} kg, {mass_kg:.1f} kg in all (spread "
+        f"{percent(spread * loads.mass_kg / mass_kg, 1)}, at most {PARTS_PERCENT:g} %): "
         "something besides the feet may carry load, or plates differ"
     )
 

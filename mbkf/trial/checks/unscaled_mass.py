@@ -16,6 +16,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.findings import Finding, judgement
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
+from mbkf.numerics.printed import percent
 from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import bridged, dilated
 from mbkf.sensors.contact.plates import PlateAreas, plate_wrenches, surface_height
@@ -105,18 +106,18 @@ def _judged(mass_kg: float, sd: float, stated_kg: float | None, subject: str) ->
         if not right:
             hint += f", which is not a person's weight ({mass_kg * GRAVITY_M_S2:.0f} N); {causes}"
         return Finding(NAME, None, None, "%", BOUND_PERCENT, "inside" if right else "outside", hint, mass_kg)
-    percent = 100.0 * (stated_kg / mass_kg - 1.0)
-    verdict = judgement(percent, sd, BOUND_PERCENT)
+    off = 100.0 * (stated_kg / mass_kg - 1.0)
+    verdict = judgement(off, sd, BOUND_PERCENT)
     hint = f"{subject} {mass_kg:.1f} kg, and the body mass is stated as {stated_kg:.1f} kg"
     if verdict == "outside":
-        more = f"{abs(100.0 * (mass_kg / stated_kg - 1.0)):.0f} % {'more' if mass_kg > stated_kg else 'less'}"
+        more = f"{percent(abs(mass_kg / stated_kg - 1.0))} {'more' if mass_kg > stated_kg else 'less'}"
         other = (
             "a load that the person carries or pulls"
             if mass_kg > stated_kg
             else "a support beside the plates"
         )
         hint = f"{hint} ({more}); check the mass, {other}, and {causes.removeprefix('check ')}"
-    return Finding(NAME, percent, sd, "%", BOUND_PERCENT, verdict, hint, mass_kg)
+    return Finding(NAME, off, sd, "%", BOUND_PERCENT, verdict, hint, mass_kg)
 
 
 def _loads(capture: Capture, mass_kg: float) -> VerticalLoads:

@@ -26,6 +26,7 @@ from mbkf.io.imu.readings import ImuReadings, between
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.clinical_table import opensim_zeros_rad
 from mbkf.model.human import HumanModel
+from mbkf.numerics.printed import percent
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.inertial.disturbed_magnetometers import (
     at_times,
@@ -282,7 +283,7 @@ def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bo
         share = float((beyond[:, flexion] > _DOUBT_RAD).mean())
         if share > _DOUBT_SHARE:
             remarks.append(
-                f"the joint above {name} bends more than 15 deg beyond its range in {100 * share:.0f} % of the time; "
+                f"the joint above {name} bends more than 15 deg beyond its range in {percent(share)} of the time; "
                 "check --standing, which sensor is which, and how they were put on"
             )
     return remarks

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from mbkf.model.human import HumanModel
+from mbkf.numerics.printed import percent
 
 CLEARLY = 0.6
 """An exchange is reported where it leaves a smaller share of the misfit than the names as given."""
@@ -44,7 +45,7 @@ class Exchange:
         one, other = self.segments
         return (
             f"the sensors of {one} and {other} seem to be exchanged: the body explains the readings with "
-            f"{100 * self.share:.0f} % of the misfit if they are; rename them and run again"
+            f"{percent(self.share)} of the misfit if they are; rename them and run again"
         )
 
 

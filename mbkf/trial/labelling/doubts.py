@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.printed import percent
 from mbkf.scaling.naming import NamingProblem
 from mbkf.scaling.renaming import Renamed
 
@@ -136,7 +137,7 @@ class Doubts:
                 f"labels far from their places in scaling: {self._far()}; these markers moved, or are others or ghosts"
             )
         if self.rare:
-            names = ", ".join(f"{name} ({100.0 * share:.0f} %)" for name, share in self.rare.items())
+            names = ", ".join(f"{name} ({percent(share)})" for name, share in self.rare.items())
             found.append(f"labels in few of the frames: {names}; they may be ghosts")
         return (*found, *(_group_text(group) for group in _groups(self.cases)))
 

@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Named, Subject, match_names
 from mbkf.model.protocol import Protocol, load_protocol, protocol_names
+from mbkf.numerics.printed import percent
 
 LEAST_SHARE = 0.6
 """A protocol that knows a smaller share of a capture's markers is probably not theirs, and never used in silence."""
@@ -68,7 +69,7 @@ class MarkerUse:
     def summary(self) -> str:
         """The protocol's coverage, in words."""
         known = self.markers - len(self.unknown)
-        return f"{self.protocol} knows {known} of {self.markers} markers ({100 * self.share:.0f} %)"
+        return f"{self.protocol} knows {known} of {self.markers} markers ({percent(self.share)})"
 
     @property
     def warning(self) -> str:

@@ -25,7 +25,8 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
     if len(found) < MIN_MARKERS:
         raise NotObservable(
             f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
-            f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}"
+            f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}: "
+            "scale the person from a capture with these names, or correct --subject"
         )
     return replace(markers.select(tuple(found)), names=tuple(marker.name for marker in found.values()))
 

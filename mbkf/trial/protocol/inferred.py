@@ -184,8 +184,8 @@ def _require_person(found: Inference, least_log_odds: float) -> None:
     segments = {marker.segment for marker in found.markers if marker.segment}
     if found.found.log_odds < least_log_odds:
         raise NotObservable(
-            "no upright body is found among the points; give the axis that points up (--up), a static trial "
-            "(--static), or the marker set (--protocol)"
+            "no upright body is found among the points; give the axis that points up (--up), a static trial, or "
+            "the marker set (--protocol)"
         )
     if len(segments) < FEWEST_SEGMENTS:
         raise NotObservable(

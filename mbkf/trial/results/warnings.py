@@ -86,7 +86,8 @@ def track_warnings(
             "loads) and was dropped; they do not count as tracked: check units, marker names and the checks"
         )
     if len(result.starts) > 1:
-        warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))
+        anew = ", ".join(str(t) for t in result.starts[1:])
+        warnings.append(f"the filter started anew at frame{'s' if len(result.starts) > 2 else ''} {anew}")
     refused = int(result.rejected.sum())
     if refused:
         warnings.append(f"{refused} marker samples lay outside the innovation gate and were refused")

@@ -267,9 +267,9 @@ def _from_motion(motion: list[Reason]) -> Iterator[Reason]:
             yield Reason(
                 loads,
                 words[worst],
-                f"the motion of the {TITLES[worst]} has the word '{words[worst]}'",
-                "these loads rest on it",
-                "see there",
+                f"the verdict on the motion of the {TITLES[worst]} is '{words[worst]}'",
+                "these loads are computed from it",
+                "its own reasons say what to do",
                 0.0,
             )
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS, TITLES, Reason, Word
+from mbkf.numerics.printed import percent
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.parts import ARMS, TRUNK
 from mbkf.trial.verdict.standing import Stood
@@ -146,7 +147,7 @@ def _fits(evidence: Evidence) -> Iterator[Reason]:
             yield Reason(
                 fit.part,
                 refused[0],
-                f"{100.0 * fit.refused:.0f} % of the samples of the {title} were refused",
+                f"{percent(fit.refused)} of the samples of the {title} were refused",
                 "the motion rests on the others",
                 "check names and reflections",
                 refused[1],
@@ -178,7 +179,7 @@ def _doubtful_limbs(evidence: Evidence) -> Iterator[Reason]:
             evidence.part_of.get(one.limb, TRUNK),
             "look" if one.mended else off[0],
             one.sentence,
-            f"{100.0 * share:.0f} % of the trial have a pose in doubt",
+            f"{percent(share)} of the trial have a pose in doubt",
             "look at the limb in 3-D then" if one.mended else CHECK_NAMES,
             off[1],
         )
@@ -238,11 +239,10 @@ def _whole(evidence: Evidence) -> Iterator[Reason]:
     found: list[tuple[tuple[Word, float], str, str, str]] = []
     lost = UNTRACKED.reached(1.0 - evidence.tracked)
     if lost is not None:
-        share = 100.0 * (1.0 - evidence.tracked)
         found.append(
             (
                 lost,
-                f"the body was not followed in {share:.0f} % of the frames",
+                f"the body was not followed in {percent(1.0 - evidence.tracked)} of the frames",
                 "these frames are left out",
                 "check unit, axes and marker names",
             )
@@ -252,7 +252,7 @@ def _whole(evidence: Evidence) -> Iterator[Reason]:
         found.append(
             (
                 unknown,
-                f"the protocol knows {100.0 * evidence.explained:.0f} % of the capture's markers",
+                f"the protocol knows {percent(evidence.explained)} of the capture's markers",
                 "the subject file belongs to another marker set, and perhaps to another person",
                 "take the subject file of this person, or scale again with the right --protocol",
             )

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, JsonTable
 from mbkf.io.results import Reconstruction
+from mbkf.numerics.printed import percent
 from mbkf.viz.markup import grid, key, paragraph, section, table
 from mbkf.viz.report.checks import findings_table
 from mbkf.viz.report.marker_chart import CLASSES, LABELS, longest_gap_s, marker_chart, states
@@ -95,7 +96,7 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     """
     gap = float(longest_gap_s(r).max(initial=0.0))
     missing = summary.get("missing_fraction") or 0.0
-    tracked = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
+    tracked = float(r.tracked.mean()) if r.frames else 0.0
     fit = [_markers(r, summary), _tracked(r, tracked), *_ignored(summary)]
     others = [*_unexplained(r), *_residuals(r, summary), _nis(summary)]
     if any(one.kind == BAD for one in fit):
@@ -104,14 +105,14 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     if not r.marker_names:
         return [*fit[1:], *others]
     longest = f"longest gap of one marker {gap:.2f} s"
-    return [fit[0], *others, Verdict("Markers missing", f"{100 * missing:.1f} %", NONE, longest), *fit[1:]]
+    return [fit[0], *others, Verdict("Markers missing", percent(missing, 1), NONE, longest), *fit[1:]]
 
 
-def _tracked(r: Reconstruction, percent: float) -> Verdict:
+def _tracked(r: Reconstruction, share: float) -> Verdict:
     known, measured = int(r.valid.sum()), int(r.measured.sum())
     remark = f"all loads known in {known} of {r.frames} frames, measured in {measured}"
-    kind = GOOD if percent > TRACKED_PERCENT else CARE if percent >= BAD_TRACKED_PERCENT else BAD
-    return Verdict("Frames tracked", f"{percent:.1f} %", kind, remark)
+    kind = GOOD if 100.0 * share > TRACKED_PERCENT else CARE if 100.0 * share >= BAD_TRACKED_PERCENT else BAD
+    return Verdict("Frames tracked", percent(share, 1), kind, remark)
 
 
 def _ignored(summary: JsonTable) -> list[Verdict]:
@@ -126,9 +127,7 @@ def _ignored(summary: JsonTable) -> list[Verdict]:
         names = [name for name in ignored if ignored[name] == reason]
         more = " …" if len(names) > MOST_NAMED else ""
         listed.append(f"{', '.join(names[:MOST_NAMED])}{more} ({reason})")
-    remark = (
-        f"the protocol knows {100 * explained:.0f} % of the capture's markers; ignored: {'; '.join(listed)}"
-    )
+    remark = f"the protocol knows {percent(explained)} of the capture's markers; ignored: {'; '.join(listed)}"
     return [Verdict("Markers ignored", str(len(ignored)), kind, remark)]
 
 
@@ -170,7 +169,7 @@ def _unexplained(r: Reconstruction) -> list[Verdict]:
         remark = (
             "of body weight at most over half a second, from positions and contacts alone; good: below 8 %"
         )
-        return [Verdict("Unexplained force", f"{100.0 * share:.1f} %", GOOD, remark)]
+        return [Verdict("Unexplained force", percent(share, 1), GOOD, remark)]
     largest = max(r.unexplained, key=lambda one: one.force_n)
     more = f"; {len(r.unexplained) - 1} more below" if len(r.unexplained) > 1 else ""
     remark = f"{largest.direction}, {largest.from_s:.2f} to {largest.to_s:.2f} s: {largest.hint}{more}"
@@ -187,7 +186,7 @@ def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     found = []
     weight_n = GRAVITY_M_S2 * r.subject.mass_kg
     shares = (
-        f"{100.0 * force / weight_n:.1f} % of body weight",
+        f"{percent(force / weight_n, 1)} of body weight",
         f"a lever of {1e3 * moment / weight_n:.0f} mm",
     )
     for what, rms, vectors, allowed, unit, share in (
@@ -284,13 +283,13 @@ def _labelling(labels: JsonTable | None) -> str:
     if labels is None:
         return ""
     text = (
-        f"Labelled by mbkf from points without names: {100 * labels.get('assigned_fraction', 0.0):.2f} % of "
+        f"Labelled by mbkf from points without names: {percent(labels.get('assigned_fraction', 0.0), 2)} of "
         f"marker-frames assigned, {labels.get('ghosts_dropped', 0)} ghost points dropped, "
         f"{labels.get('swaps_repaired', 0)} swaps repaired."
     )
     if labels.get("correct_fraction") is not None:
         text += (
-            f" Against the known labels: {100 * labels['correct_fraction']:.3f} % correct, "
-            f"{100 * labels['wrong_fraction']:.3f} % wrong, {100 * labels['missed_fraction']:.3f} % missed."
+            f" Against the known labels: {percent(labels['correct_fraction'], 3)} correct, "
+            f"{percent(labels['wrong_fraction'], 3)} wrong, {percent(labels['missed_fraction'], 3)} missed."
         )
     return paragraph(text)

@@ -163,6 +163,31 @@ def test_a_person_who_lies_is_not_put_on_the_feet():
     assert "as the file says" in stated.note
 
 
+def test_where_feet_are_not_seen_the_floor_decides():
+    """As read, markers reach below the origin; along the body's height the lowest lie as feet do."""
+    lying = misread(made_capture(10, plates=()), ON_ITS_BACK)
+    segments = {m.name: m.segment for m in PROTOCOL.markers}
+    footless = tuple(
+        name for name in lying.markers.names if segments[name].split("_")[-1] not in ("foot", "toes")
+    )
+    assert len(footless) < len(lying.markers.names)
+    markers = lying.markers.select(footless)
+
+    def moved(back_m: float, sole_m: float, source: AxesSource = AxesSource.DEFAULT) -> Verdict:
+        lowest = [
+            float(np.nanmax(markers.positions_m[:, :, 0])),
+            float(np.nanmin(markers.positions_m[:, :, 2])),
+        ]
+        positions = markers.positions_m + np.array([-sole_m - lowest[0], 0.0, back_m - lowest[1]])
+        return found(
+            replace(lying, markers=replace(markers, positions_m=positions), axes_source=source)
+        ).verdict
+
+    assert moved(-0.1, 0.1) is Verdict.PUT_RIGHT
+    assert moved(0.05, 0.1) is moved(-0.1, 0.6) is Verdict.UNCLEAR
+    assert moved(-0.1, 0.1, AxesSource.SCREEN) is Verdict.KEPT
+
+
 def rising(turn: np.ndarray = SAME, stretched_rad: float = 1.0) -> Capture:
     """A person who lies in sixteen frames of twenty, then stands, in axes misread by a turn."""
     standing = made_capture(20, plates=())

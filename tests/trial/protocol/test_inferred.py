@@ -124,7 +124,7 @@ def test_points_without_a_person_are_refused():
     rng = np.random.default_rng(1)
     points = rng.uniform([-0.3, -0.3, 0.0], [0.3, 0.3, 1.7], (30, 3))
     markers = MarkerTrajectories(tuple(f"M{k}" for k in range(30)), np.tile(points, (5, 1, 1)), 100.0)
-    with pytest.raises(NotObservable, match=r"no upright body is found .*--up.*--static.*--protocol"):
+    with pytest.raises(NotObservable, match=r"no upright body is found .*--up.*static trial.*--protocol"):
         infer_marker_set(Capture("", markers))
 
 
