@@ -52,18 +52,14 @@ def _functional_walk(trial: Trial) -> Iterator[Check]:
 def _fukuchi_run(trial: Trial) -> Iterator[Check]:
     yield from _no_other_support(trial)
     yield _yes("60.3 kg: no remark on the mass", "mass against plates:" not in trial.said("reconstruct"))
-    subject, result = trial.out / "65kg.toml", trial.out / "65kg"
+    heavier = Trial(trial.data, trial.out / "65kg")
+    heavier.out.mkdir(exist_ok=True)
+    subject, result = heavier.out / "subject.toml", heavier.out / "result"
     typed("scale", trial.data / "RBDS001static.c3d", "--mass", "65", "--out", subject)
     said = typed("reconstruct", trial.data / "RBDS001runT35.c3d", "--subject", subject, "--out", result).text
     yield _yes("65 kg: the mass is reported", "mass against plates:" in said)
-    heavier = Trial(trial.data, trial.out / "65kg_trial")
-    heavier.out.mkdir(exist_ok=True)
-    if result.is_dir():
-        result.rename(heavier.out / "result")
-    yield from (
-        Check(f"65 kg: {row.name}", row.value, row.bound, row.relation, row.unit)
-        for row in _no_other_support(heavier)
-    )
+    for row in _no_other_support(heavier):
+        yield Check(f"65 kg: {row.name}", row.value, row.bound, row.relation, row.unit)
 
 
 def _start_off_treadmill(trial: Trial) -> Iterator[Check]:
