@@ -5,6 +5,7 @@ Lists markers and their gaps, force plates and their offsets, analog channels, e
 Examples:
   mbkf info walk.c3d
   mbkf info walk.trc --forces walk_grf.mot --json
+  mbkf info walk.c3d --without-plate 2
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options, axes_options
+from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options, add_without_plate, axes_options
 from mbkf.cli.tables import terminal
 from mbkf.numerics.printed import percent
 
@@ -32,6 +33,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("file", metavar="FILE", help=f"capture ({CAPTURE_FILES})")
     parser.add_argument("--forces", metavar="FILE", help=f"ground reactions of the capture ({FORCE_FILES})")
+    add_without_plate(parser)
     add_axes_options(parser)
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
 
@@ -40,8 +42,11 @@ def run(args: argparse.Namespace) -> int:
     """Reads the capture and prints its summary."""
     from mbkf.io.capture import read_capture
     from mbkf.trial.info import describe
+    from mbkf.trial.preparation.selection import without_plates
 
-    summary = describe(read_capture(args.file, forces=args.forces, **axes_options(args)))
+    without = tuple(args.without_plate)
+    capture = read_capture(args.file, forces=args.forces, unneeded_plates=without, **axes_options(args))
+    summary = describe(without_plates(capture, without))
     if args.json:
         print(json.dumps(asdict(summary), indent=2, ensure_ascii=False, allow_nan=False))
     else:
@@ -70,6 +75,8 @@ def _show(summary: CaptureSummary, console: Console) -> None:
         console.print(events)
     if summary.plates_mass is not None and summary.plates_mass.verdict == "outside":
         console.print(f"warning: {summary.plates_mass.note}", soft_wrap=True)
+    for contradiction in summary.plate_contradictions:
+        console.print(f"warning: {contradiction}", soft_wrap=True)
     for note in summary.notes:
         console.print(f"note: {note}")
 

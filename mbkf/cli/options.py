@@ -75,6 +75,13 @@ def add_axes_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_without_plate(parser: argparse.ArgumentParser) -> None:
+    """Adds ``--without-plate``."""
+    parser.add_argument(
+        "--without-plate", metavar="N", action="append", default=[], help="withhold a plate; may be repeated"
+    )
+
+
 def add_out(
     parser: argparse._ActionsContainer,
     metavar: str,

@@ -35,6 +35,7 @@ from mbkf.cli.options import (
     add_preset_options,
     add_spreads_option,
     add_strict,
+    add_without_plate,
     asked_spreads,
     axes_options,
     comma_separated,
@@ -92,9 +93,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.toml",
         help="places of the sensors (default: found from the markers' motion)",
     )
-    parser.add_argument(
-        "--without-plate", metavar="N", action="append", default=[], help="withhold a plate; may be repeated"
-    )
+    add_without_plate(parser)
     parser.add_argument(
         "--keep-markers",
         action="store_true",

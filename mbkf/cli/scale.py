@@ -10,6 +10,7 @@ Examples:
   mbkf scale static.c3d --trial walk.c3d --mass 60 --height 1.72 --out subject.toml
   mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
   mbkf scale static.c3d --trial walk.c3d --mass auto --out subject.toml  (weighed by the plates)
+  mbkf scale static.c3d --mass auto --without-plate 2 --out subject.toml  (one of them broken)
   mbkf scale static.c3d --trial walk.c3d --mass 60 --inertia --out subject.toml  (masses of segments by the plates)
   mbkf scale static.c3d --body legs.toml --mass 60 --out subject.toml  (a body of your own)
   mbkf scale static.c3d --body robot.urdf --mass 60 --out subject.toml  (from URDF, with robot.urdf.toml)
@@ -21,7 +22,6 @@ import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,7 @@ from mbkf.cli.options import (
     add_axes_options,
     add_out,
     add_static_only,
+    add_without_plate,
     axes_options,
     body_mass,
 )
@@ -101,6 +102,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="estimate masses and centres of mass of segments from the plates, and write them if the evidence supports "
         "them",
     )
+    add_without_plate(parser)
     add_axes_options(parser)
     add_out(parser, "SUBJECT.toml", "file to write", required=True)
 
@@ -146,11 +148,12 @@ def _stated(args: argparse.Namespace) -> dict[str, Any]:
 def _of_captures(args: argparse.Namespace, standing: str | Path | None, stated: dict[str, Any]) -> Subject:
     """The person of a standing trial and the moving ones named."""
     from mbkf.cli.progress import stages
-    from mbkf.io.capture import read_capture
     from mbkf.trial.scale import scale
 
-    static = None if standing is None else read_capture(standing, **axes_options(args))
-    trials = [read_capture(path, **axes_options(args)) for path in args.trial]
+    read = _Reader(args)
+    static = None if standing is None else read(standing)
+    trials = [read(path) for path in args.trial]
+    read.check()
     with stages() as report:
         subject = scale(static, trials, **stated, body=args.body, settings=_settings(args), progress=report)
     return _weighed(args, subject, trials if static is None else [static, *trials])
@@ -159,7 +162,6 @@ def _of_captures(args: argparse.Namespace, standing: str | Path | None, stated: 
 def _of_folder(args: argparse.Namespace) -> Subject:
     """The person of a session's folder, from the trials named or those that are chosen."""
     from mbkf.cli.progress import stages
-    from mbkf.io.capture import read_capture
     from mbkf.study.batch.folder import person_of_folder
     from mbkf.study.batch.person import captures_used, scaled
     from mbkf.study.batch.sorting import one_person
@@ -171,11 +173,36 @@ def _of_folder(args: argparse.Namespace) -> Subject:
         stated = {name: getattr(person, name) for name in ("mass_kg", "height_m", "protocol")}
         return _of_captures(args, next(iter(person.statics), None), stated)
     person = replace(person, static_only=args.static_only or person.static_only)
-    read = partial(read_capture, **axes_options(args))
+    read = _Reader(args)
     with stages() as report:
         subject = scaled(person, report, body=args.body, settings=_settings(args), read=read)
+    read.check()
     needs_plates = args.inertia or args.mass == AUTO
     return _weighed(args, subject, captures_used(person, subject, read) if needs_plates else ())
+
+
+class _Reader:
+    """Reads captures as the options say, without the plates withheld, each of which some capture has to have."""
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        self._withheld, self._axes = tuple(args.without_plate), axes_options(args)
+        self._known: dict[str, None] = {}
+
+    def __call__(self, path: str | Path, **more: Any) -> Capture:
+        """The capture; ``more`` are other arguments of the reader."""
+        from mbkf.io.capture import read_capture
+        from mbkf.trial.preparation.selection import plate_names, without_plates
+
+        capture = read_capture(path, unneeded_plates=self._withheld, **self._axes, **more)
+        known = plate_names(capture)
+        self._known |= dict.fromkeys(known)
+        return without_plates(capture, [name for name in self._withheld if name in known])
+
+    def check(self) -> None:
+        """Refuses a plate that no capture has."""
+        from mbkf.trial.preparation.selection import check_withheld
+
+        check_withheld(self._known, self._withheld)
 
 
 def _settings(args: argparse.Namespace) -> ScalingSettings:

@@ -6,9 +6,8 @@ the assumption:
 - **Up**: the mean force of a person is weight, so it points along the vertical.
 - **Sign**: a plate pushes. Forces that pull down, in a file that does not state whose they are, are those on the
   plate, and are turned.
-- **Moment**: a torque at the centre of pressure is vertical; a moment about another point o is
-  M = (p − o) × F + T with the point of application p, which determines o.
-- **Units**: the free torque of a foot is a few centimetres times its force, and a point lies in a laboratory.
+- **Moment**: its point and unit agree with forces and points of application (:mod:`mbkf.io.moment_reference`).
+- **Units**: a point lies in a laboratory.
 """
 
 from __future__ import annotations
@@ -23,6 +22,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.axes import finite, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_names import ForceSet, force_sets
+from mbkf.io.moment_reference import LABORATORY_M, MomentReference, reference_at_point, reference_of_moments
 from mbkf.io.readable_plates import readable_plates
 from mbkf.io.records import PlateReadings
 from mbkf.io.turning import rotated
@@ -32,15 +32,6 @@ _LEAST_OFFSET_N = 2.0
 _UP = np.array([0.0, 0.0, 1.0])
 _LEAST_WEIGHT_N = 10.0
 _VERTICAL_SHARE = 0.9
-_LABORATORY_M = 50.0
-_LARGEST_TILT_M = 0.02
-"""Horizontal torque over force that a torque at the centre of pressure may show, RMS."""
-_EXACT_TILT_M = 0.002
-"""Horizontal torque over force, RMS, beyond the rounding of a torque at the centre of pressure."""
-_EXACT_SHARE = 0.1
-"""Share of the horizontal torque that remains about the centre of pressure, where it is one about the origin."""
-_LARGEST_FREE_M = 0.2
-"""Vertical torque over force of one foot, RMS; feet reach 0.02 to 0.05."""
 
 
 @dataclass(frozen=True)
@@ -125,8 +116,12 @@ def _set_readings(
     point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
     where = f"{table.path}, set '{one.name}'"
     require_finite(np.hstack([force, point]), moment, table.rate_hz, table.start_time_s, where)
-    factor, origin = _moment_reference(table, force[loaded], point[loaded], moment[loaded], one.name)
+    factor, origin, doubt = _moment_reference(table, force[loaded], point[loaded], moment[loaded], one.name)
     about = factor * moment
+    if doubt:
+        options.notes.append(f"set '{one.name}': {doubt}")
+    if table.at_point and factor != 1.0:
+        options.notes.append(f"set '{one.name}': torques fit feet as N mm, not as N m; taken as N mm")
     if origin is None:
         origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
         with np.errstate(all="ignore"):  # impossible points give impossible moments, which are refused later
@@ -260,8 +255,9 @@ def _metres(table: ForceTable, columns: Sequence[_Columns], threshold_n: float, 
     if table.metres is not None:
         return table.metres
     loaded = [one.point[np.abs(one.force[:, 2]) >= threshold_n] for one in columns]
-    farthest = max((float(np.abs(np.nan_to_num(one)).max()) for one in loaded if len(one)), default=0.0)
-    if farthest <= _LABORATORY_M:
+    reach = [np.percentile(np.abs(np.nan_to_num(one)).max(axis=1), 90.0) for one in loaded if len(one)]
+    farthest = float(max(reach, default=0.0))
+    if farthest <= LABORATORY_M:
         return 1.0
     notes.append(f"points of application reach {farthest:.0f} without a unit; taken as mm")
     return 1e-3
@@ -269,56 +265,21 @@ def _metres(table: ForceTable, columns: Sequence[_Columns], threshold_n: float, 
 
 def _moment_reference(
     table: ForceTable, force: Array, point: Array, moment: Array, name: str
-) -> tuple[float, Array | None]:
-    """N m per unit of the moments, and the point they refer to; None for the point of application.
+) -> MomentReference:
+    """Unit and point of the moments of a set's loaded samples, (S, 3) each.
 
-    All arrays are (S, 3) of a set's loaded samples: forces in N, points of application in m, moments in the table's
-    unit.
+    Raises:
+        FileFormatError: No point explains them.
     """
-    factors = (1.0, 1e-3) if table.newton_metres is None else (table.newton_metres,)
     if len(force) == 0 or not moment.any():
-        return factors[0], None
+        return MomentReference(1.0 if table.newton_metres is None else table.newton_metres, None)
     if table.at_point:
-        return factors[0], _stated_origin(force, point, factors[0] * moment)
-    for factor in factors:
-        origin = _origin(force, point, factor * moment)
-        ways: list[tuple[tuple[float, float], Array | None]] = [(_levers(force, factor * moment), None)]
-        if np.abs(origin).max() <= _LABORATORY_M:
-            ways.append((_levers(force, factor * moment - np.cross(point - origin, force)), origin))
-        possible = [way for way in ways if way[0][0] <= _LARGEST_TILT_M and way[0][1] <= _LARGEST_FREE_M]
-        if possible:
-            return factor, min(possible, key=lambda way: way[0][0])[1]
-    raise FileFormatError(
-        table.path,
-        f"set '{name}': moments do not agree with the points of application; export it again",
-    )
-
-
-def _stated_origin(force: Array, point: Array, moment: Array) -> Array | None:
-    """The laboratory's origin where torques refer to it, which should act at the point of application p; else None.
-
-    At the centre of pressure a torque has no horizontal part; about the origin it has that of p × F. Arrays as in
-    :func:`_moment_reference`, in m, N and N m.
-    """
-    tilt, _ = _levers(force, moment)
-    left, _ = _levers(force, moment - np.cross(point, force))
-    return np.zeros(3) if tilt > _EXACT_TILT_M and left < _EXACT_SHARE * tilt else None
-
-
-def _levers(force: Array, torque: Array) -> tuple[float, float]:
-    """RMS of horizontal and of vertical torque (S, 3), over that of the force (S, 3), m."""
-    rms = np.sqrt((torque**2).mean(axis=0) / (force**2).sum(axis=1).mean())
-    return float(np.hypot(rms[0], rms[1])), float(rms[2])
-
-
-def _origin(force: Array, point: Array, moment: Array) -> Array:
-    """(3,) point about which the moments are those of the forces at their points, but for a vertical torque."""
-    fx, fy, fz = force.T
-    zero = np.zeros_like(fx)
-    # o × F = p × F + T − M, of which the horizontal components are free of the vertical torque T
-    rows = np.vstack([np.column_stack([zero, fz, -fy]), np.column_stack([-fz, zero, fx])])
-    right = np.cross(point, force) - moment
-    return np.asarray(np.linalg.lstsq(rows, np.concatenate([right[:, 0], right[:, 1]]), rcond=None)[0])
+        return reference_at_point(force, point, moment)
+    found = reference_of_moments(force, point, moment, table.newton_metres)
+    if found is None:
+        reason = f"set '{name}': moments do not agree with the points of application; export it again"
+        raise FileFormatError(table.path, reason)
+    return found
 
 
 def _readings(

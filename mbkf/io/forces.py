@@ -30,7 +30,7 @@ def read_forces_mot(path: str | Path, options: CaptureOptions) -> tuple[PlateRea
     table = read_storage(path, check_rows=False)
     rate_hz = even_rate(Path(path), table.times_s)
     _check_rows(Path(path), table, rate_hz, options)
-    forces = ForceTable(str(path), table.names, table.columns, rate_hz, float(table.times_s[0]))
+    forces = ForceTable(str(path), table.names, table.columns, rate_hz, float(table.times_s[0]), metres=None)
     return plates_of_table(forces, options)
 
 

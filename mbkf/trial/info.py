@@ -12,6 +12,7 @@ from mbkf.model.protocol import Protocol, detect_protocol
 from mbkf.numerics.runs import runs
 from mbkf.trial.axes.captures import find_axes_by_names
 from mbkf.trial.axes.decision import AxesFinding, Verdict, applied
+from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.unscaled_mass import unscaled_mass_finding
 from mbkf.trial.preparation.coverage import use_by_protocol
 from mbkf.trial.protocol.choice import shipped_protocol
@@ -142,6 +143,7 @@ class CaptureSummary:
         length_unit: Length unit of the file.
         subject_mass_kg: Body mass the file states, or None.
         plates_mass: Mass by the plates; None without plates, or where the vertical is not known.
+        plate_contradictions: A sentence on each contradiction of plates with their own area or the feet.
         labelled: Number of markers with a name of their own.
         unlabelled: Number of trajectories called ``*0``, ``*1`` ….
         missing_fraction: Share of missing samples over all markers, 0 to 1.
@@ -168,6 +170,7 @@ class CaptureSummary:
     length_unit: str
     subject_mass_kg: float | None
     plates_mass: PlatesMass | None
+    plate_contradictions: tuple[str, ...]
     labelled: int
     unlabelled: int
     missing_fraction: float
@@ -203,6 +206,7 @@ def describe(capture: Capture) -> CaptureSummary:
         length_unit=capture.length_unit,
         subject_mass_kg=capture.subject_mass_kg,
         plates_mass=_plates_mass(upright),
+        plate_contradictions=plate_contradictions(upright),
         labelled=len(markers.names) - unlabelled,
         unlabelled=unlabelled,
         missing_fraction=float(1.0 - present.mean()) if present.size else 0.0,

@@ -22,6 +22,7 @@ from mbkf.scaling.trial_lengths import LengthEvidence
 from mbkf.sensors.block import AnyBlock
 from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks.in_view import in_view_finding
+from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.preparation.coverage import use_by_subject
@@ -30,7 +31,7 @@ from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, trac
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import Motion, markers_alone
 from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
-from mbkf.trial.preparation.selection import hidden_samples, plates_without, subject_markers
+from mbkf.trial.preparation.selection import hidden_samples, subject_markers, without_plates
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.progression import PELVIS_FRAMES
@@ -75,7 +76,7 @@ def reconstruct(
     _check_names(settings, imus is not None)
     zero_posture(settings.angles_zero, subject)
     with single_threaded():
-        capture = checked_for_subject(capture, subject)
+        capture = checked_for_subject(capture, subject, settings.without_plates)
         measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
         capture = replace(capture, notes=(*capture.notes, *exchange_notes(exchanged)))
         use = use_by_subject(capture.markers, subject)
@@ -83,7 +84,9 @@ def reconstruct(
             capture = replace(capture, notes=(*capture.notes, use.warning))
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
-        plates = plates_without(capture, settings.without_plates)
+        plates = without_plates(capture, settings.without_plates).plates
+        doubted = plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
+        capture = replace(capture, notes=(*capture.notes, *doubted))
         subject, before, lengths = _for_trial(subject, shown, settings)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:

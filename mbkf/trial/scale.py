@@ -23,7 +23,7 @@ from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.stature import stature_doubts
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
-from mbkf.trial.checks.unscaled_mass import PLATES_KEY, unscaled_mass_notes
+from mbkf.trial.checks.unscaled_mass import PLATES_KEY, plate_notes
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, MarkerUse, use_by_protocol
 from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right
 from mbkf.trial.preparation.in_view import others_in_view
@@ -176,7 +176,7 @@ def _scaled(
         )
     if refusal is not None:
         raise refusal
-    contradictions = unscaled_mass_notes(checked, mass_kg)
+    contradictions = plate_notes(checked, mass_kg)
     axes = corrected_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
     extra: dict[str, object] = {USE_KEY: use.as_report()}

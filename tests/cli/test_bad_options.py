@@ -158,6 +158,12 @@ def test_unknown_hidden_marker_and_plate(person, refuse_reconstruct):
     refuse_reconstruct([person.trial, "--filter", "magic"], "--filter", "'magic'", "kinematic")
 
 
+def test_scaling_withholds_plates(person, refuse_scale):
+    words = [person.static, "--trial", person.trial, "--mass", "auto", "--without-plate"]
+    refuse_scale([*words, "7"], "--without-plate", "unknown plate '7'", "1, 2")
+    refuse_scale([*words, "1", "--without-plate", "2"], "no capture has plates")
+
+
 def test_unusable_forces_file(person, tmp_path, refuse_reconstruct):
     path = tmp_path / "grf.mot"
     words = [person.trial_trc, "--forces", path]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.cli.main import build_parser
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
@@ -87,6 +87,24 @@ def test_forces_of_another_file(folder, capsys):
     assert found["plates"][0]["loaded_fraction"] == 0.5
     assert run(folder / "walk.trc", "--forces", folder / "walk.mot") == 0
     assert "not in the file" in capsys.readouterr().out
+
+
+def test_a_plate_is_withheld_before_the_capture_is_judged(folder, capsys):
+    assert run(folder / "walk.c3d", "--without-plate", "1", "--json") == 0
+    shown = json.loads(capsys.readouterr().out)
+    assert (shown["plates"], shown["plates_mass"], shown["plate_contradictions"]) == ([], None, [])
+    with pytest.raises(UnknownName, match="unknown plate '2'"):
+        run(folder / "walk.c3d", "--without-plate", "2")
+
+
+def test_plates_that_contradict_the_feet_are_reported(tmp_path, capsys):
+    whole = made_capture(12)
+    pulling = tuple(
+        replace(plate, force_n=-plate.force_n, moment_nm=-plate.moment_nm) for plate in whole.plates
+    )
+    write_c3d(replace(whole, plates=pulling), tmp_path / "a.c3d")
+    assert run(tmp_path / "a.c3d") == 0
+    assert "pull feet down; check their sign" in capsys.readouterr().out
 
 
 def test_axis_and_unit_can_be_given(folder, capsys):

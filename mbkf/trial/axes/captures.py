@@ -36,7 +36,7 @@ def checked_for_protocol(captures: Sequence[Capture], protocol: Protocol) -> lis
     return right_axes(captures, places, with_plates=False)
 
 
-def checked_for_subject(capture: Capture, subject: Subject) -> Capture:
+def checked_for_subject(capture: Capture, subject: Subject, withheld: Sequence[str] = ()) -> Capture:
     """A trial of a scaled person, with its axes checked and corrected.
 
     A trial without evidence on its axes takes those that the person was scaled with.
@@ -44,11 +44,13 @@ def checked_for_subject(capture: Capture, subject: Subject) -> Capture:
     Args:
         capture: The trial.
         subject: The person.
+        withheld: Names of plates that are no evidence.
 
     Raises:
         InvalidInput: The axes or the unit of the trial are wrong, and the right ones are not clear.
     """
-    found = find_axes_for_subject(capture, subject)
+    shown = tuple(plate for plate in capture.plates if plate.name not in withheld)
+    found = find_axes_for_subject(replace(capture, plates=shown), subject)
     alike = turned_like_subject(capture, subject)
     if alike is not capture and may_follow(found, axes_matrix(alike.axes) @ axes_matrix(capture.axes).T):
         return alike

@@ -29,6 +29,7 @@ from mbkf.trial.checks.mass import (
     impulse_finding,
     undetermined,
 )
+from mbkf.trial.checks.plate_contradictions import plate_contradictions
 
 PLATES_KEY = "plates_against_mass"
 """Key of a subject's report that lists the captures whose plates contradict the mass."""
@@ -87,14 +88,17 @@ def unscaled_mass_finding(capture: Capture, mass_kg: float | None = None) -> Fin
     return found
 
 
-def unscaled_mass_notes(captures: Sequence[Capture], mass_kg: float | None = None) -> list[str]:
-    """A sentence on each capture whose plates contradict the mass, or any person's."""
-    found = [(one.path, unscaled_mass_finding(one, mass_kg)) for one in captures if one.plates]
-    return [
-        f"{path}: {finding.hint}" if len(captures) > 1 else finding.hint
-        for path, finding in found
-        if finding.verdict == "outside"
-    ]
+def plate_notes(captures: Sequence[Capture], mass_kg: float | None = None) -> list[str]:
+    """A sentence on each contradiction of the captures' plates, with the mass, any person's, their areas or feet."""
+    notes = []
+    for one in captures:
+        if not one.plates:
+            continue
+        finding = unscaled_mass_finding(one, mass_kg)
+        of_mass = (finding.hint,) if finding.verdict == "outside" else ()
+        where = f"{one.path}: " if len(captures) > 1 else ""
+        notes += [f"{where}{note}" for note in (*of_mass, *plate_contradictions(one))]
+    return notes
 
 
 def _judged(mass_kg: float, sd: float, stated_kg: float | None, subject: str) -> Finding:

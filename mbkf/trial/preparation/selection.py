@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from mbkf.conventions import BoolArray
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
-from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
+from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, match_names
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.trial.preparation.settings import Hidden
@@ -50,14 +50,27 @@ def hidden_samples(markers: MarkerTrajectories, hide: Sequence[Hidden]) -> BoolA
     return hidden & markers.present
 
 
-def plates_without(capture: Capture, without: Sequence[str]) -> tuple[PlateReadings, ...]:
-    """Plates of the capture, except those named; those that the reader left out may be named, too.
+def plate_names(capture: Capture) -> tuple[str, ...]:
+    """Names of the capture's plates, and of those that the reader left out."""
+    return (*(plate.name for plate in capture.plates), *capture.plates_left_out)
+
+
+def check_withheld(known: Collection[str], withheld: Collection[str]) -> None:
+    """Refuses names of plates to withhold that are not among those known.
+
+    Raises:
+        UnknownName: There is such a name.
+    """
+    for name in withheld:
+        if name not in known:
+            raise UnknownName("plate", name, list(known) or ["(the capture has none)"], "--without-plate")
+
+
+def without_plates(capture: Capture, withheld: Collection[str]) -> Capture:
+    """The capture without the plates named; those that the reader left out may be named, too.
 
     Raises:
         UnknownName: The capture has no plate of that name.
     """
-    names = [plate.name for plate in capture.plates]
-    for name in without:
-        if name not in names and name not in capture.plates_left_out:
-            raise UnknownName("plate", name, names or ["(the capture has none)"], "--without-plate")
-    return tuple(plate for plate in capture.plates if plate.name not in without)
+    check_withheld(plate_names(capture), withheld)
+    return replace(capture, plates=tuple(plate for plate in capture.plates if plate.name not in withheld))

@@ -80,6 +80,17 @@ def test_a_trial_that_cannot_be_right_is_refused(subject):
         checked_for_subject(floating, subject)
 
 
+def test_a_withheld_plate_is_no_evidence_on_axes(subject):
+    """A plate that faces down contradicts the person; the others do not."""
+    whole = made_capture(12, path="trial.trc")
+    down = replace(whole.plates[0], force_n=-whole.plates[0].force_n, corners_m=None)
+    wrong = misread(replace(whole, plates=(down,)), np.eye(3))
+    plain = scale(STATIC, mass_kg=MASS_KG)
+    with pytest.raises(InvalidInput, match="push along -z"):
+        checked_for_subject(wrong, plain)
+    assert checked_for_subject(wrong, plain, (down.name,)).plates == wrong.plates
+
+
 def test_a_capture_without_names_takes_the_axes_of_the_subjects_static(subject, tmp_path):
     write_subject(subject, tmp_path / "subject.toml")
     kept = read_subject(tmp_path / "subject.toml")

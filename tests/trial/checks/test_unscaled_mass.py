@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.trial.checks.unscaled_mass import unscaled_mass_finding, unscaled_mass_notes
+from mbkf.trial.checks.unscaled_mass import plate_notes, unscaled_mass_finding
 from tests.checked import amplified, body, plates, recorded
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -31,9 +31,9 @@ def test_the_mass_is_that_of_the_body_whatever_is_stated(name, wrong):
 
 def test_a_given_mass_counts_instead_of_that_of_the_file():
     assert unscaled_mass_finding(capture(stated=1.5), body().mass_kg).verdict == "inside"
-    (note,) = unscaled_mass_notes([capture()], 1.2 * body().mass_kg)
+    (note,) = plate_notes([capture()], 1.2 * body().mass_kg)
     assert "16 % less" in note and "units, gains and offsets" in note
-    first, second = unscaled_mass_notes([capture(), capture("squat")], 100.0)
+    first, second = plate_notes([capture(), capture("squat")], 100.0)
     assert first.startswith("trial.c3d: the plates carry") and second.startswith("trial.c3d: ")
 
 
@@ -88,7 +88,7 @@ def test_too_little_is_not_judged(frames):
     short = MarkerTrajectories(markers.names, markers.positions_m[:frames], markers.rate_hz)
     assert unscaled_mass_finding(replace(capture(), markers=short)).verdict == "not judged"
     assert unscaled_mass_finding(replace(capture(), plates=())).verdict == "not judged"
-    assert unscaled_mass_notes([replace(capture(), plates=())]) == []
+    assert plate_notes([replace(capture(), plates=())]) == []
 
 
 def test_a_moving_plateload_of_one_second_hides_no_weight():

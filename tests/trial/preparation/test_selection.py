@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
-from mbkf.trial.preparation.selection import hidden_samples, plates_without, subject_markers
+from mbkf.trial.preparation.selection import hidden_samples, subject_markers, without_plates
 from mbkf.trial.preparation.settings import Hidden
 from tests.motions import capture_of, random_model, subject_of
 
@@ -61,14 +61,14 @@ def test_a_withheld_plate_is_left_out_by_its_name():
         PlateReadings(name, 100.0, 0.0, np.zeros(3), nothing, nothing, nothing, 20.0) for name in ("1", "2")
     )
     capture = replace(capture_of(("A",), np.zeros((2, 1, 3))), plates=plates)
-    assert [plate.name for plate in plates_without(capture, ("1",))] == ["2"]
-    assert plates_without(capture, ()) == plates
+    assert [plate.name for plate in without_plates(capture, ("1",)).plates] == ["2"]
+    assert without_plates(capture, ()).plates == plates
     with pytest.raises(UnknownName, match="unknown plate '3'"):
-        plates_without(capture, ("3",))
+        without_plates(capture, ("3",))
 
 
 def test_a_plate_that_the_reader_left_out_may_be_withheld():
     capture = Capture("a.c3d", trajectories(["A"]), plates_left_out={"2": "it is of type 9"})
-    assert plates_without(capture, ["2"]) == ()
+    assert without_plates(capture, ["2"]).plates == ()
     with pytest.raises(UnknownName, match="unknown plate '3'"):
-        plates_without(capture, ["3"])
+        without_plates(capture, ["3"])
