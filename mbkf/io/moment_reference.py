@@ -1,6 +1,6 @@
-"""The point and the unit of the moments that a table of ground reactions states beside force and point of application.
+"""The point and the unit of the moments that a table of ground reactions states beside force and pressure.
 
-At the centre of pressure p a foot's torque is vertical, T, and a few centimetres times its force. A moment about another
+At the centre of pressure p a foot has a vertical torque T, a few centimetres times its force. A moment about another
 point o is M = (p − o) × F + T, whose horizontal part determines o where force or p change.
 """
 
@@ -65,7 +65,7 @@ def reference_at_point(force: Array, point: Array, moment: Array) -> MomentRefer
         return MomentReference(1.0, None)
     doubt = (
         f"torques at the points of application are {tilt:.2g} m times the force about horizontal axes and {free:.2g} m "
-        "about the vertical one, and a foot's are 0 and less than 0.1 m; check about which point they are, and their unit"
+        "about the vertical one, and a foot has 0 and less than 0.1 m; check their point and unit"
     )
     return MomentReference(1.0, None, doubt)
 
@@ -93,7 +93,7 @@ def reference_of_moments(
 
 
 def _fixed_point(force: Array, point: Array, moment: Array) -> Array | None:
-    """(3,) the fixed point that the moments, N m, refer to, the laboratory's origin first; None for another reference."""
+    """(3,) the fixed point that moments, N m, refer to, the laboratory's origin first; None without one."""
     tilt, _ = _levers(force, moment)
     if tilt <= _EXACT_TILT_M:
         return None

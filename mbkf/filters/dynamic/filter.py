@@ -22,6 +22,7 @@ from mbkf.sensors.block import AnyBlock, Frame
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.coordination.prior import CoordinationPrior
 from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.holes import beside_holes
 from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
@@ -69,7 +70,9 @@ def dynamic_blocks(
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
     weight_n = GRAVITY_M_S2 * model.mass_kg
-    dilution = None if spread_m is None else prior_dilution(sensor, noise_m, spread_m)
+    dilution = np.where(beside_holes(sensor, unobservable), s.posture.hole_posture_share, 1.0)
+    if spread_m is not None:
+        dilution = dilution * prior_dilution(sensor, noise_m, spread_m)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
     blocks: list[AnyBlock] = [
         Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),

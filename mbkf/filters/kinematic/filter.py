@@ -11,6 +11,8 @@ from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.sensors.block import AnyBlock
+from mbkf.sensors.holes import beside_holes
+from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
 from mbkf.sensors.pose_fit import PoseFit, fit_most_markers, segment_by_segment
@@ -26,7 +28,10 @@ START_SPEED_SD_RAD_S = 5.0
 def kinematic_blocks(
     sensor: MarkerSensor, noise_m: Array, dt_s: float, unobservable: BoolArray, settings: KinematicSettings
 ) -> list[AnyBlock]:
-    """The standard blocks: markers, damping of joints that nothing observes, posture prior.
+    """The standard blocks: markers, damping of joints that nothing observes, posture prior, limits.
+
+    Joints beside a segment without markers are known by their usual posture and their limits, too: a straight knee
+    under an unmarked thigh bends backwards as well as forwards.
 
     Args:
         sensor: The markers on the body.
@@ -43,10 +48,18 @@ def kinematic_blocks(
         gate_radius_m=s.gate_radius_m,
         min_markers=s.min_markers,
     )
+    holes = beside_holes(sensor, unobservable)
+    posture = PostureSensor(model)
     return [
         Markers(sensor, s.noise(noise_m), dt_s, unobservable, markers, inflate=False),
         UnobservedJoints(np.full(model.nv, s.velocity_sd)),
-        PosturePrior(PostureSensor(model), unobservable, PostureSettings(s.posture_scale)),
+        PosturePrior(
+            posture,
+            unobservable,
+            PostureSettings(s.posture_scale),
+            np.where(holes, s.hole_posture_share, 1.0),
+        ),
+        *([JointLimits(posture, ~holes)] if holes.any() else []),
     ]
 
 

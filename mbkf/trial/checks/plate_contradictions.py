@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
@@ -129,7 +130,7 @@ def _outside(points_m: Array, corners_m: Array) -> Array:
 
 
 def _beside_feet(
-    plate: PlateReadings, loaded: Array, pressure: Array, markers: MarkerTrajectories
+    plate: PlateReadings, loaded: NDArray[np.intp], pressure: Array, markers: MarkerTrajectories
 ) -> float | None:
     """Median horizontal distance from centres of pressure to the nearest low marker; None where there is no such."""
     chosen = slice(None, None, max(1, len(loaded) // FEW))
@@ -152,8 +153,8 @@ def _silent(capture: Capture) -> Iterator[str]:
     seconds = max(_standing_s(plate, capture.markers) for plate in capture.plates)
     if seconds >= STANDING_S:
         yield (
-            f"the force plates read at most {max(peaks):.2g} N, and a foot stands on one for {seconds:.1f} s; check the "
-            "unit of their forces"
+            f"the force plates read at most {max(peaks):.2g} N, and a foot stands on one for {seconds:.1f} s; check "
+            "the unit of their forces"
         )
 
 

@@ -18,6 +18,7 @@ from mbkf.io.verdict import LOAD_PARTS, MOTION_PARTS
 from mbkf.model.description import BodyDescription
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.verdict.fit import PartFit
+from mbkf.trial.verdict.holes import Hole, holes
 from mbkf.trial.verdict.parts import PELVIS, TRUNK, main_segments, part_of_segment
 from mbkf.trial.verdict.ranges import Beyond
 from mbkf.trial.verdict.standing import Stood, stood_bent
@@ -32,6 +33,7 @@ class Evidence:
         tracked: Share of the frames in which the body was followed.
         unshown: Parts that no instrument shows.
         unshown_segments: Segments by part that no instrument shows, of parts that others show.
+        holes: Segments without markers between others with some.
         fits: Fit of the markers of each part that shows any.
         beyond: Joints beyond their ranges.
         doubtful_limbs: Limbs that were in doubt while the filter ran, and the share of the trial for each.
@@ -51,6 +53,7 @@ class Evidence:
     tracked: float = 1.0
     unshown: tuple[str, ...] = ()
     unshown_segments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    holes: tuple[Hole, ...] = ()
     fits: tuple[PartFit, ...] = ()
     beyond: tuple[Beyond, ...] = ()
     doubtful_limbs: tuple[tuple[LimbDoubt, float], ...] = ()
@@ -128,6 +131,7 @@ def evidence_from(sums: TrialSums, found: Found) -> Evidence:
             for part in MOTION_PARTS
             if part not in unshown and any(one in lacking for one in main[part])
         },
+        holes=_holes(sums, part_of_segment(body)),
         fits=sums.fits(),
         beyond=sums.beyond(),
         doubtful_limbs=_doubtful_limbs(found, sums.frames, followed.rate_hz),
@@ -175,6 +179,17 @@ def _lacking(sums: TrialSums, body: BodyDescription) -> frozenset[str]:
     if followed.marker_names and body.roles.root not in shown:
         found.add(body.roles.root)
     return frozenset(found)
+
+
+def _holes(sums: TrialSums, part_of: Mapping[str, str]) -> tuple[Hole, ...]:
+    """Segments without a seen marker between others with some; nothing where no marker is followed."""
+    followed = sums.followed
+    if not followed.marker_names:
+        return ()
+    own = {marker.name: marker.segment for marker in followed.subject.markers}
+    marked = frozenset(own[name] for name in sums.seen)
+    unobservable = np.isin(followed.dof_names, followed.unobserved_dofs)
+    return holes(followed.model, marked, unobservable, part_of, sums.mean_sd())
 
 
 def _doubtful_limbs(found: Found, frames: int, rate_hz: float) -> tuple[tuple[LimbDoubt, float], ...]:

@@ -58,6 +58,9 @@ UNTRACKED = Bounds(0.05, 0.5)
 UNEXPLAINED_MARKERS = Bounds(0.4, 0.7)
 """Share of the capture's markers that the protocol does not know."""
 
+BETWEEN = "its pose follows from the segments on both sides and the usual posture"
+"""Meaning of a hole for the results."""
+
 CHECK_NAMES = "check the names of its markers, and that the subject file belongs to this person"
 
 
@@ -68,6 +71,7 @@ def motion_reasons(evidence: Evidence) -> Iterator[Reason]:
         evidence: The evidence.
     """
     yield from _not_shown(evidence)
+    yield from _holes(evidence)
     yield from _fits(evidence)
     yield from _ranges(evidence)
     yield from _doubtful_limbs(evidence)
@@ -89,12 +93,13 @@ def _not_shown(evidence: Evidence) -> Iterator[Reason]:
                 shown=False,
             )
         else:
+            hole = next((one for one in evidence.holes if one.parts[0] == part), None)
             yield Reason(
                 part,
                 "do not use",
-                "the capture shows nothing of it",
-                "its angles are those of the usual posture",
-                "put markers on it if it matters",
+                "the capture shows nothing of it" if hole is None else hole.found,
+                "its angles are those of the usual posture" if hole is None else BETWEEN,
+                "put markers on it if it matters" if hole is None else hole.remedy,
                 shown=False,
             )
     for part, segments in evidence.unshown_segments.items():
@@ -106,16 +111,14 @@ def _not_shown(evidence: Evidence) -> Iterator[Reason]:
             "angles beside it are guessed from the usual posture",
             "put markers on it, or use the other joints alone",
         )
-    if "pelvis" in evidence.unshown:
-        for part in ("right_leg", "left_leg", "trunk"):
+
+
+def _holes(evidence: Evidence) -> Iterator[Reason]:
+    """Reasons against the parts beside segments without markers."""
+    for hole in evidence.holes:
+        for part in hole.parts:
             if part not in evidence.unshown:
-                yield Reason(
-                    part,
-                    "look",
-                    "no marker shows the pelvis",
-                    "hip and trunk angles are measured from a pelvis that is guessed",
-                    "use knees and ankles alone, or put markers on the pelvis",
-                )
+                yield Reason(part, "look", hole.found, BETWEEN, hole.remedy)
 
 
 def _fits(evidence: Evidence) -> Iterator[Reason]:

@@ -59,7 +59,7 @@ def test_each_fault_is_named_once_with_its_plates(wrong, message):
 
 def test_a_load_that_was_zeroed_and_lifted_is_no_wrong_sign():
     whole = capture("squat")
-    far = whole.plates[0].corners_m + [3.0, 0.0, 0.0]
+    far = whole.plates[0].corners_m + 3.0 * np.array([1.0, 0.0, 0.0])
     lifted = replace(
         whole.plates[0],
         name="box",

@@ -8,6 +8,7 @@ from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.verdict import MOTION_PARTS, gravest
 from mbkf.trial.verdict.evidence import Evidence
 from mbkf.trial.verdict.fit import PartFit
+from mbkf.trial.verdict.holes import Hole
 from mbkf.trial.verdict.motion_reasons import FIT, INNOVATION, RANGE_DEG, Bounds, motion_reasons
 from mbkf.trial.verdict.ranges import Beyond
 from mbkf.trial.verdict.standing import Stood
@@ -52,9 +53,21 @@ def test_a_part_that_is_not_shown_says_so():
     assert (found.part, found.word, found.shown) == ("left_arm", "do not use", False)
 
 
-def test_a_pelvis_that_is_not_shown_makes_its_neighbours_doubtful():
-    words = {one.part: one.word for one in motion_reasons(Evidence(unshown=("pelvis", "left_leg")))}
+def test_an_unmarked_pelvis_is_named_with_its_spreads_on_all_parts_beside_it():
+    hole = Hole(
+        "pelvis",
+        ("pelvis", "trunk", "right_leg", "left_leg"),
+        {"pelvis_tilt": 6.2, "hip_flexion": 6.8},
+        ("right_asis", "left_asis", "right_psis", "left_psis"),
+    )
+    found = list(motion_reasons(Evidence(unshown=("pelvis", "left_leg"), holes=(hole,))))
+    words = {one.part: one.word for one in found}
     assert words == {"pelvis": "do not use", "left_leg": "do not use", "right_leg": "look", "trunk": "look"}
+    of_hole = [one for one in found if one.part != "left_leg"]
+    assert {one.found for one in of_hole} == {
+        "the pelvis has no markers; uncertain (1 sd) are pelvis tilt by 6°, hip flexion by 7°"
+    }
+    assert all("put markers on it (right asis, left asis, right psis)" in one.do for one in of_hole)
 
 
 def test_a_segment_that_is_not_shown_makes_its_part_doubtful():
