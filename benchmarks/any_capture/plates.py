@@ -22,6 +22,12 @@ KNOWN_KG = {
     "biomechzoo_walk_turn/HC044A_Straight_HC044A15.c3d": 39.4,
     "bmc_walk_run/run.trc": 70.0,
     "cgm24_lowerlimb_walk/CGM24_Walking01.c3d": 77.6,
+    "foreign_truth/adult/run/trial.trc": 85.3,
+    "foreign_truth/adult/squat/trial.trc": 85.3,
+    "foreign_truth/adult/walk/trial.trc": 85.3,
+    "foreign_truth/child/run/trial.trc": 23.0,
+    "foreign_truth/child/squat/trial.trc": 23.0,
+    "foreign_truth/child/walk/trial.trc": 23.0,
     "fukuchi_run/RBDS001runT35.c3d": 60.3,
     "functional_walk/FunctionalStatic.c3d": 60.0,
     "functional_walk/FunctionalWalk.c3d": 60.0,
@@ -31,6 +37,7 @@ KNOWN_KG = {
     "judgement/walk7_120frames.c3d": 71.86,
     "rajagopal_walk_run/motion_capture_run.trc": 72.84,
     "rajagopal_walk_run/motion_capture_walk.trc": 85.07,
+    "rehazenter_walk/2014001_C1_01.c3d": 67.0,
     "stoop_lift_box/neu_t169_f250f350.c3d": 81.7,
     "stoop_lift_box/stoop1_t169_f620f800.c3d": 81.7,
     "stoop_lift_box/stoop2_t169_f1395f1590.c3d": 81.7,
@@ -44,6 +51,11 @@ HEAVIER_KG = {"flywheel_squat/S1_FlywheelSquat.c3d": 81.3, "opencap_s6_walk/s6_w
 the standing trial before it); over one step of the walk they carry 63 kg."""
 
 FORCES = {
+    **{
+        f"foreign_truth/{person}/{motion}/trial.trc": "grf.mot"
+        for person in ("adult", "child")
+        for motion in ("run", "squat", "walk")
+    },
     "bmc_walk_run/run.trc": "run_grf.mot",
     "gait2354_walk/subject01_walk1.trc": "subject01_walk1_grf.mot",
     "opencap_s6_walk/s6_walking1.trc": "s6_walking1_forces.mot",

@@ -32,6 +32,8 @@ _LEAST_OFFSET_N = 2.0
 _UP = np.array([0.0, 0.0, 1.0])
 _LEAST_WEIGHT_N = 10.0
 _VERTICAL_SHARE = 0.9
+_FREE_SHARE = 0.1
+"""Vertical moments about a point are free torques if they are less than this share of the alternative, squared."""
 
 
 @dataclass(frozen=True)
@@ -215,7 +217,7 @@ def _with_vertical(about: Array, lever: Array, loaded: BoolArray) -> Array:
         loaded: (S,) samples with a load.
     """
     stated, free = about[loaded, 2], about[loaded, 2] - lever[loaded, 2]
-    if (stated**2).sum() >= (free**2).sum():
+    if (stated**2).sum() >= _FREE_SHARE * (free**2).sum():
         return about
     return about + lever * [0.0, 0.0, 1.0]
 

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
 from benchmarks.dynamic.nis import nis as nis_of
-from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
+from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep, kinematic_blocks
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.numerics.kalman import correct, information
@@ -297,3 +297,24 @@ def test_a_step_is_the_dense_textbook_step(holds):
         both = after + state.P - C - C.T
         assert worst(both[NV:, NV:] - change_covariance(kalman, state, result)) < 1e-9 * worst(P)
         state = result.state
+
+
+def test_joints_beside_an_unmarked_segment_are_known_by_posture_and_limits_too():
+    """Both knees bend backwards by 0.3 rad; only the right one is beside an unmarked thigh."""
+    sensor, _ = protocol_sensor(MODEL)
+    marked = [m for m, segment in enumerate(sensor.segments) if segment != "right_thigh"]
+    bare = MarkerSensor(MODEL, [sensor.segments[m] for m in marked], sensor.local_m[marked])
+    nothing, settings = np.zeros(NV, dtype=bool), KinematicSettings()
+    right, left = (MODEL.joint(f"{side}_shank").v.start + 1 for side in ("right", "left"))
+    bent = np.zeros(NV)
+    bent[[right, left]] = -0.3
+    state = KinematicState(MODEL.integrate(MODEL.neutral(), bent), np.zeros(NV), np.eye(2 * NV))
+    whole = kinematic_blocks(sensor, np.full(len(sensor.segments), 0.01), DT, nothing, settings)
+    *_, prior, limits = kinematic_blocks(bare, np.full(len(marked), 0.01), DT, nothing, settings)
+    usual = whole[-1].prepare(state, None).information.matrix
+    known = prior.prepare(state, None).information.matrix
+    assert known[right, right] == pytest.approx(usual[right, right] / settings.hole_posture_share**2)
+    assert known[left, left] == pytest.approx(usual[left, left])
+    held = limits.prepare(state, None).matrix
+    assert held[right, right] > 100.0 and held[left, left] == 0.0
+    assert len(whole) == 3
