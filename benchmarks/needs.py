@@ -97,6 +97,7 @@ NEEDS: Mapping[str, Needs] = {
             *_MARKED,
             "breaker",
             "flywheel_squat",
+            "foreign_truth",
             "fukuchi_run",
             "functional_walk",
             "judgement",

@@ -43,6 +43,8 @@ COVERED_SD = 1.959964
 LEAST_SHARE = 0.25
 """Least share of the stated variance that is left after that of the result with all markers."""
 
+UNMARKED_PELVIS = "french_walk_no_pelvis/marche281.c3d"
+
 MOST_FRAMES, STANDING_FRAMES, WALK_S = 300, 100, 3.0
 
 
@@ -129,7 +131,26 @@ def hole_rows(data: Path) -> list[Check]:
     sources: list[Source] = [*SHOWN_ON, *MADE, *((child.name, motion) for motion in child.motions)]
     with in_parallel() as mapper:
         found = compared_of([Job(data, one) for one in sources], mapper)
-    return list(rows_of(found))
+    return [*rows_of(found), *unmarked_pelvis_rows(data)]
+
+
+def unmarked_pelvis_rows(data: Path) -> Iterator[Check]:
+    """A public walk that has no marker on the pelvis, as a laboratory would use it."""
+    trial = _shortened(read_capture(data / UNMARKED_PELVIS), MOST_FRAMES)
+    subject = scale(None, [trial], mass_kg=69.0, height_m=1.74)
+    for filter in FILTERS:
+        result = _followed(trial, subject, filter)
+        assert result.verdict is not None
+        named = {
+            one.part for one in result.verdict.reasons if one.found.startswith("the pelvis has no markers")
+        }
+        name = f"walk without pelvis markers, {filter}"
+        yield Check(f"{name}: parts on which the verdict names the pelvis", len(named), 4, ">=")
+        for coordinate in ("pelvis_tilt", "lumbar_extension", "hip_flexion_r", "hip_flexion_l"):
+            mean = np.degrees(np.nanmean(result.angle(coordinate)))
+            yield information(f"{name}: {coordinate}, mean", float(mean), "°")
+            sd = np.degrees(np.nanmean(result.angle_sd(coordinate)))
+            yield information(f"{name}: {coordinate}, sd", float(sd), "°")
 
 
 def compared_of(jobs: Sequence[Job], mapper: Mapper) -> list[Compared]:

@@ -78,20 +78,17 @@ def reconstruct(
     with single_threaded():
         capture = checked_for_subject(capture, subject, settings.without_plates)
         measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
-        capture = replace(capture, notes=(*capture.notes, *exchange_notes(exchanged)))
         use = use_by_subject(capture.markers, subject)
-        if use.warning:
-            capture = replace(capture, notes=(*capture.notes, use.warning))
+        notes = [*capture.notes, *exchange_notes(exchanged), *([use.warning] if use.warning else [])]
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = without_plates(capture, settings.without_plates).plates
-        doubted = plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
-        capture = replace(capture, notes=(*capture.notes, *doubted))
+        notes += plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
         subject, before, lengths = _for_trial(subject, shown, settings)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
-            capture = replace(capture, notes=(*capture.notes, *remarks))
+            notes += remarks
         recording = replace(recording, readings=readings) if readings else recording
         alone = _markers_alone(settings, inputs, recording, progress)
         if alone is not None and settings.other_contacts and settings.filter == "dynamic":
@@ -108,6 +105,7 @@ def reconstruct(
             contacts=None if settings.smooths or blocks else contact_opener(inputs, settings),
         )
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
+        capture = replace(capture, notes=tuple(notes))
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
         seen = (shown, subject, inputs, recording, alone, before, lengths)
         judged = (*trial_checks(*seen), in_view_finding(capture.markers, use.used)) if settings.checks else ()

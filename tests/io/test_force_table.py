@@ -99,47 +99,6 @@ def test_torques_about_the_origin_that_should_act_at_the_point_are_moved_there(u
     assert len([note for note in notes if "moments refer to (0.000, 0.000, 0.000) m" in note]) == 2
 
 
-@pytest.mark.parametrize("unit", [1.0, 1e3])
-@pytest.mark.parametrize("about", [[0.35, 0.2, -0.04], [3.0, -1.0, 0.9]])
-def test_torques_about_any_fixed_point_that_should_act_at_the_point_are_moved_there(about, unit):
-    """A plate's middle below its surface, or a place in the laboratory; in N m or N mm."""
-    notes = []
-    check_plates(TRUE, read(table(about=about, moment=unit, newton_metres=None), notes=notes))
-    place = ", ".join(f"{value:.3f}" for value in about)
-    assert len([note for note in notes if f"moments refer to ({place}) m" in note]) == 2
-    assert len([note for note in notes if "taken as N mm" in note]) == (2 if unit > 1.0 else 0)
-
-
-def test_free_torques_in_newton_millimetres_are_recognised():
-    notes = []
-    check_plates(TRUE, read(table(moment=1e3, newton_metres=None), notes=notes))
-    assert len([note for note in notes if "taken as N mm" in note]) == 2
-
-
-def test_torques_that_neither_a_point_nor_a_unit_explains_are_kept_and_reported():
-    one, notes = table(), []
-    values = np.array(one.values)
-    values[:, 6] += 0.3 * values[:, 2] * np.sin(np.arange(len(values)))
-    (plate, _) = read(replace(one, values=values), notes=notes)
-    assert [note for note in notes if "set '1': torques at the points of application are" in note]
-    lever = plate.moment_nm - np.cross(TRUE.plates[0].point_m - plate.origin_m, plate.force_n)
-    np.testing.assert_allclose(lever[:, 0], values[:, 6], atol=1e-9)
-
-
-def test_torques_at_a_fixed_point_are_a_wrench_there():
-    """Some laboratories state plates' wrenches at the plates' middles; their horizontal parts are right."""
-    one, notes = table(), []
-    values = np.array(one.values)
-    for k, plate in enumerate(TRUE.plates):
-        middle = plate.point_m.mean(axis=0)
-        values[:, 9 * k + 3 : 9 * k + 6] = middle
-        values[:, 9 * k + 6 : 9 * k + 9] += np.cross(plate.point_m - middle, plate.force_n)
-    for truth, plate in zip(TRUE.plates, read(replace(one, values=values), notes=notes), strict=True):
-        about_origin = plate.moment_nm + np.cross(plate.origin_m, plate.force_n)
-        np.testing.assert_allclose(about_origin, truth.wrench[:, 3:], atol=1e-6)
-    assert notes == []
-
-
 def test_torques_at_a_point_beside_the_centre_of_pressure_stay_there():
     """A force and a torque at any point are one wrench; only torques about the origin contradict their point."""
     moved = table()
