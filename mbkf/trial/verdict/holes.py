@@ -21,7 +21,7 @@ class Hole(NamedTuple):
     Attributes:
         segment: Its name.
         parts: Its part, and those of the joints beside it.
-        spread_deg: Mean standard deviation by main coordinate of these joints, of both sides the larger one.
+        spread_deg: Mean standard deviation by main coordinate of these joints; of both sides the larger one.
         landmarks: Bony landmarks of the segment.
     """
 
@@ -68,11 +68,7 @@ def holes(
         spreads: dict[str, float] = {}
         for joint in joints:
             if joint.main in mean_sd:
-                name = (
-                    joint.main.removesuffix("_r").removesuffix("_l")
-                    if body.roles.root == segment
-                    else joint.main
-                )
+                name = joint.main.removesuffix("_r").removesuffix("_l")
                 spreads[name] = max(spreads.get(name, 0.0), float(np.rad2deg(mean_sd[joint.main])))
         parts = dict.fromkeys((part_of[segment], *(part_of[one.distal] for one in joints)))
         places = tuple(one.name for one in body.landmarks.values() if one.segment == segment)
