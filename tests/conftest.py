@@ -22,7 +22,7 @@ settings.load_profile("patient")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Processes take files as they are listed: sorted by their number of tests, long files of few tests end alone."""
+    """Processes take files as they are listed: by their number of tests, long files of few tests would come last."""
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
 
@@ -40,10 +40,15 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests of benchmarks repeat parts of studies, and so are slow."""
+    """Tests of benchmarks repeat parts of studies, and so are slow; files with slow tests come first.
+
+    Processes that take one file after another end together where the last files are short.
+    """
     for item in items:
         if item.path.is_relative_to(STUDIES):
             item.add_marker(pytest.mark.slow)
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
 
 
 @pytest.fixture(scope="session")

@@ -13,10 +13,10 @@ from benchmarks.checks import Check, Context
 from benchmarks.packages.assisted_squat import example_rows
 from benchmarks.packages.casadi_agreement import agreement
 from benchmarks.packages.meshcat_scene import meshcat_rows
-from benchmarks.packages.persons import person
 from benchmarks.packages.urdf_readers import urdf_rows
 from mbkf.io.results import Reconstruction
 from mbkf.numerics.threads import single_threaded
+from mbkf.synthesis.person import synthesise_subject
 
 STATES = 100
 AGREEMENT = 1e-10
@@ -29,7 +29,7 @@ def run(context: Context) -> list[Check]:
             *agreement_rows(10 if context.quick else STATES, context.seed),
             *example_rows(context.out),
             *meshcat_rows(_result(context.seed), context.out),
-            *urdf_rows(person(context.seed), context.out, np.random.default_rng(context.seed)),
+            *urdf_rows(synthesise_subject(context.seed), context.out, np.random.default_rng(context.seed)),
         ]
 
 
@@ -46,6 +46,6 @@ def agreement_rows(states: int, seed: int) -> list[Check]:
         states: Number of random states.
         seed: Of the person and the states.
     """
-    worst = agreement(person(seed), states, np.random.default_rng(seed))
+    worst = agreement(synthesise_subject(seed), states, np.random.default_rng(seed))
     name = f"CasADi against Pinocchio, {states} random states"
     return [Check(f"{name}: {part}", value, AGREEMENT, "<=", "relative") for part, value in worst.items()]

@@ -8,6 +8,8 @@ import pytest
 from mbkf.cli.main import main
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
+from mbkf.trial.label import label
+from mbkf.trial.scale import scale
 
 pytestmark = pytest.mark.slow
 
@@ -57,10 +59,22 @@ def test_bad_input_is_refused(folder, tmp_path, refused):
     refused(["label", raw, "--subject", subject], "--out")
 
 
+def by_standing_trial(folder):
+    """Labels and person of a search without either, which costs a quarter of a minute, from the standing trial."""
+
+    def found(raw, protocol, *, mass_kg, height_m, progress):
+        assert (protocol, mass_kg, height_m) == ("reference36", 75.0, 1.8)
+        subject = scale(read_capture(folder / "static.c3d"), mass_kg=mass_kg)
+        return label(raw, subject, progress=progress), subject
+
+    return found
+
+
 @pytest.mark.parametrize(
     "who", [["--static", "static.c3d"], ["--protocol", "reference36", "--height", "1.8"]]
 )
-def test_a_person_scaled_on_the_way_is_written(folder, tmp_path, capsys, who):
+def test_a_person_scaled_on_the_way_is_written(folder, tmp_path, capsys, monkeypatch, who):
+    monkeypatch.setattr("mbkf.trial.label_unscaled.label_unscaled", by_standing_trial(folder))
     out = tmp_path / "named.c3d"
     who = [folder / word if word.endswith(".c3d") else word for word in who]
     words = ["label", folder / "raw.c3d", *who, "--mass", "75", "--truth", folder / "trial.c3d", "--out", out]

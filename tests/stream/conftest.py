@@ -1,5 +1,7 @@
 """A made person, walking on the spot on two plates."""
 
+from dataclasses import replace
+
 import pytest
 
 from mbkf.trial.scale import scale
@@ -13,5 +15,12 @@ def capture():
 
 
 @pytest.fixture(scope="session")
-def subject():
+def scaled():
+    """The person with the covariance of scaling, from which spreads by the body follow."""
     return scale(made_capture(30, 0.0), mass_kg=MASS_KG)
+
+
+@pytest.fixture(scope="session")
+def subject(scaled):
+    """The person as known exactly: what happens to a stream does not depend on spreads by the body."""
+    return replace(scaled, covariance=None)

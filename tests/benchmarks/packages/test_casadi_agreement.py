@@ -9,13 +9,16 @@ import pytest
 import mbkf
 from benchmarks.packages import casadi_agreement
 from benchmarks.packages.casadi_agreement import agreement
-from benchmarks.packages.persons import person
+from mbkf.model.casadi_dynamics import CasadiDynamics
+from mbkf.synthesis.person import synthesise_subject
 
-PERSON = person(2)
-EXACT = mbkf.casadi_dynamics(PERSON)
-FUNCTIONS = tuple(
-    field.name for field in dataclasses.fields(EXACT) if isinstance(getattr(EXACT, field.name), ca.Function)
-)
+PERSON = synthesise_subject(2)
+FUNCTIONS = tuple(one.name for one in dataclasses.fields(CasadiDynamics) if one.type == "ca.Function")
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return mbkf.casadi_dynamics(PERSON)
 
 
 def spoilt(function, factor):
@@ -32,8 +35,8 @@ def test_all_functions_are_compared():
 
 @pytest.mark.parametrize("factor", [1.0 + 1e-8, np.nan])
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_a_difference_is_seen(name, factor, monkeypatch):
-    other = dataclasses.replace(EXACT, **{name: spoilt(getattr(EXACT, name), factor)})
+def test_a_difference_is_seen(exact, name, factor, monkeypatch):
+    other = dataclasses.replace(exact, **{name: spoilt(getattr(exact, name), factor)})
     monkeypatch.setattr(mbkf, "casadi_dynamics", lambda subject: other, raising=False)
     found = casadi_agreement.agreement(PERSON, 2, np.random.default_rng(4))
     wrong = [part for part, value in found.items() if not value <= 1e-10]

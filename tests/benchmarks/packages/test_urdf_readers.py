@@ -7,10 +7,10 @@ import pytest
 
 import mbkf
 from benchmarks.packages import urdf_readers
-from benchmarks.packages.persons import person
 from benchmarks.packages.urdf_readers import urdf_rows
+from mbkf.synthesis.person import synthesise_subject
 
-PERSON = person(2)
+PERSON = synthesise_subject(2)
 
 
 def failed(folder):

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -78,12 +79,20 @@ def test_without_a_log_it_says_why_there_are_no_results(tmp_path):
     assert "no such file" in written.problem
 
 
-@pytest.mark.parametrize("kept", [1, 2, 3, 20, 39])
-def test_a_power_cut_costs_the_rows_from_there_on(tmp_path, capture, subject, kept):
-    """The end of both files is zero, as a file system leaves what never reached the disk."""
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory, capture, subject):
+    """The folder of a run of 40 frames that kept its log."""
+    folder = tmp_path_factory.mktemp("finished")
     stream, frames = frames_of(capture)
-    follow(tmp_path, stream, frames[:40], subject, keep_log=True)
-    whole = read_reconstruction(tmp_path)
+    follow(folder, stream, frames[:40], subject, keep_log=True)
+    return folder
+
+
+@pytest.mark.parametrize("kept", [1, 2, 3, 20, 39])
+def test_a_power_cut_costs_the_rows_from_there_on(tmp_path, finished, kept):
+    """The end of both files is zero, as a file system leaves what never reached the disk."""
+    shutil.copytree(finished, tmp_path, dirs_exist_ok=True)
+    whole = read_reconstruction(finished)
     for name, at in ((FRAMES_FILE, kept), (PLATES_FILE, 10 * kept)):
         cut_off(tmp_path / LOG_FOLDER / name, at)
     written = write_results(tmp_path, ())
@@ -95,10 +104,9 @@ def test_a_power_cut_costs_the_rows_from_there_on(tmp_path, capture, subject, ke
     assert any("left out" in warning for warning in found.warnings)
 
 
-def test_without_readable_plates_the_motion_is_recovered(tmp_path, capture, subject):
-    stream, frames = frames_of(capture)
-    follow(tmp_path, stream, frames[:40], subject, keep_log=True)
-    whole = read_reconstruction(tmp_path)
+def test_without_readable_plates_the_motion_is_recovered(tmp_path, finished):
+    shutil.copytree(finished, tmp_path, dirs_exist_ok=True)
+    whole = read_reconstruction(finished)
     (tmp_path / LOG_FOLDER / PLATES_FILE).write_bytes(bytes(1000))
     written = write_results(tmp_path, ())
     assert written.problem is None

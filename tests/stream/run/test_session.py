@@ -35,6 +35,13 @@ from tests.stream.scripted import (
 
 pytestmark = pytest.mark.slow
 
+
+@pytest.fixture(scope="module")
+def subject(scaled):
+    """With spreads by the body, as offline."""
+    return scaled
+
+
 FILES = {
     "live.json",
     "summary.json",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.contacts import Source
+from mbkf.model.body_file import load_body
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.trial.results.supports import pressed_points
@@ -13,7 +14,7 @@ from mbkf.viz.live.rows import MOST_UNLABELLED, DisplayRows
 from tests.motions import assert_near
 from tests.recordings import walk, walker
 
-UNASKED = np.full((len(walker()[1].description.bearings), 6), np.nan)
+UNASKED = np.full((len(load_body().bearings), 6), np.nan)
 
 
 def frame(k, **changes):
