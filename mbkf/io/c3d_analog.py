@@ -214,6 +214,11 @@ def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
     if times.size and times.shape[0] == 2:
         seconds = np.atleast_1d(60.0 * times[0] + times[1]).tolist()
         more = [""] * len(seconds)
+        notes += [
+            f"EVENT:{name} holds {len(texts)} of {len(seconds)} events; the others have none"
+            for name, texts in (("LABELS", labels), ("CONTEXTS", contexts))
+            if len(texts) < len(seconds)
+        ]
         found = list(zip(labels + more, contexts + more, seconds, strict=False))
     else:
         found = [(label, "", time_s) for label, time_s in content.events]

@@ -136,7 +136,7 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         corners[:, :, 3],
         analogs,
         rate_hz,
-        _first_frame(layout, parameters),
+        _first_frame(layout, parameters, frames),
         _header_events(header, processor),
         (
             *layout.notes,
@@ -323,14 +323,21 @@ def stated_frames(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ..
     return tuple(sorted(found, reverse=True) if layout.counts_no_further else found)
 
 
-def _first_frame(layout: C3dLayout, parameters: C3dParameters) -> int:
-    """Number of the first frame, counted from 1; beyond the header's words by TRIAL:ACTUAL_START_FIELD."""
-    stated = _two_words(parameters.numbers("TRIAL", "ACTUAL_START_FIELD"))
-    return (
-        max(layout.first_frame, stated or 0)
-        if layout.first_frame == LAST_FRAME_OF_HEADER
-        else layout.first_frame
+def _first_frame(layout: C3dLayout, parameters: C3dParameters, frames: int) -> int:
+    """Number of the first frame, counted from 1.
+
+    That is the header's or TRIAL:ACTUAL_START_FIELD's: beyond the header's words, and where only TRIAL counts as many
+    frames as there are.
+    """
+    first, last = (
+        _two_words(parameters.numbers("TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("START", "END")
     )
+    if first is None:
+        return layout.first_frame
+    if layout.first_frame == LAST_FRAME_OF_HEADER:
+        return max(layout.first_frame, first)
+    alone = layout.frames != frames and not layout.counts_no_further and last == first + frames - 1
+    return first if alone else layout.first_frame
 
 
 def _remarks(layout: C3dLayout, frames: int, per_frame: int, channels: int) -> Iterator[str]:

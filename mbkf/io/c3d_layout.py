@@ -142,13 +142,25 @@ def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, ord
 def _with_data_block(
     path: Path, layout: C3dLayout, start: int, blocks: int, order: str, notes: list[str]
 ) -> C3dLayout:
-    """The layout with data that begin after the parameters: by the header, POINT:DATA_START or the section's length."""
+    """The layout with data that begin after the parameters: by the header, POINT:DATA_START or the section's length.
+
+    The last two hold where they agree and the frames fill the file from there on, and not from the header's block on.
+    """
     least = -(-(start + layout.section.length) // BLOCK_BYTES) + 1
-    if layout.data_block >= least:
-        return layout
+    most = layout.file_bytes // BLOCK_BYTES + 1
     stated = layout.section.integer("POINT", "DATA_START", order) or 0
-    possible = [block for block in (stated, start // BLOCK_BYTES + blocks + 1) if block >= least]
-    reason = f"its header puts the data into block {layout.data_block}, before its parameters end"
+    after = start // BLOCK_BYTES + blocks + 1
+    if least <= layout.data_block <= most:
+        other = replace(layout, data_block=after)
+        if stated != after or after < least or _fills(layout) or not _fills(other):
+            return layout
+        notes.append(
+            f"its header puts the data into block {layout.data_block}; they are read from block {after} on"
+        )
+        return other
+    where = "before its parameters end" if layout.data_block < least else "beyond its end"
+    reason = f"its header puts the data into block {layout.data_block}, {where}"
+    possible = [block for block in (stated, after) if least <= block <= most]
     if not possible:
         raise FileFormatError(path, f"{reason}; export it again")
     notes.append(f"{reason}; they are read from block {possible[0]} on")

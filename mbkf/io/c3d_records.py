@@ -110,7 +110,8 @@ def walk_parameters(section: bytes, order: str) -> ParameterSection:
     walk = _Walk(section, order, faults)
     for number, name, body in walk:
         if number < 0:
-            groups[-number] = groups.get(-number, name) if faults else name
+            if groups.setdefault(-number, name) != name:
+                faults.append(f"group {name} has the number of group {groups[-number]}")
             continue
         try:
             record = _parameter(number, name, body)
@@ -173,26 +174,31 @@ class _Walk:
         if not step:
             return None
         following = pointer + step
-        stated = step > 1 and (self._begins(following) or self._ends(following))
-        if stated and (following >= own or not self._begins(own)):
-            return following
         within = following <= len(self._section)
+        led = self._begins(following) or (self._ends(following) and following >= own)
+        if step > 1 and within and (led or not self._begins(own)):
+            return following
         fault = f"the record {name} points {'at no record' if within else 'beyond the section'}"
         if self._begins(own):
             self._faults.append(f"{fault}; its own length leads to the next")
             return own
-        if step > 1 and within:
-            return following
         self._stop(fault)
         return None
 
     def _begins(self, at: int) -> bool:
-        """True for a byte at which a record with a name begins."""
-        left = self._section[at : at + 2]
-        if len(left) < 2 or not all(left):
+        """True for a byte at which a record begins whose name, distance, type and dimensions are possible."""
+        left = self._section[at:]
+        length, number = struct.unpack_from("bb", left) if len(left) > 1 else (0, 0)
+        body = 4 + abs(length)
+        if not (length and number) or body > len(left) or _name(left[2 : body - 2]) is None:
             return False
-        length = abs(struct.unpack_from("b", left)[0])
-        return _name(self._section[at + 2 : at + 2 + length]) is not None
+        (step,) = struct.unpack_from(f"{self._order}H", left, body - 2)
+        if step == 1 or body - 2 + step > len(left):
+            return False
+        if number < 0:
+            return True
+        kind, count = struct.unpack_from("bB", left, body) if body + 2 <= len(left) else (0, 0)
+        return kind in _TYPES and count <= _MOST_DIMENSIONS
 
     def _ends(self, at: int) -> bool:
         """True for a byte at which the section is over."""

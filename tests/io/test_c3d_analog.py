@@ -178,6 +178,17 @@ def test_events_are_in_order_with_minutes_added(tmp_path):
     assert found == [(3.25, "Right", "Foot Strike"), (62.5, "Left", "Foot Off")]
 
 
+def test_fewer_labels_than_events_are_reported(tmp_path):
+    extra = {
+        ("EVENT", "USED"): 2,
+        ("EVENT", "LABELS"): ["A"],
+        ("EVENT", "TIMES"): np.array([[0.0, 0.0], [1.0, 2.0]]),
+    }
+    capture = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions())
+    assert [event.label for event in capture.events] == ["A", ""]
+    assert "EVENT:LABELS holds 1 of 2 events; the others have none" in capture.notes
+
+
 @pytest.mark.parametrize(
     ("times", "used", "found", "remark"),
     [
@@ -188,6 +199,7 @@ def test_events_are_in_order_with_minutes_added(tmp_path):
 )
 def test_events_without_a_time_are_left_out_and_reported(tmp_path, times, used, found, remark):
     extra = {("EVENT", "USED"): used, ("EVENT", "LABELS"): ["A", "B"], ("EVENT", "TIMES"): times}
+    extra["EVENT", "CONTEXTS"] = ["Left", "Right"]
     capture = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions())
     assert [event.time_s for event in capture.events] == found
     assert (

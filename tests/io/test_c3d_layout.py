@@ -11,7 +11,7 @@ from mbkf.io.c3d_decode import decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
-from tests.io.c3d_bytes import DEC, INTEL, MIPS, c3d_bytes, floats
+from tests.io.c3d_bytes import DEC, INTEL, MIPS, c3d_bytes, floats, integers
 
 
 @pytest.fixture(scope="module")
@@ -98,6 +98,14 @@ def test_channels_are_those_that_parameters_and_rates_make(whole, tmp_path, samp
     capture = read_c3d(odd(whole, tmp_path, 18, samples), CaptureOptions())
     assert len(capture.analog) == 6 and capture.analog[0].rate_hz == 1000.0
     assert any("analog channels, the file has 6" in note for note in capture.notes)
+
+
+@pytest.mark.parametrize(("off", "found"), [(1, "; they are read"), (-1, "; they"), (900, "beyond its end")])
+def test_two_entries_that_agree_place_the_data(tmp_path, off, found):
+    content = c3d_bytes(standing_points(40, 9), extra=((1, "DATA_START", 2, (), integers([3], INTEL)),))
+    layout = check_layout(odd(content, tmp_path, 16, 3 + off))
+    assert check_start(content) == 3 and layout.data_block == 3
+    assert any(f"the data into block {3 + off}" in note and found in note for note in layout.notes)
 
 
 @pytest.mark.parametrize("block", [0, 1, 2, 3])

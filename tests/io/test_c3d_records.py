@@ -87,7 +87,8 @@ def test_a_record_that_points_beyond_the_section_is_its_last():
 
 
 @pytest.mark.parametrize(
-    ("step", "fault"), [(9000, "beyond the section"), (1, "at no record"), (5, "at no record")]
+    ("step", "fault"),
+    [(9000, "beyond the section"), (1, "at no record"), (2, "at no record"), (5, "at no record")],
 )
 def test_a_record_that_points_elsewhere_is_followed_by_its_own_length(step, fault):
     odd = bytearray(parameter(1, "B", 1, (), b"\x06"))
