@@ -224,6 +224,8 @@ def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
         found = [(label, "", time_s) for label, time_s in content.events]
         if times.size:
             notes.append("EVENT:TIMES holds no minutes and seconds; its events are left out")
+        elif parameters.number("EVENT", "USED") > 0.0:
+            notes.append("EVENT:USED counts events, EVENT:TIMES is missing; they are left out")
     timed = [
         CaptureEvent(label, context, round(at_s, 6)) for label, context, at_s in found if np.isfinite(at_s)
     ]

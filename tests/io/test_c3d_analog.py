@@ -194,6 +194,7 @@ def test_fewer_labels_than_events_are_reported(tmp_path):
     [
         (np.array([0.0, 3.25, 1.0, 2.5]), 2, [3.25, 62.5], ""),
         (np.array([3.25, 2.5, 1.0]), 2, [], "no minutes and seconds"),
+        (np.zeros((2, 0)), 2, [], "EVENT:TIMES is missing"),
         (np.array([[0.0, 1.0], [3.25, np.nan]]), 2, [3.25], "1 of 2 events have no time"),
     ],
 )
