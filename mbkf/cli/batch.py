@@ -11,9 +11,10 @@ Examples:
 
 A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names the
 person. Captures of several persons in one folder are separated by codes in their names and by subject, mass and height
-in the files. Standing trials are known by their names (static, calibration, t-pose, …); ground reactions lie beside
-their trial under its name with "grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and
-plates do not. A list names them instead:
+in the files, else by their movements: each trial gets the standing trial that it fits, and one that fits none fails.
+Standing trials are known by their names (static, calibration, t-pose, …); ground reactions lie beside their trial under
+its name with "grf" or "forces"; session.toml states mass_kg, height_m and protocol where captures and plates do not. A
+list names them instead, and is taken at its word:
 
   subject,trial,static,forces,mass_kg                    [[subject]]
   P01,P01/walk1.c3d,P01/static.c3d,,71.2                 name = "P01"

@@ -70,7 +70,8 @@ def test_the_last_lines_name_the_trials_that_may_not_be_used_and_count_the_words
 def test_the_last_lines_name_each_person_whose_body_is_doubtful_once(capsys):
     columns = {
         "subject": ["P1", "P1", "P2"], "session": ["", "", "am"], "folder": ["P1/a", "P1/b", "P2/am/c"],
-        "status": ["done"] * 3, "reason": [""] * 3, DOUBTS: ["long legs", "long legs", ""],
+        "status": ["done"] * 3, "reason": [""] * 3,
+        DOUBTS: ["long legs", "long legs; b: markers put on anew", ""],
     }  # fmt: skip
     _print(pa.table(columns), "out")
-    assert capsys.readouterr().out.splitlines()[:-1] == ["person P1: long legs"]
+    assert capsys.readouterr().out.splitlines()[:-1] == ["person P1: long legs; b: markers put on anew"]

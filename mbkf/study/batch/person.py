@@ -103,8 +103,8 @@ def scaled(
 ) -> Subject:
     """The person's body: by standing and the trials of the session that help.
 
-    The standing trial is the first one by its name, or else one that stands still; without one, moving trials are taken
-    that help. Captures whose points have no names
+    The standing trial is the first one by its name, or else one that stands still; without one, or where that one is a
+    pause bent forward, moving trials are taken that help. Captures whose points have no names
     are left out beside one that has names; without such a one, the body is found with the names of the first moving
     one.
 
@@ -123,7 +123,14 @@ def scaled(
     scaling = partial(scale, mass_kg=mass_kg, height_m=person.height_m, protocol=person.protocol, body=body)
     static, others, moving = _standing(person, read)
     if static is not None:
-        found = scale_from_session(static, () if person.static_only else others, scaling, settings, progress)
+        try:
+            found = scale_from_session(
+                static, () if person.static_only else others, scaling, settings, progress
+            )
+        except MbkfError:
+            if person.statics:
+                raise
+            found = scale_from_moving((static, *others), scaling, settings, progress)  # still, but bent
         subject, captures = found.subject, found.captures
     elif moving and all(is_nameless(one) for one in moving):
         captures = moving[:1]

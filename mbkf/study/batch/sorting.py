@@ -19,7 +19,7 @@ from mbkf.study.batch.naming import is_nameless
 from mbkf.study.batch.other_person import ANEW, REMEDY
 from mbkf.study.batch.plan import Files, Person, Sorted, folder_name, scaling_candidates
 from mbkf.study.batch.progress import ignored
-from mbkf.study.scaling.owner import Owner, Reference, bones_agree, few_frames, owner_of
+from mbkf.study.scaling.owner import Bones, Owner, Reference, bones, few_frames, owner_of
 from mbkf.study.scaling.session import MOVING_FRAMES, STANDING_FRAMES
 from mbkf.trial.protocol.standing import stands_still
 from mbkf.trial.scale import scale
@@ -159,7 +159,7 @@ class _Sorting:
         """
         group = None
         if isinstance(look, Capture):
-            owner = owner_of(look, self._references, bones=False)
+            owner = owner_of(look, self._references, places_alone=True)
             group = self._group(owner) or self.reference(path, look, standing=True)
         if group is not None and group.host is None and not moves:
             group.statics.append(path)
@@ -224,9 +224,14 @@ def _persons(person: Person, groups: list[_Group]) -> list[Person]:
         remarks = (*person.remarks, *one.remarks)
         return [replace(person, statics=tuple(statics), moving=moving, remarks=remarks)]
     same: list[list[_Group]] = []
+    are_open = False
     for group in groups:
-        own = next((s for s in same if bones_agree(group.look, s[0].reference)), None)
-        same.append([group]) if own is None else own.append(group)
+        found_bones = [bones(group.look, one[0].reference) for one in same]
+        if Bones.AGREE in found_bones:
+            same[found_bones.index(Bones.AGREE)].append(group)
+        else:
+            same.append([group])
+            are_open |= Bones.OPEN in found_bones
     found = {}
     for groups_of_one in same:
         several = len(groups_of_one) > 1
@@ -241,12 +246,12 @@ def _persons(person: Person, groups: list[_Group]) -> list[Person]:
                 moving=scaling_candidates(group.trials),
                 mass_kg=person.mass_kg if len(same) == 1 else None,
                 height_m=person.height_m if len(same) == 1 else None,
-                remarks=(*person.remarks, _words(person, same, group), *group.remarks),
+                remarks=(*person.remarks, _words(person, same, group, are_open), *group.remarks),
             )
     return [found[id(group)] for group in groups]
 
 
-def _words(person: Person, same: list[list[_Group]], group: _Group) -> str:
+def _words(person: Person, same: list[list[_Group]], group: _Group, are_open: bool) -> str:
     """The remark on captures of several persons or sessions."""
     listed = "; ".join(" and ".join(map(_listed, groups)) for groups in same)
     if len(same) == 1:
@@ -256,8 +261,9 @@ def _words(person: Person, same: list[list[_Group]], group: _Group) -> str:
         )
     mass = "" if person.mass_kg is None else "; the mass in session.toml is used for neither"
     by = "" if group.stands else ", moving ones: no standing trial has its markers"
+    or_one = ", or one with markers put on anew (lengths of bones leave it open)" if are_open else ""
     return (
-        f"the markers show {len(same)} persons: {listed}{mass}. This one is scaled from the captures of "
+        f"the markers show {len(same)} persons{or_one}: {listed}{mass}. This one is scaled from the captures of "
         f"{group.label}{by}; if they are one person's, name them in a list"
     )
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 from mbkf.errors import MbkfError
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -103,21 +104,24 @@ def few_frames(capture: Capture) -> Capture:
     return replace(capture, markers=few, plates=())
 
 
-def owner_of(capture: Capture, references: Sequence[Reference], *, bones: bool = True) -> Owner | None:
+def owner_of(
+    capture: Capture, references: Sequence[Reference], *, places_alone: bool = False
+) -> Owner | None:
     """The reference that a trial belongs to: by its markers' places, else by its bones; None without comparison.
 
     Args:
         capture: The trial.
         references: Captures of other persons, or with markers elsewhere, each.
-        bones: False for the places alone.
+        places_alone: True where bones do not count.
     """
     found = {n: places for n, one in enumerate(references) if (places := one.places(capture)) is not None}
     if not found:
-        return _owner_of_keypoints(capture, references) if bones else None
+        return None if places_alone else _owner_of_keypoints(capture, references)
     nearest = min(found, key=lambda n: found[n].elsewhere)
     if found[nearest].elsewhere < 0.0:
         return Owner(nearest)
-    lengths = {n: known for n in found if bones and (known := references[n].lengths(capture)) is not None}
+    asked = () if places_alone else found
+    lengths = {n: known for n in asked if (known := references[n].lengths(capture)) is not None}
     likest = min(lengths, key=lambda n: lengths[n].powers, default=nearest)
     words = (
         f"distances between markers of a segment differ by {found[likest].changed_mm:.0f} mm from those in "
@@ -147,12 +151,22 @@ def _owner_of_keypoints(capture: Capture, references: Sequence[Reference]) -> Ow
     )
 
 
-def bones_agree(capture: Capture, reference: Reference) -> bool:
-    """True where lengths of bones show one person, wherever the markers are.
+class Bones(StrEnum):
+    """Lengths of bones in two captures, wherever the markers are."""
+
+    AGREE = "agree"
+    DIFFER = "differ"
+    OPEN = "open"
+
+
+def bones(capture: Capture, reference: Reference) -> Bones:
+    """Compares lengths of bones; open where they suit one person and two, or cannot be compared.
 
     Args:
         capture: A capture.
         reference: Another one.
     """
     lengths = reference.lengths(capture)
-    return lengths is not None and lengths.powers < OWN_BONES
+    if lengths is None or OWN_BONES <= lengths.powers < LOOK:
+        return Bones.OPEN
+    return Bones.AGREE if lengths.powers < OWN_BONES else Bones.DIFFER

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mbkf.errors import FileFormatError, InvalidInput, ProtectedFile
+from mbkf.errors import FileFormatError, InvalidInput, NotObservable, ProtectedFile
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
@@ -76,6 +76,18 @@ def test_where_no_name_tells_the_trial_that_stands_still_is_the_standing_one(per
     found = scaled(replace(person, statics=(), moving=looked))
     assert found.scale_factors == named.scale_factors and found.report["frames"] == named.report["frames"]
     assert scaled(replace(person, statics=())).scale_factors != named.scale_factors
+
+
+def test_a_still_capture_that_shows_nobody_standing_is_a_moving_one(person, monkeypatch):
+    def bent(*_):
+        raise NotObservable("the pelvis is tilted by 74° from upright")
+
+    monkeypatch.setattr("mbkf.study.batch.person.scale_from_session", bent)
+    with pytest.raises(NotObservable, match="tilted"):
+        scaled(person)
+    looked = (*person.moving, Files(person.statics[0]))
+    found = scaled(replace(person, statics=(), moving=looked))
+    assert [one["trial"] for one in found.report[SCALED_FROM_KEY]] == ["trial"]
 
 
 def test_trials_that_help_are_taken_and_each_further_trial_leaves_the_file_as_it_is(person, tmp_path):

@@ -11,6 +11,7 @@ from mbkf.study.batch.plan import (
     Files,
     Person,
     Plan,
+    Sorted,
     Trial,
     folder_name,
     planned,
@@ -48,6 +49,18 @@ def test_persons_are_those_of_the_trials_once_each_and_in_order():
     assert [(p.name, p.session) for p in plan.persons] == [
         ("P0", ""), ("P1", "monday"), ("P2", ""), ("P0", "monday"), ("P1", ""), ("P2", "monday"),
     ]  # fmt: skip
+
+
+def test_sorted_captures_have_their_persons_and_those_of_nobody_a_fault():
+    one, two, three = (Path(f"walk{k}.c3d") for k in range(3))
+    mixed, other = Person("P", unsorted=(Files(one), Files(two), Files(three))), Person("Q")
+    plan = planned([*(Trial(mixed, path) for path in (one, two, three)), Trial(other, one)], "here")
+    found = plan.with_persons({mixed: Sorted({one: Person("P-a"), two: Person("P-b")}, {three: "of nobody"})})
+    assert [(t.person, t.fault) for t in found.trials] == [
+        (Person("P-a"), ""), (Person("P-b"), ""), (Person("P"), "of nobody"), (other, ""),
+    ]  # fmt: skip
+    lost = plan.with_persons({mixed: "the worker was killed"})
+    assert [t.fault for t in lost.trials] == [*["the worker was killed"] * 3, ""]
 
 
 def test_trials_to_scale_from_do_not_depend_on_their_order():

@@ -15,7 +15,7 @@ from mbkf.study.batch import trial as module
 from mbkf.study.batch.curves import read_curves
 from mbkf.study.batch.inputs import RECORD
 from mbkf.study.batch.plan import Person, Trial
-from mbkf.study.batch.trial import CURVES_FILE, curves_anew, trial_done
+from mbkf.study.batch.trial import CURVES_FILE, curves_anew, trial_done, trial_doubts
 from mbkf.trial.gait.events import foot_events, plain_found
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
@@ -56,6 +56,16 @@ def test_a_trial_is_done_once_from_the_same(task, tmp_path):
     assert trial_done(*task, ReconstructSettings(filter="dynamic", smooth=False))
     assert read_reconstruction(folder).filter == "dynamic"
     assert [path.name for path in (tmp_path / "P").iterdir()] == ["walk"]
+
+
+@pytest.mark.usefixtures("followed")
+def test_doubts_about_the_person_stay_with_a_trial_that_is_done(task, tmp_path, monkeypatch):
+    assert trial_done(*task, SETTINGS) and trial_doubts(task[0], tmp_path) == ""
+    (tmp_path / "P" / "walk" / RECORD).unlink()
+    monkeypatch.setattr(module, "checked_owner", lambda *_: "markers were put on anew")
+    for anew in (True, False):
+        assert trial_done(*task, SETTINGS) is anew
+        assert trial_doubts(task[0], tmp_path) == "markers were put on anew"
 
 
 @pytest.mark.usefixtures("followed")

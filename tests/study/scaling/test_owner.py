@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.scaling.records import ScalingSettings
-from mbkf.study.scaling.owner import MOST_FRAMES, Reference, bones_agree, few_frames, owner_of
+from mbkf.study.scaling.owner import MOST_FRAMES, Bones, Reference, bones, few_frames, owner_of
 from mbkf.trial.scale import scale
 from tests.bending import MASS_KG, posed, squat, stander, standing, walk
 
@@ -39,14 +39,16 @@ def test_markers_that_were_put_on_anew_belong_to_the_person_whose_bones_agree():
     anew = walk(moved_m=0.01)
     owner = owner_of(anew, references())
     assert owner.number == 0 and owner.found.endswith("lengths of bones agree")
-    assert bones_agree(anew, references()[0]) and not bones_agree(anew, references()[1])
-    assert owner_of(anew, references(), bones=False).number is None
+    assert [bones(anew, one) for one in references()] == [Bones.AGREE, Bones.DIFFER]
+    assert owner_of(anew, references(), places_alone=True).number is None
 
 
 def test_a_trial_with_few_of_the_names_cannot_be_compared():
     own = walk()
     assert owner_of(replace(own, markers=own.markers.select(("LASI", "RASI"))), references()) is None
     assert owner_of(own, []) is None
+    own = replace(own, markers=own.markers.select(("LASI", "RASI")))
+    assert bones(own, references()[0]) == Bones.OPEN
 
 
 def test_few_frames_are_spread_over_the_capture_in_its_time():
