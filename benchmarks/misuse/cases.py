@@ -103,6 +103,7 @@ CASES = (
     Case("info", "{qualisys}"),
     Case("info", "{motive}"),
     Case("scale", "{static} --trial {trial} --protocol {protocol} --body {body} --mass 70 --out {OUT}", "new.toml"),
+    Case("scale", "--trial {trc} --forces {forces} --mass 70 --out {OUT}", "new.toml"),
     Case("label", "{raw} --subject {subject} --truth {trial} --out {OUT}", "new.c3d", (".json",)),
     Case("label", "{raw} --static {static} --protocol {protocol} --mass 70 --out {OUT}", "new.c3d", (".json", ".toml")),
     Case("reconstruct", "{trc} " + ON_TRIAL + " --out {OUT}", "new"),

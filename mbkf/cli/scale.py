@@ -11,6 +11,7 @@ Examples:
   mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
   mbkf scale static.c3d --trial walk.c3d --mass auto --out subject.toml  (weighed by the plates)
   mbkf scale static.c3d --mass auto --without-plate 2 --out subject.toml  (one of them broken)
+  mbkf scale static.trc --trial walk.trc --forces walk.mot --mass auto --out subject.toml
   mbkf scale static.c3d --trial walk.c3d --mass 60 --inertia --out subject.toml  (masses of segments by the plates)
   mbkf scale static.c3d --body legs.toml --mass 60 --out subject.toml  (a body of your own)
   mbkf scale static.c3d --body robot.urdf --mass 60 --out subject.toml  (from URDF, with robot.urdf.toml)
@@ -27,6 +28,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbkf.cli.options import (
     CAPTURE_FILES,
+    FORCE_FILES,
     add_axes_options,
     add_out,
     add_static_only,
@@ -67,6 +69,13 @@ def options(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="moving trial; may be repeated; beside a folder in place of the trials that would be chosen",
+    )
+    parser.add_argument(
+        "--forces",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help=f"ground reactions ({FORCE_FILES}) of the trials other than C3D, in their order; may be repeated",
     )
     add_static_only(parser)
     parser.add_argument(
@@ -147,12 +156,14 @@ def _stated(args: argparse.Namespace) -> dict[str, Any]:
 
 def _of_captures(args: argparse.Namespace, standing: str | Path | None, stated: dict[str, Any]) -> Subject:
     """The person of a standing trial and the moving ones named."""
+    from mbkf.cli.force_files import forces_of_person
     from mbkf.cli.progress import stages
     from mbkf.trial.scale import scale
 
     read = _Reader(args)
-    static = None if standing is None else read(standing)
-    trials = [read(path) for path in args.trial]
+    own, others = forces_of_person(None if standing is None else str(standing), args.trial, args.forces)
+    static = None if standing is None else read(standing, forces=own)
+    trials = [read(path, forces=forces) for path, forces in zip(args.trial, others, strict=True)]
     read.check()
     with stages() as report:
         subject = scale(static, trials, **stated, body=args.body, settings=_settings(args), progress=report)
@@ -162,6 +173,7 @@ def _of_captures(args: argparse.Namespace, standing: str | Path | None, stated: 
 def _of_folder(args: argparse.Namespace) -> Subject:
     """The person of a session's folder, from the trials named or those that are chosen."""
     from mbkf.cli.progress import stages
+    from mbkf.errors import InvalidInput
     from mbkf.study.batch.folder import person_of_folder
     from mbkf.study.batch.person import captures_used, scaled
     from mbkf.study.batch.sorting import one_person
@@ -172,6 +184,10 @@ def _of_folder(args: argparse.Namespace) -> Subject:
     if args.trial:
         stated = {name: getattr(person, name) for name in ("mass_kg", "height_m", "protocol")}
         return _of_captures(args, next(iter(person.statics), None), stated)
+    if args.forces:
+        raise InvalidInput(
+            "--forces belongs to trials that are named; name them with --trial, or lay the file beside its trial"
+        )
     person = replace(person, static_only=args.static_only or person.static_only)
     read = _Reader(args)
     with stages() as report:

@@ -34,6 +34,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbkf.cli.force_files import forces_of
 from mbkf.cli.options import (
     CAPTURE_FILES,
     add_axes_options,
@@ -134,24 +135,6 @@ def positions(trials: Sequence[str], held_out: Sequence[str]) -> tuple[int, ...]
             raise UnknownName("trial", name, trials, "--hold-out")
         found |= mine
     return tuple(sorted(found)) or None
-
-
-def forces_of(trials: Sequence[str], forces: Sequence[str]) -> list[str | None]:
-    """The force file of each trial, None for captures that bring their own plates.
-
-    Raises:
-        InvalidInput: There are not as many files as trials that need one.
-    """
-    from mbkf.errors import InvalidInput
-    from mbkf.io.capture import CAPTURES
-
-    bare = [i for i, trial in enumerate(trials) if not CAPTURES.format_of(Path(trial)).brings_plates]
-    if forces and len(forces) != len(bare):
-        raise InvalidInput(
-            f"--forces names {len(forces)} files, and {len(bare)} of the trials bring no plates; give one for each of "
-            "these, in their order"
-        )
-    return [forces[bare.index(i)] if forces and i in bare else None for i in range(len(trials))]
 
 
 def _print(tuned: Tuned, preset: Preset, out: Path) -> None:

@@ -138,6 +138,10 @@ def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):
     assert scale("--trial", person.trial_trc, "--mass", "auto", "--out", tmp_path / "s.toml") == 2
     assert "the plates do not give the body mass (no capture has plates)" in capsys.readouterr().err
     assert not (tmp_path / "s.toml").exists()
+    words = ["--trial", person.trial_trc, "--mass", "auto", "--out", tmp_path / "s.toml"]
+    assert scale(*words, "--forces", person.forces) == 0
+    assert "by the plates of" in capsys.readouterr().out
+    assert read_subject(tmp_path / "s.toml").mass_kg == pytest.approx(MASS_KG, rel=0.03)
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from mbkf.cli.main import main
-from mbkf.cli.tune import forces_of, positions
-from mbkf.errors import InvalidInput, UnknownName
+from mbkf.cli.tune import positions
+from mbkf.errors import UnknownName
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.preset import read_preset
 from mbkf.io.trc import write_trc
@@ -119,10 +119,3 @@ def test_held_out_trials_are_found_by_any_of_their_names():
     assert positions(trials, ["walk1", "run.trc"]) == (0, 1, 2)
     with pytest.raises(UnknownName, match="'walk'"):
         positions(trials, ["walk"])
-
-
-def test_forces_go_to_the_trials_that_lack_plates():
-    assert forces_of(["a.trc", "b.C3D", "c.trc"], ["1", "2"]) == ["1", None, "2"]
-    assert forces_of(["a.trc", "b.c3d"], []) == [None, None]
-    with pytest.raises(InvalidInput, match="1 of the trials"):
-        forces_of(["a.trc", "b.c3d"], ["1", "2"])
