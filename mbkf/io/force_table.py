@@ -177,7 +177,8 @@ def into_axes(
     if standing == up:
         return tuple(plates)
     notes.append(
-        f"the ground reactions point along {standing} of their file, which was read with {up} up; give --up"
+        f"the ground reactions point along {standing} of their file, which was read with {up} up; give "
+        "--up, unless the body in the capture puts the axes right"
     )
     turn = rotation_to_world(up) @ rotation_to_world(standing).T
     return tuple(rotated(plate, turn, turn) for plate in plates)

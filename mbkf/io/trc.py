@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -205,9 +206,12 @@ class _Rows:
 
 def _rows(file: TextFile) -> _Rows:
     times, table, lines, widths, tabs = [], [], [], [], False
-    for index, text in enumerate(file.lines[_HEADER_LINES:], start=_HEADER_LINES):
-        if not text.strip():
-            continue
+    body = [
+        (index, text) for index, text in enumerate(file.lines[_HEADER_LINES:], _HEADER_LINES) if text.strip()
+    ]
+    indent = int(_indented([text for _, text in body]))
+    for index, whole in body:
+        text = whole[indent:]
         line = file.line(index)
         lines.append(line)
         tabs = tabs or "\t" in text
@@ -223,6 +227,15 @@ def _rows(file: TextFile) -> _Rows:
     if not file.whole and widths[-1] < widths[0]:
         raise FileFormatError(file.path, "cut short within a row; copy or export it again", len(file.lines))
     return _Rows(file.path, np.array(times), table, lines, widths, tabs)
+
+
+def _indented(rows: Sequence[str]) -> bool:
+    """True where every row begins with an empty cell, and the number of its frame stands in the second one."""
+    seconds = [row.split("\t", 2)[1].strip() for row in rows if row.startswith("\t")]
+    if len(seconds) < len(rows) or not all(text.isdecimal() for text in seconds):
+        return False
+    frames = [int(text) for text in seconds]
+    return bool(frames) and frames == list(range(frames[0], frames[0] + len(frames)))
 
 
 def _without_cut_rows(rows: _Rows, points: int, notes: list[str]) -> _Rows:

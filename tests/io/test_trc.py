@@ -81,6 +81,11 @@ def test_trailing_tabs_blank_rows_and_missing_last_cells(tmp_path):
     check_values(read(tmp_path, text(rows=rows)))
 
 
+def test_rows_that_a_tab_indents(tmp_path):
+    check_values(read(tmp_path, text(rows=["\t" + row for row in ROWS])))
+    check_values(read(tmp_path, text(rows=[row[1:] for row in ROWS])))  # blank numbers of frames
+
+
 def test_blanks_instead_of_tabs(tmp_path):
     rows = ["1 0.00 100 1500 -50 120 20 60", "2 0.02 101 1501 -51 NaN NaN NaN", "3 0.04 0 0 0 nan 21 61"]
     capture = read(tmp_path, text(names="Frame# Time Head Toe", rows=rows))
