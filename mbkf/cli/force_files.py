@@ -11,6 +11,10 @@ from mbkf.errors import InvalidInput
 def forces_of(trials: Sequence[str], forces: Sequence[str]) -> list[str | None]:
     """The force file of each trial, None for captures that bring their own plates.
 
+    Args:
+        trials: Files of the trials.
+        forces: Files of ground reactions, in the order of the trials that need one.
+
     Raises:
         InvalidInput: There are not as many files as trials that need one.
     """
@@ -29,6 +33,11 @@ def forces_of_person(
     static: str | None, trials: Sequence[str], forces: Sequence[str]
 ) -> tuple[str | None, list[str | None]]:
     """The force files of a static trial and of moving ones; with one file too few, the static trial has none.
+
+    Args:
+        static: The static trial's file, or None.
+        trials: Files of the moving trials.
+        forces: Files of ground reactions, in the order of the captures.
 
     Raises:
         InvalidInput: There are not as many files as captures that need one.

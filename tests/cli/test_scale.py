@@ -80,7 +80,7 @@ def test_trc_and_c3d_give_the_same_subject(person, tmp_path):
 
 
 def test_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys):
-    whole = made_capture(30, 0.0)
+    whole = made_capture(30, 0.0, plates=())
     for kept, file in ((34, "most.c3d"), (12, "few.c3d")):
         names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))
         write_c3d(replace(whole, markers=replace(whole.markers, names=names)), tmp_path / file)
@@ -98,7 +98,7 @@ def test_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys)
 
 def renamed(path, *names):
     """The made standing trial with each marker under the next one's name, as a file."""
-    whole = made_capture(30, 0.0)
+    whole = made_capture(30, 0.0, plates=())
     columns = [whole.markers.names.index(name) for name in names]
     positions = whole.markers.positions_m.copy()
     positions[:, columns] = whole.markers.positions_m[:, np.roll(columns, 1)]
