@@ -115,7 +115,6 @@ class KeyPointPath:
     Attributes:
         time_s: (K,) middle of each window, or the time of each sample.
         position_m, velocity_m_s: (K, 3) level axes of the first key point, z up.
-        gravity_mps2: (K, 3) estimated gravity in the sensor's axes.
         still: (K,) key points.
         stability: (number of windows,) S.
     """
@@ -123,7 +122,6 @@ class KeyPointPath:
     time_s: Array
     position_m: Array
     velocity_m_s: Array
-    gravity_mps2: Array
     still: BoolArray
     stability: Array
 
@@ -177,7 +175,7 @@ def follow_key_points(
     gravity = _between_key_points(gravity, key, step * w, settings)
     linear = rotate(attitude(gravity), f - gravity)
     velocity, position = _integrated(linear, key & settings.zero_velocity, step)
-    return KeyPointPath(time, position, velocity, gravity, key, unsteadiness)
+    return KeyPointPath(time, position, velocity, key, unsteadiness)
 
 
 def prepared(f: Array, w: Array, rate_hz: float, settings: KeyPointSettings) -> tuple[Array, Array]:

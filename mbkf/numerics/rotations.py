@@ -50,16 +50,6 @@ def nearest_rotations(matrices: Array) -> Array:
     return np.asarray(u @ vt)
 
 
-def quaternion_log(quaternions: Array) -> Array:
-    """(…, 3) rotation vectors, of angle at most π, of unit quaternions (…, 4) in (x, y, z, w) order."""
-    signed = np.where(quaternions[..., 3:] < 0, -quaternions, quaternions)
-    vector, scalar = signed[..., :3], signed[..., 3:]
-    sine = np.linalg.norm(vector, axis=-1, keepdims=True)
-    angle = 2.0 * np.arctan2(sine, scalar)
-    factor = np.where(sine < 1e-8, 2.0 / np.maximum(scalar, 0.5), angle / np.maximum(sine, 1e-300))
-    return factor * vector
-
-
 def travel_by_turn(u: Array, w: Array) -> Array:
     """(3, 3) derivative of the travel of a screw motion exp(u, w) by its turn w, in the axes that it ends in.
 

@@ -8,7 +8,6 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.numerics.rotations import (
     nearest_rotations,
-    quaternion_log,
     quaternion_of,
     skew,
     travel_by_turn,
@@ -32,28 +31,6 @@ def test_skew_of_many():
     vectors = np.random.default_rng(1).normal(size=(4, 2, 3))
     np.testing.assert_array_equal(skew(vectors)[2, 1], skew(vectors[2, 1]))
     np.testing.assert_array_equal(skew(vectors), -skew(vectors).swapaxes(-1, -2))
-
-
-@given(VECTORS, ANGLES)
-def test_log_undoes_the_rotation_vector(direction, angle):
-    phi = rotation_vector(direction, angle)
-    np.testing.assert_allclose(quaternion_log(Rotation.from_rotvec(phi).as_quat()), phi, rtol=0, atol=1e-14)
-
-
-@given(VECTORS, ANGLES)
-def test_a_quaternion_and_its_negative_are_one_rotation(direction, angle):
-    quaternion = Rotation.from_rotvec(rotation_vector(direction, angle)).as_quat()
-    np.testing.assert_array_equal(quaternion_log(-quaternion), quaternion_log(quaternion))
-
-
-@pytest.mark.parametrize("angle", [0.0, 1e-300, 1e-15, 1e-9, 2e-8, 1e-7])
-def test_log_keeps_tiny_angles(angle):
-    quaternion = np.array([0.0, np.sin(angle / 2), 0.0, np.cos(angle / 2)])
-    np.testing.assert_allclose(quaternion_log(quaternion), [0.0, angle, 0.0], rtol=1e-15)
-
-
-def test_half_a_turn_has_angle_pi():
-    assert np.linalg.norm(quaternion_log(np.array([0.6, 0.0, 0.8, 0.0]))) == pytest.approx(np.pi, rel=1e-15)
 
 
 @given(VECTORS, st.floats(0, np.pi))

@@ -24,25 +24,13 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput, ShapeError
-from mbkf.io.files_read import check_input, opened
-from mbkf.io.hdf5 import DAMAGED, HDF5, array
+from mbkf.io.files_read import check_input
+from mbkf.io.hdf5 import DAMAGED, array
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.signals import Signal, readings_of
 
 _FRAME = "APDM; orientation in the world of the maker's filter, z up"
 _NAMES = {"Accelerometer": "acc", "Gyroscope": "gyr", "Magnetometer": "mag"}
-
-
-def is_apdm(path: Path) -> bool:
-    """True for an HDF5 file of such a recording."""
-    with opened(path) as file:
-        if file.read(len(HDF5)) != HDF5:
-            return False
-    try:
-        with h5py.File(path, "r") as file:
-            return "Sensors" in file or any(name.startswith("Opal_") for name in file)
-    except DAMAGED:
-        return False
 
 
 def read_apdm(path: Path) -> tuple[ImuReadings, ...]:

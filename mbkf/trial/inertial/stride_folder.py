@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.io.atomic import write_text
-from mbkf.io.atomic_folder import replacing_folder
 from mbkf.trial.inertial.stride import StrideMeasurement, stride_summary
 
 STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE = "strides.csv", "trajectory.csv", "summary.json"
@@ -25,21 +24,6 @@ STRIDE_COLUMNS = (
 TRAJECTORY_COLUMNS = (
     "foot", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "qx", "qy", "qz", "qw", "rest",
 )  # fmt: skip
-
-
-def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
-    """Writes the tables, which replace earlier ones as one; blank cells where something is unknown.
-
-    Returns:
-        The folder, made where missing.
-
-    Raises:
-        FileFormatError: A file stands where the folder is needed.
-        OSError: The folder cannot be written to.
-    """
-    with replacing_folder(folder, last=SUMMARY_FILE) as partial:
-        write_stride_files(measured, partial)
-    return Path(folder).absolute()
 
 
 def write_stride_files(measured: StrideMeasurement, folder: Path) -> None:

@@ -21,9 +21,6 @@ BAND = (0.7, 1.4)
 BEFORE = "before_correction"
 """Newton's law by the motion of markers alone, before a filter makes it hold, beside :data:`READING_KINDS`."""
 
-BEFORE_MOST = 4.0
-"""Largest value where plates and body agree: 2 standard deviations; 1.3 to 3 in public captures of known mass."""
-
 STRETCH_S, STRETCH_NIS = 0.5, 3.0
 """A stretch of this length with more is reported; at most 2.7 in the public captures."""
 

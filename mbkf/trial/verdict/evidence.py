@@ -38,7 +38,6 @@ class Evidence:
         beyond: Joints beyond their ranges.
         doubtful_limbs: Limbs that were in doubt while the filter ran, and the share of the trial for each.
         spread_deg: Mean standard deviation by part of the flexions that instruments show.
-        loads_known: Share of the frames in which every load is known, or would be without an unexplained one.
         unexplained: Forces that no contact explains.
         unexplained_share: Share of the frames in which loads are known that such a force spoils.
         contacts: Stretches in which parts besides the feet bear load; nothing measures these.
@@ -58,7 +57,6 @@ class Evidence:
     beyond: tuple[Beyond, ...] = ()
     doubtful_limbs: tuple[tuple[LimbDoubt, float], ...] = ()
     spread_deg: Mapping[str, float] = field(default_factory=dict)
-    loads_known: float = 1.0
     unexplained: tuple[UnexplainedLoad, ...] = ()
     unexplained_share: float = 0.0
     contacts: tuple[ContactInterval, ...] = ()
@@ -136,7 +134,6 @@ def evidence_from(sums: TrialSums, found: Found) -> Evidence:
         beyond=sums.beyond(),
         doubtful_limbs=_doubtful_limbs(found, sums.frames, followed.rate_hz),
         spread_deg=_spreads(sums, body, lacking),
-        loads_known=sums.known / frames,
         unexplained=found.unexplained,
         unexplained_share=sums.spoilt / max(sums.known, 1),
         contacts=tuple(one for one in found.contacts if one.part not in FEET),

@@ -16,7 +16,7 @@ NO_LEFT_ARM = tuple(f"left_{one}_{axis}" for one in ("upper_arm", "forearm", "ha
 
 def test_a_whole_trial_speaks_for_itself():
     found = evidence_of(walk())
-    assert found.tracked == found.loads_known == found.explained == 1.0
+    assert found.tracked == found.explained == 1.0
     assert found.unshown == found.beyond == found.contacts == ()
     assert found.trunk_shown and not found.unshown_segments
     assert {one.part for one in found.fits} >= {"pelvis", "trunk", "right_leg", "left_leg"}
@@ -51,7 +51,7 @@ def test_an_unexplained_force_spoils_its_share_of_the_frames():
     pull = UnexplainedLoad(float(r.times_s[0]), last_s, (0.0, 0.0, 200.0), 8.0, 0.3)
     valid = r.times_s > last_s + 1e-9
     found = evidence_of(replace(r, unexplained=(pull,), valid=valid))
-    assert found.loads_known == 1.0 and found.unexplained_share == pytest.approx(0.5, abs=0.01)
+    assert found.unexplained_share == pytest.approx(0.5, abs=0.01)
 
 
 def test_loads_besides_the_feet_and_lost_frames_are_evidence():
