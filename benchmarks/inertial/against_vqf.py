@@ -42,7 +42,7 @@ def rows(context: Context) -> Iterator[Check]:
     """Errors against VQF's, spreads, and starts in motion."""
     sensors = trials(context)[: 2 if context.quick else None]
     for method, kind, bounds in (("ekf", "online", (0.95, 0.95)), ("smooth", "offline", (0.85, 1.0))):
-        own, theirs = _followed(sensors, method), [_vqf(one, method) for one in sensors]
+        own, theirs = followed(sensors, method), [_vqf(one, method) for one in sensors]
         found = [_error(q.quaternion, one) for q, one in zip(own, sensors, strict=True)]
         other = [_error(q, one) for q, one in zip(theirs, sensors, strict=True)]
         for part, bound in zip(("total", "inclination"), bounds, strict=True):
@@ -69,7 +69,7 @@ def _speed(one: ImuReadings) -> Iterator[Check]:
     for kernel in (COMPILED, REFERENCE, COMPILED):  # the first one loads libraries
         with using(kernel):
             begun = process_time()
-            found[kernel] = _followed([one], "smooth")[0].quaternion
+            found[kernel] = followed([one], "smooth")[0].quaternion
             spent[kernel] = process_time() - begun
     yield Check(
         "smoothing, compiled: times faster than numpy", spent[REFERENCE] / spent[COMPILED], FASTER, ">="
@@ -80,8 +80,13 @@ def _speed(one: ImuReadings) -> Iterator[Check]:
     yield Check("smoothing, compiled: largest difference of a quaternion from numpy's", apart, 1e-9, "<=")
 
 
-def _followed(sensors: Sequence[ImuReadings], method: str) -> list[Orientation]:
-    """Courses of all sensors, made equally long so that they run side by side."""
+def followed(sensors: Sequence[ImuReadings], method: str) -> list[Orientation]:
+    """Courses of all sensors in ENU, made equally long so that they run side by side.
+
+    Args:
+        sensors: The sensors.
+        method: A key of :data:`mbkf.imu.orientation.METHODS`.
+    """
     longest = max(one.samples for one in sensors)
     found = orientations(
         [_longer(one, longest) for one in sensors], frame="ENU", settings=OrientSettings(method)
@@ -138,15 +143,8 @@ def _spreads(kind: str, own: Sequence[Orientation], sensors: Sequence[ImuReading
     A heading errs by what iron does to the field, once per trial: the root of each trial by itself is small in most of
     them and large in some, and its mean (for information) smaller than the spread of such errors.
     """
-    squares, covers = [], []
-    for course, one in zip(own, sensors, strict=True):
-        assert one.orientation is not None and one.moving is not None and course.sd_rad is not None
-        truth = change_frame(one.orientation, "ENU", "NWU")
-        there = one.moving & np.isfinite(truth).all(axis=1)
-        off = multiply(change_frame(course.quaternion, "ENU", "NWU")[there], conjugate(truth[there]))
-        z = 2.0 * np.where(off[:, 3:] < 0.0, -off, off)[:, :3] / course.sd_rad[there]
-        squares.append((z**2).mean(axis=0))
-        covers.append((np.abs(z) < 1.96).mean(axis=0))
+    scaled = [standardised(course, one) for course, one in zip(own, sensors, strict=True)]
+    squares, covers = [(z**2).mean(axis=0) for z in scaled], [(np.abs(z) < 1.96).mean(axis=0) for z in scaled]
     by_trial, cover = np.array(squares), 100.0 * np.mean(covers, axis=0)
     for name, square, share in (
         ("tilt", by_trial[:, :2].mean(axis=1), float(cover[:2].mean())),
@@ -159,6 +157,20 @@ def _spreads(kind: str, own: Sequence[Orientation], sensors: Sequence[ImuReading
         yield Check(f"BROAD, {kind}: error / stated sd, {name}, mean of each trial's", alone, np.inf, "<=")
         yield Check(f"BROAD, {kind}: cover of 95 % intervals, {name}", share, 90.0, ">=", "%")
         yield Check(f"BROAD, {kind}: cover, {name}, not more", share, 98.0, "<=", "%")
+
+
+def standardised(course: Orientation, one: ImuReadings) -> Array:
+    """(n, 3) errors about north, west and up over their stated spreads, in the n samples of movement.
+
+    Args:
+        course: The orientation.
+        one: The readings with their reference.
+    """
+    assert one.orientation is not None and one.moving is not None and course.sd_rad is not None
+    truth = change_frame(one.orientation, "ENU", "NWU")
+    there = one.moving & np.isfinite(truth).all(axis=1)
+    off = multiply(change_frame(course.quaternion, "ENU", "NWU")[there], conjugate(truth[there]))
+    return np.asarray(2.0 * np.where(off[:, 3:] < 0.0, -off, off)[:, :3] / course.sd_rad[there])
 
 
 def _starts(sensors: Sequence[ImuReadings]) -> Iterator[Check]:

@@ -13,16 +13,29 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.checks import Check, Context, within
-from benchmarks.inertial.stride_measured import FILTER, FOLDER, SMOOTHER, Compared, compare
+from benchmarks.inertial.stride_measured import (
+    FILTER,
+    FOLDER,
+    SMOOTHER,
+    Compared,
+    clipped,
+    compare,
+    compare_one,
+    read_feet,
+    reference_strides,
+)
 from mbkf.errors import MbkfError
+from mbkf.trial.inertial.stride import StrideSettings
 
 SMOOTHER_MM, FILTER_MM, OFFSET_MM = 52.0, 85.0, 25.0
 SPREAD = 0.7, 1.3
+CLIPPED_DEG_S, CLIPPED_MM, CLIPPED_SPREAD = (180, 250, 350), 120.0, 1.5
 
 
 def rows(context: Context) -> list[Check]:
     """All rows of the measured strides."""
-    return list(measured_rows(compare(context.require_data() / FOLDER)))
+    folder = context.require_data() / FOLDER
+    return [*measured_rows(compare(folder)), *clipped_rows(folder)]
 
 
 def measured_rows(compared: Sequence[Compared]) -> Iterator[Check]:
@@ -42,6 +55,19 @@ def measured_rows(compared: Sequence[Compared]) -> Iterator[Check]:
             yield from within(f"{head}: error by stated sd", math.sqrt(one.normalised), *SPREAD)
         elif judged:
             yield Check(f"{head}: squared error by stated variance", one.normalised, math.inf, "<=")
+
+
+def clipped_rows(folder: Path) -> Iterator[Check]:
+    """The same strides from gyroscopes that clip softly: lengths, and how many lie within twice their spreads."""
+    readings, reference = read_feet(folder), reference_strides(folder)
+    for limit_deg_s in CLIPPED_DEG_S:
+        cut = [clipped(one, math.radians(limit_deg_s)) for one in readings]
+        found = compare_one(SMOOTHER, StrideSettings(SMOOTHER), cut, reference)
+        head = f"gaitmap foot, {SMOOTHER}, gyroscopes clipped softly at {limit_deg_s} deg/s"
+        n = len(found.reference_m)
+        yield Check(f"{head}: strides found of {n}", float(found.found), float(n), ">=")
+        yield Check(f"{head}: RMSE", found.rmse_mm, CLIPPED_MM, "<=", "mm")
+        yield Check(f"{head}: error by stated sd", math.sqrt(found.normalised), CLIPPED_SPREAD, "<=")
 
 
 def main() -> int:

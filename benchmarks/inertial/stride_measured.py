@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +103,20 @@ def read_feet(folder: Path) -> list[ImuReadings]:
     """
     units = {"acc": "m/s2", "gyr": "deg/s"}
     return list(read_imu_csv(folder / "imu_sample.csv", units=units, rate_hz=RATE_HZ))
+
+
+def clipped(reading: ImuReadings, limit_rad_s: float) -> ImuReadings:
+    """The readings of a gyroscope that clips softly: beyond its limit they scatter over the last hundredth below it.
+
+    Args:
+        reading: The readings.
+        limit_rad_s: Its limit on all axes.
+    """
+    rates = reading.angular_velocity_rad_s.copy()
+    over = np.abs(rates) > limit_rad_s
+    scattered = 1.0 - 0.008 * np.random.default_rng(0).random(rates.shape)
+    rates[over] = (np.sign(rates) * limit_rad_s * scattered)[over]
+    return replace(reading, angular_velocity_rad_s=rates)
 
 
 def compare_one(

@@ -173,8 +173,8 @@ def _clips_softly(one: ImuReadings, limit: SoftLimit) -> Problem:
     text = (
         f"sensor {one.name}: axis {'xyz'[limit.axis]} of the gyroscope clips softly at "
         f"{limit.limit_rad_s / _DEGREE:.4g} deg/s in {count} samples ({count / one.samples:.1%}; first at "
-        f"{one.time_s[int(np.argmax(limit.reached))]:.2f} s), while gravity turns faster; record with a wider range. "
-        "Stated spreads of its orientation are widened"
+        f"{one.time_s[int(np.argmax(limit.reached))]:.2f} s); record with a wider range. "
+        "Stated spreads of orientations and strides are widened"
     )
     return Problem(one.name, "saturated", text, False)
 

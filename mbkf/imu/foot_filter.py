@@ -205,6 +205,7 @@ def follow_foot(
     still: BoolArray,
     settings: FootFilterSettings,
     rolling: BoolArray | None = None,
+    turn_variance: Array | None = None,
 ) -> FootRun:
     """Runs the filter from the first rest to the end.
 
@@ -215,6 +216,7 @@ def follow_foot(
         still: (T,) samples that look like rest.
         settings: Noise.
         rolling: (T,) samples in which the foot may stand though it turns; by default, never.
+        turn_variance: (T, 3) variance of each sample's turn beyond the gyroscope's noise, rad²; by default, zero.
 
     Raises:
         InvalidInput: The foot never rests.
@@ -234,6 +236,8 @@ def follow_foot(
             state, Phi = predict(state, 0.5 * (f[k - 1] + f[k]), 0.5 * (w[k - 1] + w[k]), dt)
             covariance = Phi @ covariance @ Phi.T
             _add_noise(covariance, noises[k], settings, dt)
+            if turn_variance is not None:
+                covariance[ROTATION, ROTATION] += np.diag(turn_variance[k])
         reading = None
         if still[k] or (rolling is not None and rolling[k]):
             stance = _stance(state, w[k], settings)

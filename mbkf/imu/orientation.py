@@ -14,6 +14,7 @@ from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings
 from mbkf.imu.madgwick_course import madgwick_course
 from mbkf.imu.orientation_course import orientation_course
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
+from mbkf.imu.orientation_spread import stated_sd
 from mbkf.imu.soft_saturation import soft_limits
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
@@ -240,7 +241,19 @@ def _run(
     q, bias, variance = orientation_course(
         kalman, begin, gyro, force, field, smooth=smooth, count_one=count_one
     )
-    sd = np.sqrt(np.maximum(variance[:, :, :3], 0.0))
-    if magnetic:
-        sd[:, :, 2] = np.hypot(sd[:, :, 2], settings.ekf.field_direction_sd_rad)
-    return [(q[:, n], bias[:, n], sd[:, n]) for n in range(len(group))]
+    return [
+        (
+            q[:, n],
+            bias[:, n],
+            stated_sd(
+                variance[:, n, :3],
+                q[:, n],
+                gyro[:, n] - bias[:, n],
+                None if field is None else field[:, n],
+                group[n].rate_hz,
+                settings.ekf,
+                smooth=smooth,
+            ),
+        )
+        for n in range(len(group))
+    ]

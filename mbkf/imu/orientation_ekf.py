@@ -54,8 +54,14 @@ class OrientationSettings:
         field_tolerance: Relative change of the field's strength that counts as a disturbance of size 1.
         dip_tolerance_rad: Change of its dip that does.
         field_memory_s: Time in which a new field becomes the usual one.
-        field_direction_sd_rad: Lasting bend of the field's direction by iron in a room. Readings cannot show it; it is
-            part of the stated spread of headings (root mean square of seven trials of BROAD, the largest 7°).
+        spread_scale: Factor on the filter's own spread. All noises are larger than they are by its inverse; only their
+            ratios matter to estimates. This and the following five make the stated spread
+            (:mod:`mbkf.imu.orientation_spread`); estimates do not depend on them.
+        accelerometer_offset_mps2: Offset that a calibration leaves, m/s².
+        field_offset: Offset of the magnetometer, by iron that turns with it, as a share of the field's strength.
+        field_direction_sd_rad: Lasting bend of the field's direction by iron in a room.
+        field_delay_s: Delay of fields behind angular velocities.
+        clock_sd_s: Delay of the sensor's times behind those of its motion, by its low-pass filter and its clock.
         integrating: Whether a reading is the mean since the one before, as digital sensors give it (on BROAD this
             halves the error that the other reading leaves), or the value at its time, as virtual sensors have it.
         rest_bias: Whether a sensor that lies still is taken not to turn at all. A slow steady turn looks the same:
@@ -84,7 +90,12 @@ class OrientationSettings:
     field_tolerance: float = 0.1
     dip_tolerance_rad: float = 0.15
     field_memory_s: float = 20.0
-    field_direction_sd_rad: float = 0.052
+    spread_scale: float = 0.75
+    accelerometer_offset_mps2: float = 0.022
+    field_offset: float = 0.0185
+    field_direction_sd_rad: float = 0.012
+    field_delay_s: float = 0.01
+    clock_sd_s: float = 0.0018
     integrating: bool = True
     rest_bias: bool = True
     rest_rate_rad_s: float = 0.035

@@ -1,11 +1,13 @@
 """Gyroscopes that clip softly: readings gather just below a limit that they never pass, without being equal.
 
-Found by two signs together: the histogram of an axis has its last bin far fuller than those before it, and gravity,
-turned into a fixed frame by the gyroscope, stays longer where these readings are taken for larger ones.
+Found by two signs together: the histogram of an axis has its last bin far fuller than those before it, and another axis
+or side ends at the same size, or gravity, turned into a fixed frame by the gyroscope, stays longer where these readings
+are taken for larger ones.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +15,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.imu.turned_force import mean_force
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.numerics.runs import runs
 
 LEAST_LIMIT_RAD_S = 1.7
 """No gyroscope on the market has a smaller range."""
@@ -22,6 +25,7 @@ _LEAST_SAMPLES, _FULLER = 20, 8.0
 """The readings above the first share of the limit, and how many times as many they are as those between the shares,
 for a bin of the same width. On sound public recordings (BROAD, qmt, gaitmap) it is at most 4."""
 
+_SAME_LIMIT = 0.01
 _SCALES = (1.25, 1.5, 2.0, 2.5)
 _BETTER = 0.03
 _WINDOW_S, _MOST_WINDOWS = 2.0, 40
@@ -43,14 +47,47 @@ class SoftLimit:
 
 
 def soft_limits(one: ImuReadings) -> tuple[SoftLimit, ...]:
-    """The limits at which a gyroscope clips softly; gravity judges both sides of an axis together."""
+    """The limits at which a gyroscope clips softly.
+
+    Two full last bins at one size are a range. A single one may be a steady turn: gravity judges it, both sides of an
+    axis together.
+    """
+    rates = one.angular_velocity_rad_s
+    sides = [_plateau(rates[:, axis], axis, sign) for axis in range(3) for sign in (1.0, -1.0)]
+    full = [side for side in sides if side is not None]
     found: list[SoftLimit] = []
     for axis in range(3):
-        sides = [_plateau(one.angular_velocity_rad_s[:, axis], axis, sign) for sign in (1.0, -1.0)]
-        full = [side for side in sides if side is not None]
-        if full and _gravity_turns_more(one, axis, np.any([side.reached for side in full], axis=0)):
-            found += full
+        own = [side for side in full if side.axis == axis]
+        if any(_has_twin(side, full) for side in own) or (
+            own and _gravity_turns_more(one, axis, np.any([side.reached for side in own], axis=0))
+        ):
+            found += own
     return tuple(found)
+
+
+def _has_twin(side: SoftLimit, others: Sequence[SoftLimit]) -> bool:
+    """True where another axis or side ends at the same size."""
+    sizes = [abs(other.limit_rad_s) for other in others if other is not side]
+    return any(abs(size / abs(side.limit_rad_s) - 1.0) < _SAME_LIMIT for size in sizes)
+
+
+def missing_turn_variance(one: ImuReadings) -> Array | None:
+    """(T, 3) variance of the turn that a clipped gyroscope misses in each sample, rad²; None where it does not clip.
+
+    A peak that rises to the limit at a slope s, and is above it for a time t, is about a parabola: its mean excess is
+    s t / 6. All samples of a peak miss alike, so that each of n counts n times.
+    """
+    limits = soft_limits(one)
+    if not limits:
+        return None
+    found, dt = np.zeros((one.samples, 3)), 1.0 / one.rate_hz
+    for limit in limits:
+        steps = np.abs(np.diff(np.nan_to_num(one.angular_velocity_rad_s[:, limit.axis]))) / dt
+        for first, stop in runs(limit.reached):
+            outside = steps[[max(first - 2, 0), min(stop, len(steps) - 1)]]  # the step at the limit is cut
+            missed = outside.mean() * (stop - first) * dt / 6.0
+            found[first:stop, limit.axis] = (missed * dt) ** 2 * (stop - first)
+    return found
 
 
 def _plateau(series: Array, axis: int, sign: float) -> SoftLimit | None:

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.imu.checks import problems
 from mbkf.imu.orientation import OrientSettings, orientations
-from mbkf.imu.soft_saturation import soft_limits
+from mbkf.imu.soft_saturation import missing_turn_variance, soft_limits
 from mbkf.io.imu.files import read_imu
 from mbkf.io.imu.readings import ImuReadings
 
@@ -82,3 +82,29 @@ def test_a_real_trial_is_reported_and_its_tilt_is_within_its_spread(real_data):
     off = Rotation.from_quat(course.quaternion).apply(up)[400:, :2]
     ratio = np.sqrt((off**2).mean() / (course.sd_rad[400:, :2] ** 2).mean())
     assert 0.5 < ratio < 1.5
+
+
+def test_two_axes_that_end_at_one_size_need_no_gravity():
+    """A foot's force is no gravity; its two axes clip at the range of the gyroscope."""
+    one = rocking(12.0)
+    force = np.full_like(one.specific_force_mps2, 5.0)
+    rates, noise = np.zeros_like(force), 0.005 * np.random.default_rng(2).random(len(TIME))
+    rates[:, 0] = np.clip(one.angular_velocity_rad_s[:, 0], 0.0, 0.5 * LIMIT) * (1.0 - noise)
+    rates[:, 1] = np.roll(rates[:, 0], 50)
+    silent = replace(one, specific_force_mps2=force, angular_velocity_rad_s=rates)
+    assert [limit.axis for limit in soft_limits(silent)] == [0, 1]
+    alone = replace(silent, angular_velocity_rad_s=rates * [1.0, 0.0, 0.0])
+    assert soft_limits(alone) == ()
+
+
+def test_the_missing_turn_follows_from_how_steeply_peaks_reach_the_limit():
+    """Peaks of 12 rad/s cut at 7.3: the turn that all samples of a peak miss together."""
+    whole = rocking(12.0)
+    one, over = clipped(whole)
+    variance = missing_turn_variance(one)
+    assert (variance[np.abs(whole.angular_velocity_rad_s[:, 0]) < 0.95 * LIMIT] == 0.0).all()
+    assert (variance[:, 1:] == 0.0).all()
+    missed = np.abs(whole.angular_velocity_rad_s - one.angular_velocity_rad_s)[over, 0].sum() / RATE_HZ
+    peaks = np.diff(over.astype(int)).clip(0).sum() + over[0]
+    assert 0.5 < np.sqrt(variance.sum() / peaks) / (missed / peaks) < 1.2
+    assert missing_turn_variance(whole) is None

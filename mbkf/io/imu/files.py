@@ -21,6 +21,7 @@ from mbkf.io.imu.plausible import plausible_readings
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.session import read_folder, read_together
 from mbkf.io.imu.table import read_imu_csv
+from mbkf.io.imu.x_imu import is_x_imu, read_x_imu
 from mbkf.io.imu.xsens_text import is_xsens, is_xsens_folder, read_xsens, read_xsens_folder
 from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry, lazily
 
@@ -136,6 +137,11 @@ def _read_movella_dot(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...
 @register_imu_reader(".csv", ".tsv", ".txt", title="Xsens text export", recognises=is_xsens)
 def _read_xsens(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
     return (read_xsens(path, options.rate_hz),)
+
+
+@register_imu_reader(FOLDER, ".csv", title="recording of x-io's first x-IMU", recognises=is_x_imu)
+def _read_x_imu(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
+    return read_x_imu(path, options.units, options.rate_hz)
 
 
 def _with_units(module: str, function: str) -> ReadImu:

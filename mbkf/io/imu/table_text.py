@@ -13,6 +13,7 @@ from mbkf.io.text import decoded
 
 _COMMENT = ("#", "//", "%")
 _DELIMITERS = "\t;,"
+_BLANK = " "
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,12 @@ def split_table(path: Path, text: str) -> TableText:
         for number, line in enumerate(lines, start=1)
         if line.strip(" ,;\t") and not line.lstrip().startswith(_COMMENT)
     ]
+    delimiter = delimiter or _delimiter([line for _, line in kept])
+    if delimiter == _BLANK:
+        kept = [(number, _BLANK.join(line.split())) for number, line in kept]
+    kept = _with_commented_names(kept, lines, delimiter)
     if len(kept) < 2:
         raise FileFormatError(path, "cut short: no rows after the column names")
-    delimiter = delimiter or _delimiter([line for _, line in kept])
     cells = csv.reader((line for _, line in kept), delimiter=delimiter)
     try:
         rows = [
@@ -95,9 +99,28 @@ def is_number(cell: str) -> bool:
 
 
 def _delimiter(lines: list[str]) -> str:
-    """The mark that cuts most lines; a comma only where no other does, since it may stand in numbers."""
+    """The mark that cuts most lines; a comma only where no other does, since it may stand in numbers; else blanks."""
     sample = lines[-20:] + lines[:60]
-    return max(_DELIMITERS, key=lambda mark: sum(line.count(mark) > 0 for line in sample))
+    counts = {mark: sum(line.count(mark) > 0 for line in sample) for mark in _DELIMITERS}
+    blank = bool(sample) and not any(counts.values()) and all(len(line.split()) > 1 for line in sample)
+    return _BLANK if blank else max(_DELIMITERS, key=lambda mark: counts[mark])
+
+
+def _with_commented_names(
+    kept: list[tuple[int, str]], lines: list[str], delimiter: str
+) -> list[tuple[int, str]]:
+    """The lines, after the comment above them where it names as many columns: numpy.savetxt and others write so."""
+    if not kept:
+        return kept
+    number, first = kept[0]
+    above = lines[number - 2].strip() if number > 1 else ""
+    if not above.startswith(_COMMENT) or not all(map(is_number, first.replace('"', "").split(delimiter))):
+        return kept
+    names = above.lstrip("#/% ")
+    if delimiter == _BLANK:
+        names = _BLANK.join(names.split())
+    same = names.count(delimiter) == first.count(delimiter)
+    return [(number - 1, names), *kept] if same else kept
 
 
 def _decimal_commas(rows: list[tuple[int, list[str]]]) -> bool:

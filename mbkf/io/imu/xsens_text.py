@@ -35,7 +35,7 @@ _QUATERNIONS = (("Quat_q1", "Quat_q2", "Quat_q3", "Quat_q0"), ("Quat_X", "Quat_Y
 _SPELLED = {name.lower(): name for name in _QUATERNIONS[1]}
 _FREE = ("FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z"), ("FreeAcc_E", "FreeAcc_N", "FreeAcc_U")
 _TICKS = "SampleTimeFine"
-_TICK_S = 1e-4
+_TICK_S, _TICK_TURN = 1e-4, 2**32
 _MOST_IN_ROTATION = 1.1
 """Largest entry of a rotation, however it was rounded."""
 
@@ -80,9 +80,6 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     delimiter = max("\t;,", key=lines[head].count)
     table = _table(path, lines, head + 1, names, delimiter)
     stated = next((number(m[1]) for line in lines[:head] if (m := _RATE.search(line))), None)
-    rate = rate_hz or stated or _rate_of_ticks(names, table)
-    if rate is None or not rate > 0.0:
-        raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
     counted = table[:, 0]
     if not (np.abs(counted) < _COUNTER_TURN + 1).all():
         raise FileFormatError(path, f"{counter} does not count packets; export the file again")
@@ -90,6 +87,12 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     row = count - count[0]
     if (np.diff(row) <= 0).any() or row[-1] + 1 > len(row) / _LOST_SHARE + 10:
         raise FileFormatError(path, f"{counter} does not count up; export the file again")
+    rate = rate_hz or stated or _rate_of_ticks(names, table, row)
+    if rate is None or not rate > 0.0:
+        raise InvalidInput(
+            f"{path}: the header states no update rate, and {counter} counts packets without their times; "
+            "give the rate with --rate"
+        )
     whole = np.full((row[-1] + 1, len(names)), np.nan)
     whole[row] = table
 
@@ -117,13 +120,26 @@ def _is_there(values: Array | None) -> bool:
     return values is not None
 
 
-def _rate_of_ticks(names: Sequence[str], table: Array) -> float | None:
-    """Sample rate in Hz by the sensor's own clock, None where the file has no readings of it."""
+def _rate_of_ticks(names: Sequence[str], table: Array, row: Array) -> float | None:
+    """Sample rate in Hz by the sensor's own clock, None where the file has no readings of it.
+
+    Packets over the time between the first and the last one: single steps are rounded to a tick.
+
+    Args:
+        names: Of the columns.
+        table: (T, C) the columns.
+        row: (T,) number of each packet since the first.
+    """
     if _TICKS not in names:
         return None
-    steps = np.diff(table[:, names.index(_TICKS)])
-    steps = steps[np.isfinite(steps) & (steps > 0.0)]
-    return 1.0 / (_TICK_S * float(np.median(steps))) if len(steps) else None
+    ticks = table[:, names.index(_TICKS)]
+    known = np.flatnonzero(np.isfinite(ticks))
+    if len(known) < 2:
+        return None
+    lasted = np.diff(np.unwrap(ticks[known], period=_TICK_TURN))
+    if not (lasted > 0.0).all():
+        return None
+    return float((row[known[-1]] - row[known[0]]) / (_TICK_S * lasted.sum()))
 
 
 def read_xsens_folder(folder: str | Path, rate_hz: float | None = None) -> tuple[ImuReadings, ...]:

@@ -15,6 +15,7 @@ from mbkf.imu.feet import placements
 from mbkf.imu.foot_filter import FootFilterSettings, follow_foot
 from mbkf.imu.foot_track import filtered_track, smoothed_track
 from mbkf.imu.key_points import KeyPointSettings, follow_key_points
+from mbkf.imu.soft_saturation import missing_turn_variance
 from mbkf.imu.stride_doubts import doubted, out_of_reach
 from mbkf.imu.strides import SHORTEST_M, Stride, find_strides
 from mbkf.imu.worn_on_foot import elsewhere
@@ -174,7 +175,7 @@ def _follow(reading: ImuReadings, settings: StrideSettings) -> FootResult:
     if reason := elsewhere(f, rate, still):
         raise InvalidInput(reason)
     rolling = rolling_samples(f, w, rate, still, settings.stillness)
-    run = follow_foot(f, w, rate, still, settings.kalman, rolling)
+    run = follow_foot(f, w, rate, still, settings.kalman, rolling, missing_turn_variance(reading))
     track = smoothed_track(run) if settings.method == "smoother" else filtered_track(run)
     strides = find_strides(
         reading.time_s,

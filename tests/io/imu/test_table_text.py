@@ -55,3 +55,19 @@ def test_channels_of_a_sensor_and_a_clock(tmp_path):
         channel_signals(tmp_path, volts, times)
     (signal,) = channel_signals(tmp_path, volts, times, units={"acc": "m/s2"})
     np.testing.assert_array_equal(signal.values[2], 2.0)
+
+
+@pytest.mark.parametrize("mark", [",", " ", "\t"])
+def test_names_may_stand_in_a_comment_as_numpy_writes_them(tmp_path, mark):
+    names = ["time", "acc_x", "acc_y", "acc_z"]
+    path = tmp_path / "a.txt"
+    np.savetxt(path, ROWS, header=mark.join(names), delimiter=mark, fmt="%8.3f")
+    (one,) = read_imu_csv(path, units={"acc": "m/s2"})
+    np.testing.assert_array_equal(np.column_stack([one.time_s, one.specific_force_mps2]), ROWS)
+
+
+def test_a_comment_with_other_columns_than_the_numbers_is_no_row_of_names(tmp_path):
+    table = split_table(tmp_path, "# recorded, today, outside\n1,2\n3,4\n")
+    assert [cells for _, cells in table.rows] == [["1", "2"], ["3", "4"]]
+    named = split_table(tmp_path, "# recorded,today\na,b\n3,4\n")
+    assert named.rows[0][1] == ["a", "b"]

@@ -55,6 +55,15 @@ def test_what_is_wrong_is_told(tmp_path, change, told):
         read_xsens(path)
 
 
+def test_the_rate_follows_from_ticks_of_a_tenth_of_a_millisecond(tmp_path):
+    """120 Hz are 83.3 ticks; a packet is lost, and the clock turns over."""
+    packets = (0, 1, *range(3, 60))
+    rows = [f"{p}\t{(4294967000 + round(p * 1e4 / 120.0)) % 2**32}\t0\t0\t9.8\t0\t0\t0" for p in packets]
+    one = read_xsens(export(tmp_path / "a.txt", [], rate="// nothing", rows=rows))
+    assert one.rate_hz == pytest.approx(120.0, rel=2e-4)
+    assert one.samples == 60
+
+
 def test_a_folder_is_cut_to_the_common_packets(tmp_path):
     export(tmp_path / "T_001.txt", range(10, 30))
     export(tmp_path / "T_002.txt", range(5, 25))

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.inertial.foot_walks import foot_walk
 from benchmarks.inertial.stride import SMOOTHER_MM
-from benchmarks.inertial.stride_measured import compare_one, reference_strides
+from benchmarks.inertial.stride_measured import clipped, compare_one, reference_strides
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.foot_filter import FootFilterSettings
 from mbkf.imu.key_points import KeyPointSettings
@@ -166,3 +166,13 @@ def test_measured_strides_and_level_ground(real_data):
     assert found.rmse_mm < SMOOTHER_MM
     # Far below what cameras and sensors can agree on would be a leak of the reference.
     assert found.rmse_mm > 10.0
+
+
+def test_strides_of_a_gyroscope_that_clips_are_found_and_their_spreads_hold():
+    """A foot that turns at up to 4.9 rad/s, read by a gyroscope that ends at 2.5 rad/s."""
+    walk = foot_walk((1.2, 1.3, 1.1, 1.2, 1.3))
+    (sound,) = measure_strides([walk.readings]).feet
+    (cut,) = measure_strides([clipped(walk.readings, 2.5)]).feet
+    lengths, spreads = np.array([(one.length_m, one.length_sd_m) for one in cut.strides]).T
+    assert (np.abs(lengths - walk.lengths_m) < 2.0 * spreads).all()
+    assert spreads.min() > 1.2 * max(one.length_sd_m for one in sound.strides)
