@@ -212,6 +212,7 @@ NEEDS: Mapping[str, Needs] = {
             "functional_walk",
             "grand_challenge_knee",
             "jam_walk",
+            "imu_broad",
             "judgement",
             "landings",
             "opencap_s6_walk",
@@ -225,7 +226,8 @@ NEEDS: Mapping[str, Needs] = {
             "synthetic_exact_truth",
             "two_persons_art",
             "unipd_walk",
-        )
+        ),
+        some_rows=("vqf",),
     ),
     "stride_paper": Needs(("matplotlib",), ("imu_gaitmap_foot",), synthetic=True),
     "verdict": Needs(

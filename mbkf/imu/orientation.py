@@ -18,6 +18,7 @@ from mbkf.imu.orientation_spread import stated_sd
 from mbkf.imu.soft_saturation import soft_limits
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
+from mbkf.numerics.runs import runs
 
 METHODS = ("madgwick", "ekf", "smooth")
 """Madgwick's filter, the error-state Kalman filter, and its offline version."""
@@ -27,6 +28,9 @@ START_S = 2.0
 
 REST_S = 0.25
 """A sensor that hardly turns over this time starts at rest."""
+
+BRIDGED_S = 0.05
+"""Where later samples are known, gyroscopes are interpolated over packets that were lost for so long."""
 
 GIVEN_SD_RAD = 0.03
 """Standard deviation of a given start."""
@@ -203,6 +207,21 @@ def _widened(settings: OrientSettings) -> OrientSettings:
     return replace(settings, ekf=replace(settings.ekf, gyro_scale_noise=noise))
 
 
+def _bridged(gyro: Array, most: int) -> Array:
+    """(T, N, 3) angular velocities whose gaps of at most so many samples are interpolated."""
+    found = gyro.copy()
+    for n in range(gyro.shape[1]):
+        lost = np.any(np.isnan(gyro[:, n]), axis=1)
+        known = np.flatnonzero(~lost)
+        for first, stop in runs(lost):
+            if first and stop < len(gyro) and stop - first <= most:
+                for axis in range(3):
+                    found[first:stop, n, axis] = np.interp(
+                        np.arange(first, stop), known, gyro[known, n, axis]
+                    )
+    return found
+
+
 def _run(
     group: Sequence[ImuReadings],
     settings: OrientSettings,
@@ -210,7 +229,10 @@ def _run(
     progress: StageCallback | None,
 ) -> list[tuple[Array, Array, Array | None]]:
     """Per sensor its quaternions (T, 4) in NWU, bias (T, 3) and standard deviations (T, 3) or None."""
+    smooth = settings.method == "smooth"
     gyro = np.stack([one.angular_velocity_rad_s for one in group], axis=1)
+    if smooth:
+        gyro = _bridged(gyro, round(BRIDGED_S * group[0].rate_hz))
     force = np.stack([one.specific_force_mps2 for one in group], axis=1)
     rest = [first_readings(one) for one in group]
     first, magnetic = np.array([f for f, _ in rest]), settings.magnetometer and rest[0][1] is not None
@@ -237,7 +259,6 @@ def _run(
         P = begin.P.copy()
         P[:, [0, 1, 2], [0, 1, 2]] = GIVEN_SD_RAD**2
         begin = begin._replace(quaternion=start, P=P)
-    smooth = settings.method == "smooth"
     q, bias, variance = orientation_course(
         kalman, begin, gyro, force, field, smooth=smooth, count_one=count_one
     )

@@ -140,3 +140,24 @@ def test_the_first_readings_of_a_sensor_in_motion_show_the_vertical():
     tilt = np.degrees(np.arccos(force[2] / np.linalg.norm(force)))
     plain = local[:25].mean(axis=0)
     assert tilt < 3.0 < np.degrees(np.arccos(plain[2] / np.linalg.norm(plain)))
+
+
+def test_a_lost_packet_is_bridged_where_later_ones_are_known():
+    """One lost sample in motion leaves no more doubt about the heading than a whole recording; ten do."""
+    spreads, apart = [], []
+    for lost in (0, 1, 10):
+        parts = [x.copy() for x in (MADE.gyro, MADE.force, MADE.field)]
+        for values in parts:
+            values[400 : 400 + lost] = np.nan
+        one = replace(
+            MADE.readings(),
+            angular_velocity_rad_s=parts[0],
+            specific_force_mps2=parts[1],
+            magnetic_field=parts[2],
+        )
+        (course,) = orientations([one], frame="NWU", settings=OrientSettings("smooth"))
+        assert np.isnan(course.quaternion).any(axis=1).sum() == lost
+        spreads.append(course.sd_rad[420, 2])
+        apart.append(apart_deg(course.quaternion[420:], MADE.truth[420:]).max())
+    assert spreads[1] < 1.02 * spreads[0] < 1.1 * spreads[0] < spreads[2]
+    assert abs(apart[1] - apart[0]) < 0.1
