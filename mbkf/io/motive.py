@@ -20,6 +20,7 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import up_axis
 from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.imu.session import names_readings
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.marker_capture import StatedUnit, marker_capture
 from mbkf.io.records import Capture
@@ -78,7 +79,13 @@ def read_motive(path: str | Path, options: CaptureOptions) -> Capture:
 def _take(file: TextFile) -> _Take:
     first = next(csv_rows(file.lines[:1], file.path), [])
     if not first or first[0].strip().lower() != "format version":
-        raise FileFormatError(file.path, "not an export of Motive (it does not begin with Format Version)", 1)
+        reason = "not an export of Motive (it does not begin with Format Version)"
+        if names_readings(file.path):
+            reason = (
+                "its columns are readings of inertial sensors, not markers; mbkf imu orient and mbkf imu stride "
+                "read them, mbkf reconstruct takes them with --imu"
+            )
+        raise FileFormatError(file.path, reason, 1)
     cells = [cell.strip() for cell in first]
     entries = {name.lower(): value for name, value in zip(cells[::2], cells[1::2], strict=False)}
     titles: list[list[str]] = []

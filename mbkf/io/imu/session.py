@@ -25,7 +25,7 @@ def sensor_files(folder: Path, suffixes: Sequence[str]) -> list[Path]:
     return [
         path
         for path in files
-        if path.suffix.lower() not in _ANALOG and (path.suffix.lower() not in _TEXTS or _names_readings(path))
+        if path.suffix.lower() not in _ANALOG and (path.suffix.lower() not in _TEXTS or names_readings(path))
     ]
 
 
@@ -78,8 +78,12 @@ def read_folder(
     return read_together(files, read)
 
 
-def _names_readings(path: Path) -> bool:
-    """True for a text with a row near its beginning that names three or more columns of readings."""
+def names_readings(path: Path) -> bool:
+    """True for a text with a row near its beginning that names three or more columns of readings.
+
+    Args:
+        path: The file.
+    """
     with opened(path) as file:
         head = decoded(file.read(_HEAD_BYTES))
     rows = (line.replace("\t", ",").replace(";", ",").split(",") for line in head.splitlines()[:100])
