@@ -112,4 +112,4 @@ def test_a_table_of_inertial_readings_is_named_as_what_it_is(tmp_path):
     path = tmp_path / "foot.csv"
     path.write_text("time,acc_x,acc_y,acc_z\n0.0,0.0,0.0,9.8\n")
     with pytest.raises(FileFormatError, match=r"inertial sensors.*mbkf imu orient"):
-        read_capture(path)
+        read_motive(path, CaptureOptions())
