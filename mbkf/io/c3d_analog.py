@@ -202,20 +202,21 @@ def _doubts(name: str, plate: PlateReadings, corners: Array) -> list[str]:
 
 
 def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
-    """Labelled instants in order of time, from EVENT:TIMES (minutes and seconds), else from the header.
+    """Labelled instants in order of time, from TIMES (minutes and seconds) of EVENT or EVENTS, else from the header.
 
     Args:
         content: The decoded file.
         notes: Receives a remark on events without a time.
     """
     parameters = content.parameters
-    times = _event_times(parameters)
-    labels, contexts = parameters.texts("EVENT", "LABELS"), parameters.texts("EVENT", "CONTEXTS")
+    group = "EVENT" if parameters.group("EVENT") else "EVENTS"
+    times = _event_times(parameters, group)
+    labels, contexts = parameters.texts(group, "LABELS"), parameters.texts(group, "CONTEXTS")
     if times.size and times.shape[0] == 2:
         seconds = np.atleast_1d(60.0 * times[0] + times[1]).tolist()
         more = [""] * len(seconds)
         notes += [
-            f"EVENT:{name} holds {len(texts)} of {len(seconds)} events; the others have none"
+            f"{group}:{name} holds {len(texts)} of {len(seconds)} events; the others have none"
             for name, texts in (("LABELS", labels), ("CONTEXTS", contexts))
             if len(texts) < len(seconds)
         ]
@@ -223,9 +224,9 @@ def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
     else:
         found = [(label, "", time_s) for label, time_s in content.events]
         if times.size:
-            notes.append("EVENT:TIMES holds no minutes and seconds; its events are left out")
-        elif parameters.number("EVENT", "USED") > 0.0:
-            notes.append("EVENT:USED counts events, EVENT:TIMES is missing; they are left out")
+            notes.append(f"{group}:TIMES holds no minutes and seconds; its events are left out")
+        elif parameters.number(group, "USED") > 0.0:
+            notes.append(f"{group}:USED counts events, {group}:TIMES is missing; they are left out")
     timed = [
         CaptureEvent(label, context, round(at_s, 6)) for label, context, at_s in found if np.isfinite(at_s)
     ]
@@ -234,13 +235,13 @@ def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
     return tuple(sorted(timed, key=lambda event: event.time_s))
 
 
-def _event_times(parameters: C3dParameters) -> Array:
-    """(2, n) minutes and seconds of EVENT:TIMES and of its continuations; another shape is returned as it is."""
-    times, number = parameters.numbers("EVENT", "TIMES"), 2
-    if times.ndim == 1 and times.size == 2 * parameters.number("EVENT", "USED"):
+def _event_times(parameters: C3dParameters, group: str) -> Array:
+    """(2, n) minutes and seconds of the group's TIMES and of its continuations; another shape is returned as it is."""
+    times, number = parameters.numbers(group, "TIMES"), 2
+    if times.ndim == 1 and times.size == 2 * parameters.number(group, "USED"):
         times = times.reshape(2, -1, order="F")
     while times.ndim == 2 and len(times) == 2:
-        more = parameters.numbers("EVENT", f"TIMES{number}")
+        more = parameters.numbers(group, f"TIMES{number}")
         if more.ndim != 2 or len(more) != 2:
             break
         times, number = np.hstack([times, more]), number + 1

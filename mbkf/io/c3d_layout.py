@@ -19,6 +19,8 @@ BLOCK_BYTES = 512
 
 _KEY = 0x50
 _BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, MIPS
+_FIRST_PROCESSOR = 83
+"""Processors are counted from it on; some writers leave it away."""
 _SIGN_BYTES = {84: 3, 85: 1, 86: 0}
 _MOST_NAMED = 4
 LAST_FRAME_OF_HEADER = 65535
@@ -102,15 +104,16 @@ def check_layout(path: Path) -> C3dLayout:
         raise FileFormatError(
             path, f"cut short before its parameters ({size} bytes); copy or export it again"
         )
-    if parameters[3] not in _BYTE_ORDERS:
+    counted = parameters[3] + (_FIRST_PROCESSOR if parameters[3] < _FIRST_PROCESSOR else 0)
+    if counted not in _BYTE_ORDERS:
         raise FileFormatError(path, f"not a C3D file (processor type {parameters[3]}); export it as C3D")
-    layout = _layout(header, parameters[3], size)
+    layout = _layout(header, counted, size)
     ends = [start + parameters[2] * BLOCK_BYTES, (layout.data_block - 1) * BLOCK_BYTES]
     if size < min(end for end in ends if end > start or end == ends[0]):
         raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); export it again")
     if layout.frames <= 0 and not layout.bytes_per_frame:
         raise FileFormatError(path, "its header counts no frames; export the trial again")
-    return _with_parameters(path, layout, start, parameters[2], _BYTE_ORDERS[parameters[3]])
+    return _with_parameters(path, layout, start, parameters[2], _BYTE_ORDERS[counted])
 
 
 def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> C3dLayout:

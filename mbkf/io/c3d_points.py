@@ -11,6 +11,8 @@ from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.records import DerivedPoint, MarkerTrajectories
 
+_MOTION_ANALYSIS = "motion analysis"
+
 
 def read_points(
     content: C3dContent,
@@ -65,7 +67,7 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
         count: Number of points.
         notes: Receives the changes.
     """
-    listed = parameters.texts("POINT", "LABELS")
+    listed = _long_labels(parameters, count, notes) or parameters.texts("POINT", "LABELS")
     labels, beyond = listed[:count], [label for label in listed[count:] if label]
     if beyond:
         notes.append(f"POINT:LABELS names {len(beyond)} points more than the {count} of the data; not used")
@@ -74,6 +76,22 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
     labels += [""] * (count - len(labels))
     labels = [label or f"*{i}" for i, label in enumerate(labels)]
     return unique_labels(without_subject(labels), notes)
+
+
+def _long_labels(parameters: C3dParameters, count: int, notes: list[str]) -> list[str]:
+    """POINT:DESCRIPTIONS where Motion Analysis wrote whole names there and cut ones into LABELS; else empty."""
+    names = parameters.texts("POINT", "DESCRIPTIONS")[:count]
+    maker = parameters.text("MANUFACTURER", "COMPANY").lower()
+    distinct = len(names) == count and all(names) and len(set(names)) == count
+    if (
+        not (maker.startswith(_MOTION_ANALYSIS) and distinct)
+        or names == parameters.texts("POINT", "LABELS")[:count]
+    ):
+        return []
+    notes.append(
+        "names are those of POINT:DESCRIPTIONS, of which Motion Analysis writes short ones into LABELS"
+    )
+    return names
 
 
 def _listed(parameters: C3dParameters) -> dict[str, str]:

@@ -166,12 +166,13 @@ def test_doubtful_plates_are_remarked(tmp_path):
     assert any("off the plate" in note for note in off.notes)
 
 
-def test_events_are_in_order_with_minutes_added(tmp_path):
+@pytest.mark.parametrize("group", ["EVENT", "EVENTS"])
+def test_events_are_in_order_with_minutes_added(tmp_path, group):
     extra = {
-        ("EVENT", "USED"): 2,
-        ("EVENT", "CONTEXTS"): ["Left", "Right"],
-        ("EVENT", "LABELS"): ["Foot Off", "Foot Strike"],
-        ("EVENT", "TIMES"): np.array([[1.0, 0.0], [2.5, 3.25]]),
+        (group, "USED"): 2,
+        (group, "CONTEXTS"): ["Left", "Right"],
+        (group, "LABELS"): ["Foot Off", "Foot Strike"],
+        (group, "TIMES"): np.array([[1.0, 0.0], [2.5, 3.25]]),
     }
     events = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions()).events
     found = [(event.time_s, event.context, event.label) for event in events]

@@ -128,6 +128,13 @@ def check_layout_of(content, tmp_path):
     return check_layout(path)
 
 
+@pytest.mark.parametrize("processor", [INTEL, DEC, MIPS])
+def test_processors_may_be_counted_from_one(tmp_path, processor):
+    content = bytearray(c3d_bytes(standing_points(12, 5), processor=processor))
+    content[515] -= 83
+    assert check_layout_of(content, tmp_path).processor == processor
+
+
 @pytest.mark.parametrize("block", [0, 1])
 def test_parameters_cannot_stand_in_the_header(whole, tmp_path, block):
     path = tmp_path / "odd.c3d"

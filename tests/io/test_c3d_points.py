@@ -30,6 +30,23 @@ def test_labels(stored, expected, remarks):
     assert len(notes) == remarks
 
 
+@pytest.mark.parametrize(
+    ("maker", "descriptions", "expected"),
+    [
+        ("Motion Analysis Corp.", ["R.Heel", "R.Hip", "R.Hand"], ["R.Heel", "R.Hip", "R.Hand"]),
+        ("Motion Analysis Corp.", ["R.Heel", "", "R.Hand"], ["R.He", "R.Hi", "R.Ha"]),
+        ("Motion Analysis Corp.", ["Heel", "Heel", "Hand"], ["R.He", "R.Hi", "R.Ha"]),
+        ("Vicon", ["R.Heel", "R.Hip", "R.Hand"], ["R.He", "R.Hi", "R.Ha"]),
+    ],
+)
+def test_whole_names_of_motion_analysis_stand_in_descriptions(maker, descriptions, expected):
+    point = {"LABELS": ["R.He", "R.Hi", "R.Ha"], "DESCRIPTIONS": descriptions}
+    notes: list[str] = []
+    parameters = C3dParameters({"POINT": point, "MANUFACTURER": {"COMPANY": [maker]}})
+    assert point_labels(parameters, 3, notes) == expected
+    assert bool(notes) is (expected == descriptions)
+
+
 def test_negative_residual_and_exact_zero_are_missing(tmp_path):
     points = standing_points(5, 6)
     points[2, 3] = 0.0
