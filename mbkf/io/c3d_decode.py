@@ -312,13 +312,16 @@ def _fits(layout: C3dLayout, frames: int, per_frame: int) -> bool:
 def stated_frames(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ...]:
     """Numbers of frames that the file states in one place or another, the likeliest first.
 
-    That is the header's; where its words, which end at 65535, can count no further, the largest.
+    That is the header's, unless its first frame is 0, since frames count from 1; where its words, which end at 65535,
+    can count no further, it is the largest.
     """
     last, first = (
         _two_words(parameters.numbers("TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("END", "START")
     )
     counts = [layout.frames, 0 if last is None or first is None else last - first + 1]
     counts += [_count(parameters.number("POINT", name)) for name in ("LONG_FRAMES", "FRAMES")]
+    if layout.first_frame == 0:
+        counts = [*counts[1:], counts[0]]
     found = dict.fromkeys(count for count in counts if count > 0)
     return tuple(sorted(found, reverse=True) if layout.counts_no_further else found)
 

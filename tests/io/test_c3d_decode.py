@@ -87,6 +87,14 @@ def test_a_header_that_counts_a_frame_too_many_is_read_as_what_fits(tmp_path):
     assert "the header counts 237 frames, the file has 236" in found.notes
 
 
+def test_frames_that_count_from_0_are_as_many_as_the_parameters_state(tmp_path):
+    """A frame of zeros would fit into the rest of the last block."""
+    content = c3d_bytes(POINTS, first=0, last=12, extra=((1, "FRAMES", 2, (), integers([12], INTEL)),))
+    found = decoded(tmp_path / "x.c3d", content)
+    np.testing.assert_allclose(found.points, POINTS, atol=1e-4)
+    assert "the header counts 13 frames, the file has 12" in found.notes
+
+
 @pytest.mark.parametrize(("channels", "samples"), [(3, 3), (2, 4)])
 def test_channels_or_samples_of_which_one_fewer_fits_are_read_as_what_fits(tmp_path, channels, samples):
     """Header and parameters agree on 12 where 11 are stored."""
