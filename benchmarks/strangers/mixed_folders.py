@@ -50,12 +50,14 @@ class Files:
         static: The standing trial; empty without one.
         trials: The moving trials.
         beside: Files of ground reactions.
+        up: Axis that points up, where the standing trial does not show it.
     """
 
     folder: str
     static: str
     trials: tuple[str, ...]
     beside: tuple[str, ...] = ()
+    up: str | None = None
 
 
 CHOSEN_ON: Mapping[str, Files] = {
@@ -82,10 +84,10 @@ SHOWN_ON: Mapping[str, Files] = {
     "bmc": Files("bmc_walk_run", "run_static.trc", ("run.trc",), ("run_grf.mot",)),
     "rajagopal run": Files("rajagopal_walk_run", "static_run.trc", ("motion_capture_run.trc",)),
     "child": Files("foreign_truth/child", "static.trc", ("walk/trial.trc", "squat/trial.trc")),
-    "landing": Files("landings", "aStaticTrial.c3d", ("doubleLegLanding.c3d",)),
+    "landing": Files("landings", "", ("doubleLegLanding.c3d",)),
     "unipd": Files("unipd_walk", "Static1.c3d", ("Walking1.c3d",)),
     "fukuchi": Files("fukuchi_run", "RBDS001static.c3d", ("RBDS001runT35.c3d",)),
-    "ric": Files("ric_run", "20140515T133244_static.c3d", ("20140515T133244_run.c3d",)),
+    "ric": Files("ric_run", "20140515T133244_static.c3d", ("20140515T133244_run.c3d",), up="y"),
     "opencap": Files("opencap_s6_walk", "s6_static1.trc", ("s6_walking1.trc",)),
     "knee challenge": Files("grand_challenge_knee", "static.trc", ("ss1.trc", "ss3.trc")),
     "biobuddy": Files("biobuddy_functional", "static.c3d", ("functional_right_knee.c3d",)),
@@ -98,7 +100,8 @@ SHOWN_ON: Mapping[str, Files] = {
 }
 """Public persons, and made ones by their seeds. The bounds of lengths of bones (:mod:`mbkf.trial.checks.persons`) and
 of changed distances (:mod:`mbkf.study.scaling.likeness`), on which the settings build, had seen pairs of some of them.
-"""
+The standing trial of the landing is left out: of a marker set of other names, it cannot be compared and stands as
+another person's."""
 
 
 @dataclass(frozen=True)
@@ -352,8 +355,11 @@ def _captures(person: str, data: Path) -> tuple[Capture | None, tuple[Capture, .
     if person.startswith("made"):
         return _made(int(person.split()[1]))
     files = _files(person)
-    static = _cut(read_capture(data / files.folder / files.static)) if files.static else None
-    return static, tuple(_cut(read_capture(data / files.folder / name)) for name in files.trials)
+
+    def read(name: str) -> Capture:
+        return _cut(read_capture(data / files.folder / name, up=files.up))
+
+    return read(files.static) if files.static else None, tuple(map(read, files.trials))
 
 
 @cache

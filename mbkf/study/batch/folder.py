@@ -3,6 +3,7 @@
     study/P01/static.c3d, study/P01/walk1.c3d                      person P01
     study/P01/monday/static.c3d, study/P01/monday/walk1.trc        person P01, session monday
     mixed/S01_static.c3d, mixed/S01_walk.c3d, mixed/S02_walk.c3d  persons S01 and S02 (:mod:`mbkf.study.batch.persons`)
+    mixed/static1.c3d, mixed/static2.c3d, mixed/trial1.c3d        known by movements (:mod:`mbkf.study.batch.sorting`)
 
 Standing trials are recognised by their names, else by standing still. Ground reactions lie beside their trial,
 under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and

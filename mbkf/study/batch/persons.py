@@ -7,7 +7,7 @@
   standing and moving trials share (anna_static, anna_walk).
 - Stated masses or heights that differ are those of different persons, whatever their names.
 
-Captures of one person stay together where nothing tells them apart.
+Captures that none of these separates stay together; movements may separate them (:mod:`mbkf.study.batch.sorting`).
 """
 
 from __future__ import annotations

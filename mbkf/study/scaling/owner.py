@@ -112,11 +112,11 @@ def owner_of(
     Args:
         capture: The trial.
         references: Captures of other persons, or with markers elsewhere, each.
-        places_alone: True where bones do not count.
+        places_alone: True where bones do not count, but of key points, which have no places.
     """
     found = {n: places for n, one in enumerate(references) if (places := one.places(capture)) is not None}
     if not found:
-        return None if places_alone else _owner_of_keypoints(capture, references)
+        return _owner_of_keypoints(capture, references)
     nearest = min(found, key=lambda n: found[n].elsewhere)
     if found[nearest].elsewhere < 0.0:
         return Owner(nearest)

@@ -64,6 +64,7 @@ def test_key_points_are_compared_by_bones_alone():
     markers = tuple(replace(one, correlated_m=0.01, correlation_s=0.1) for one in stander().markers)
     keypoints = Reference("small.c3d", replace(stander(), markers=markers), standing())
     assert keypoints.places(walk()) is None
-    assert owner_of(walk(moved_m=0.01), [keypoints]).number == 0
+    for alone in (False, True):
+        assert owner_of(walk(moved_m=0.01), [keypoints], places_alone=alone).number == 0
     owner = owner_of(walk(factor=TALL), [keypoints])
     assert owner.number is None and "longer than in small.c3d: another person" in owner.found
