@@ -23,6 +23,9 @@ ANKLE_DEG = (-15.0, 15.0)
 BENT_KNEE_DEG = (-10.0, 140.0)
 """A knee in running, squats, landings and games."""
 
+LEAST_MOVED_DEG = 5.0
+"""Range of knees that are followed at all; those of a leg that nothing shows stay as they are."""
+
 
 @dataclass(frozen=True)
 class Shared:
@@ -81,6 +84,7 @@ def capture_rows(one: Shared, data: Path, out: Path) -> Iterator[Check]:
             yield from within(f"{name}: {side} ankle, standing", angle, *ANKLE_DEG, "°")
     trial = Trial(data / one.capture.folder, out)
     low, high = trial.range_deg("knee_angle")
+    yield Check(f"{name}: knees move by", high - low, LEAST_MOVED_DEG, ">=", "°")
     yield Check(f"{name}: least knee flexion", low, one.knee_deg[0], ">=", "°")
     yield Check(f"{name}: greatest knee flexion", high, one.knee_deg[1], "<=", "°")
     for row in ANSWERS[one.capture.folder](trial):

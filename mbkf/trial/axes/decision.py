@@ -49,9 +49,10 @@ within segments that it may have (0.05 to 0.32; names in a wrong order 0.64 and 
 POSSIBLE_M, PLAUSIBLE_M = (0.65, 2.6), (1.0, 2.2)
 """Heights of a person outside which a unit is refused, and between which another is proposed."""
 
-LOWEST_PERCENT, FLOOR_M, UNDER_FLOOR_M = 1.0, (-0.05, 0.15), -0.05
+LOWEST_PERCENT, FLOOR_M, UNDER_FLOOR_M, RISES_M = 1.0, (-0.05, 0.15), -0.05, 0.3
 """Percentile of heights that counts as the lowest; where it lies along the axis that a person stands along, the origin
-being on the floor; and below which the axis that the file is read with puts the person under the floor."""
+being on the floor; below which the axis that the file is read with puts the person under the floor; and range of the
+height of a body's lowest marker beyond which the body does not lie."""
 
 _AXES = {name: np.array(rows[2], dtype=np.float64) for name, rows in WORLD_AXES.items()}
 """World directions by the names of axes."""
@@ -215,24 +216,28 @@ def _up(capture: Capture, body: BodyAttitude) -> _Up:
         return _Up("z", f"{share}; up is {capture.up_axis}, as given")
     if axis == main and _stands_along(body, axis):
         return _Up(axis)
-    if capture.axes_source in (AxesSource.PLATES, AxesSource.SCREEN, AxesSource.MADE):
+    stated = capture.axes_source in (AxesSource.PLATES, AxesSource.MADE)
+    if not stated and np.isnan(body.feet).all() and _on_floor(capture, axis):
+        return _Up(axis)
+    if stated or capture.axes_source is AxesSource.SCREEN:
         return _Up("z", f"{share}; up is {capture.up_axis}, as the file says")
     if standing == ["z"]:
         return _Up(
             "z",
             f"{share}, but stands on its feet along {capture.up_axis} only; {capture.up_axis} is taken as up",
         )
-    if capture.axes_source is AxesSource.DEFAULT and np.isnan(body.feet).all() and _on_floor(capture, axis):
-        return _Up(axis)
     hint = f"name the axis that points up with --up (--up={capture.up_axis} if the person lies)"
     return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", unclear=True)
 
 
 def _on_floor(capture: Capture, axis: str) -> bool:
-    """True where the lowest markers lie over the origin as feet do along an axis, and under it along z."""
-    seen = capture.markers.positions_m[capture.markers.present]
-    lowest = np.percentile(seen @ np.stack([_AXES[axis], _AXES["z"]], axis=1), LOWEST_PERCENT, axis=0)
-    return bool(FLOOR_M[0] <= lowest[0] <= FLOOR_M[1] and lowest[1] < UNDER_FLOOR_M)
+    """True where the lowest markers lie over the origin as feet do along an axis, and not as one lies along z."""
+    markers = capture.markers
+    along, up = np.moveaxis(markers.positions_m @ np.stack([_AXES[axis], _AXES["z"]], axis=1), 2, 0)
+    stands = FLOOR_M[0] <= np.nanpercentile(along, LOWEST_PERCENT) <= FLOOR_M[1]
+    lowest = np.nanmin(up[markers.present.any(axis=1)], axis=1)
+    rises = np.subtract(*np.percentile(lowest, (100.0 - LOWEST_PERCENT, LOWEST_PERCENT)))
+    return bool(stands and (np.nanpercentile(up, LOWEST_PERCENT) < UNDER_FLOOR_M or rises > RISES_M))
 
 
 def _stored(axis: str, matrix: Array) -> str:

@@ -164,7 +164,7 @@ def test_a_person_who_lies_is_not_put_on_the_feet():
 
 
 def test_where_feet_are_not_seen_the_floor_decides():
-    """As read, markers reach below the origin; along the body's height the lowest lie as feet do."""
+    """Along the body's height the lowest markers lie as feet do; as read, they are under the floor, or rise."""
     lying = misread(made_capture(10, plates=()), ON_ITS_BACK)
     segments = {m.name: m.segment for m in PROTOCOL.markers}
     footless = tuple(
@@ -173,19 +173,19 @@ def test_where_feet_are_not_seen_the_floor_decides():
     assert len(footless) < len(lying.markers.names)
     markers = lying.markers.select(footless)
 
-    def moved(back_m: float, sole_m: float, source: AxesSource = AxesSource.DEFAULT) -> Verdict:
-        lowest = [
-            float(np.nanmax(markers.positions_m[:, :, 0])),
-            float(np.nanmin(markers.positions_m[:, :, 2])),
-        ]
-        positions = markers.positions_m + np.array([-sole_m - lowest[0], 0.0, back_m - lowest[1]])
+    def moved(back_m: float, sole_m: float, rise_m: float = 0.0, source=AxesSource.DEFAULT) -> Verdict:
+        head, back = float(markers.positions_m[:, :, 0].max()), float(markers.positions_m[:, :, 2].min())
+        positions = markers.positions_m + np.array([-sole_m - head, 0.0, back_m - back])
+        positions[:, :, 2] += np.linspace(0.0, rise_m, len(positions))[:, None]
         return found(
             replace(lying, markers=replace(markers, positions_m=positions), axes_source=source)
         ).verdict
 
-    assert moved(-0.1, 0.1) is Verdict.PUT_RIGHT
-    assert moved(0.05, 0.1) is moved(-0.1, 0.6) is Verdict.UNCLEAR
-    assert moved(-0.1, 0.1, AxesSource.SCREEN) is Verdict.KEPT
+    assert moved(-0.1, 0.1) is moved(0.05, 0.1, 0.5) is Verdict.PUT_RIGHT
+    assert moved(0.05, 0.1) is moved(-0.1, 0.6) is moved(0.05, 0.1, 0.2) is Verdict.UNCLEAR
+    assert moved(-0.1, 0.1, source=AxesSource.SCREEN) is Verdict.PUT_RIGHT
+    assert moved(0.05, 0.1, source=AxesSource.SCREEN) is Verdict.KEPT
+    assert moved(-0.1, 0.1, source=AxesSource.PLATES) is Verdict.KEPT
 
 
 def rising(turn: np.ndarray = SAME, stretched_rad: float = 1.0) -> Capture:
