@@ -129,8 +129,9 @@ def _set_readings(
         with np.errstate(all="ignore"):  # impossible points give impossible moments, which are refused later
             about = about + np.cross(point - origin, force)
     else:
-        place = ", ".join(f"{value + 0.0:.3f}" for value in np.round(origin, 3))
-        found = f"set '{one.name}': moments refer to ({place}) m, as its centres of pressure show"
+        place = f"({', '.join(f'{value + 0.0:.3f}' for value in np.round(origin, 3))}) m"
+        place = place if np.round(origin, 3).any() else "the laboratory's origin"
+        found = f"set '{one.name}': moments refer to {place}, as its centres of pressure show"
         if table.at_point:
             found += "; they are moved to the centre of pressure, about which such a file should state them"
             about = _with_vertical(about, np.cross(point - origin, force), loaded)
