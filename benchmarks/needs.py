@@ -197,13 +197,9 @@ NEEDS: Mapping[str, Needs] = {
     ),
     "strangers": Needs(
         captures=(
-            *_GAIT,
-            "autolabel_unlabelled_fullbody",
-            "biobuddy_functional",
-            "bmc_walk_run",
+            *_MARKED,
             "breaker",
             "c3d_encodings",
-            "cgm24_lowerlimb_walk",
             "cmu_basketball",
             "flywheel_squat",
             "foreign_truth",

@@ -12,6 +12,7 @@ from benchmarks.checks import Check, Context
 from benchmarks.parts import Part, part_rows
 from benchmarks.strangers.holes import hole_rows
 from benchmarks.strangers.makers_files import makers_file_rows
+from benchmarks.strangers.marker_sets import marker_set_rows
 from benchmarks.strangers.mixed_folders import mixed_folder_rows
 from benchmarks.strangers.odd_c3d import odd_c3d_rows
 from benchmarks.strangers.orientation_spreads import orientation_spread_rows
@@ -24,6 +25,7 @@ PARTS: Mapping[str, Part] = {
     "holes": lambda context: hole_rows(context.require_data()),
     "known_masses": lambda context: plate_rows(context.require_data()),
     "makers_files": lambda context: makers_file_rows(context.require_data(), context.out),
+    "marker_sets": lambda context: marker_set_rows(context.require_data()),
     "odd_c3d": lambda context: odd_c3d_rows(context.require_data()),
     "orientation_spreads": lambda context: orientation_spread_rows(context.require_data()),
     "plate_points": lambda context: plate_point_rows(context.require_data()),

@@ -126,7 +126,7 @@ def infer_markers(
     places = worn_places(body, leave_out)
     by_name = np.array([name_factors(places, readings.get(name)) for name in names])
     candidates = anchor_frames(static or dynamic, names, 1 if static else ANCHORS)
-    found, anchor = _anchor(places, candidates, by_name)
+    found, anchor = _anchor(places, candidates, by_name, standing=bool(static))
     frames = np.concatenate([anchor[None], spread_frames([*static, *dynamic], names)])
     inferred = _Markers(places, names, by_name, found, anchor, frames).settled()
     placed = {marker.name for marker in inferred.markers}
@@ -152,14 +152,16 @@ def _with_others(
     return replace(inferred, markers=(*inferred.markers, *others))
 
 
-def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[FoundBody, Array]:
+def _anchor(
+    places: WornPlaces, candidates: Array, by_name: Array, *, standing: bool
+) -> tuple[FoundBody, Array]:
     """The body that explains the points of a frame best, and that frame (K, 3); the first clear one ends the search."""
     best: tuple[float, FoundBody, Array] | None = None
     refused: NotObservable | None = None
     for frame in candidates:
         seen = ~np.isnan(frame[:, 0])
         try:
-            found = find_body(places, frame[seen], by_name[seen])
+            found = find_body(places, frame[seen], by_name[seen], standing=standing)
         except NotObservable as error:
             refused = error
             continue

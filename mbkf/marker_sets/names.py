@@ -217,6 +217,13 @@ class _Set:
         """True for a point of a segment's axes, stored as four points O, A, L and P: LTIO, LTIA, LTIL, LTIP."""
         return text[-1:] in _AXES and all(text[:-1] + end in self.texts for end in _AXES)
 
+    def _is_output(self, text: str) -> bool:
+        """True for the name of a software's output that no place explains: AXIS1, LKneeMoment, RHJC2."""
+        dictionary = self.dictionary
+        return any(part in text for part in dictionary.computed_within) or re.sub(r"\d+$", "", text).endswith(
+            dictionary.computed_ends
+        )
+
     def _virtual(self, core: Core) -> bool:
         """True for the name of another marker with a "v", its virtual twin."""
         text = "".join(tokens_of(core.core))
@@ -258,6 +265,8 @@ class _Set:
         if self._is_axis("".join(tokens_of(core.core))):
             return "computed"
         if (tokens | ({ways[0].guess.rest} if ways else rests)) & dictionary.computed:
+            return "computed"
+        if not ways and self._is_output("".join(tokens_of(core.core))):
             return "computed"
         if ways:
             return ""

@@ -23,6 +23,7 @@ from mbkf.marker_sets.places import WornPlaces
 from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import Information
 from mbkf.scaling.problem import FACTOR_BOUNDS
+from mbkf.scaling.standing import UprightPosture
 from mbkf.sensors.marker_sensor import MarkerInformation, MarkerReading
 from mbkf.sensors.posture import prior_information
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -36,6 +37,9 @@ ROOM_M3 = 2.0
 
 TILT_RAD = 0.25
 """Spread of the pelvis about upright."""
+
+SOLE_SD_RAD = 0.12
+"""Spread of a sole's inclination in standing, shoes and forefoot gait among it."""
 
 PROPORTION_SD = 0.06
 """Spread of a scale factor about the person's overall size."""
@@ -81,8 +85,23 @@ class CloudProblem:
     """
 
     def __init__(
-        self, places: WornPlaces, points_m: Array, weight: Array, model: HumanModel | None = None
+        self,
+        places: WornPlaces,
+        points_m: Array,
+        weight: Array,
+        model: HumanModel | None = None,
+        *,
+        standing: bool = False,
     ) -> None:
+        """Takes places and points.
+
+        Args:
+            places: Density of marker places.
+            points_m: (N, 3) the points.
+            weight: (C,) or (N, C) weights of the components.
+            model: The reference body; built where None.
+            standing: True where the soles are known to be level.
+        """
         self.places, self.points_m = places, points_m
         with np.errstate(divide="ignore"):
             self._log_weight = np.log((1.0 - OFF_BODY) * weight)
@@ -90,6 +109,9 @@ class CloudProblem:
         self.model = model or HumanModel(body, np.ones(len(body.scale_factors)), body.reference_mass_kg)
         self._posture = PostureSensor(self.model)
         self._usual = self._posture.weights(1.0, np.zeros(self.model.nv, dtype=bool))
+        self._level = UprightPosture(
+            self.model, dict.fromkeys(self.model.roles.feet if standing else (), SOLE_SD_RAD)
+        )
         self._components = ScaledMarkers(self.model, places.segments, places.position_m)
         self._reference = self._components.sensor
         count = len(body.scale_factors)
@@ -139,9 +161,13 @@ class CloudProblem:
         excess = self._limit_excess(turned) / LIMIT_SD_RAD
         rotation = self.model.placements(q)[0][self.model.root.joint_id]
         tilt = rotation[:2, 2] / TILT_RAD
-        size = factors - 1.0
+        size, soles = factors - 1.0, self._level.residuals(self.model, q)
         return -0.5 * float(
-            deviation @ deviation + excess @ excess + tilt @ tilt + size @ self._factor_information @ size
+            deviation @ deviation
+            + excess @ excess
+            + tilt @ tilt
+            + soles @ soles
+            + size @ self._factor_information @ size
         )
 
     def _limit_excess(self, turned: Array) -> Array:
@@ -242,6 +268,10 @@ class CloudProblem:
         if excess.any():
             known += prior_information(self._posture, excess, by_pose, (excess != 0.0) / LIMIT_SD_RAD)
         self._upright(reading, known)
+        if len(self._level.sd):
+            soles, by_pose = self._level.linearised(self.model, q)
+            known.matrix[:] += by_pose.T @ by_pose
+            known.vector[:] -= by_pose.T @ soles
         if sized is None:
             return known.matrix, known.vector
         return self._with_factors(

@@ -55,13 +55,16 @@ class FoundBody:
     log_odds: float
 
 
-def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -> FoundBody:
+def find_body(
+    places: WornPlaces, points_m: Array, named: Array | None = None, *, standing: bool = False
+) -> FoundBody:
     """The body that explains a frame of points.
 
     Args:
         places: Where markers are worn.
         points_m: (N, 3) the points, z up.
         named: (N, C) likelihood ratio of each component by a point's name; None without names.
+        standing: True where the person is known to stand, with level soles.
 
     Raises:
         NotObservable: The points are too few, or their height is not a person's.
@@ -72,11 +75,11 @@ def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -
             "are on"
         )
     names = b"" if named is None or (named == 1.0).all() else named.tobytes()
-    return _searched(places, points_m.tobytes(), names)
+    return _searched(places, points_m.tobytes(), names, standing)
 
 
 @lru_cache(maxsize=8)
-def _searched(places: WornPlaces, points: bytes, names: bytes) -> FoundBody:
+def _searched(places: WornPlaces, points: bytes, names: bytes, standing: bool) -> FoundBody:
     """The result of :func:`find_body`, cached: a frame is searched for its axes, and again for its marker set."""
     points_m = np.frombuffer(points).reshape(-1, 3)
     named = np.frombuffer(names).reshape(len(points_m), -1) if names else 1.0
@@ -85,7 +88,7 @@ def _searched(places: WornPlaces, points: bytes, names: bytes) -> FoundBody:
     for equipment in EQUIPMENTS:
         worn = ~equipment.bare(places)
         weight = (equipped_weight(places, equipment) * named)[..., worn]
-        problem = CloudProblem(places.only(worn), points_m, weight, reference)
+        problem = CloudProblem(places.only(worn), points_m, weight, reference, standing=standing)
         reference = problem.model
         own = [
             _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)

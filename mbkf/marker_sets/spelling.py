@@ -235,12 +235,16 @@ class Dictionary:
         objects: Words of things off the body.
         lone_objects: Words of such things, unless the name also holds a place of the body.
         computed: Words of software's outputs.
+        computed_within: Texts within the names of such outputs.
+        computed_ends: Ends of the names of such outputs.
     """
 
     spellings: Spellings
     objects: frozenset[str]
     lone_objects: frozenset[str]
     computed: frozenset[str]
+    computed_within: tuple[str, ...] = ()
+    computed_ends: tuple[str, ...] = ()
 
 
 @cache
@@ -255,7 +259,9 @@ def load_dictionary(path: Path | None = None) -> Dictionary:
         table = read_toml(path)
         groups = [_group(entry) for entry in table["place"]]
         modifiers, objects = table["modifiers"], table["objects"]
-        computed = frozenset(table["computed"]["words"])
+        software = table["computed"]
+        computed = frozenset(software["words"])
+        within, ends = tuple(software.get("within", ())), tuple(software.get("ends", ()))
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
     except (KeyError, TypeError, ValueError) as error:
@@ -267,7 +273,12 @@ def load_dictionary(path: Path | None = None) -> Dictionary:
                 raise FileFormatError(path, f"'{spelling}' is in two groups; keep it in one")
             seen.add(spelling)
     return Dictionary(
-        Spellings(groups, modifiers), frozenset(objects["always"]), frozenset(objects["alone"]), computed
+        Spellings(groups, modifiers),
+        frozenset(objects["always"]),
+        frozenset(objects["alone"]),
+        computed,
+        within,
+        ends,
     )
 
 

@@ -90,6 +90,7 @@ class Protocol:
         markers: The markers in file order.
         source: Source of its definition, "" where the file states none.
         ignored: Points to be left out, by name, each with the reason.
+        joined: Names that its file does not know, and that joined its markers or ignored points by inference.
     """
 
     name: str
@@ -98,6 +99,7 @@ class Protocol:
     markers: tuple[ProtocolMarker, ...]
     source: str = ""
     ignored: Mapping[str, str] = field(default_factory=dict)
+    joined: tuple[str, ...] = ()
 
     def match(self, names: Iterable[str]) -> dict[str, ProtocolMarker]:
         """Protocol marker of each capture name that belongs to one (by name, then alias)."""

@@ -83,7 +83,7 @@ class ExchangeCosts:
         for p, (a, b) in enumerate(pairs):
             change[p, a] = (self._measured[a] - self._measured[b]) * self._per_noise[a]
             change[p, b] = (self._measured[b] - self._measured[a]) * self._per_noise[b]
-        flat = change.reshape(len(pairs), -1)
+        flat = change.reshape(len(pairs), 3 * count)
         eased = self._eased(flat)
         linear = 2.0 * (flat @ self._errors - eased @ self._pull)
         square = flat @ flat.T - eased @ eased.T

@@ -15,7 +15,8 @@ from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.printed import percent
 
 MIN_PRESENT = 0.05
-"""Least share of the chosen frames in which a marker is seen."""
+"""Least share of the chosen frames of a trial in which a marker is seen: those of standing, which may be a single
+frame, show markers that the moving trials lack."""
 
 MIN_MARKERS = 6
 """Least number of markers in a frame: fewer do not determine a pelvis and a limb."""
@@ -77,7 +78,9 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
             f"no frame shows {MIN_MARKERS} markers of protocol '{protocol.name}' at once; give --protocol, or a "
             "capture with fewer gaps"
         )
-    share = (~np.isnan(measured).any(axis=2)).mean(axis=0)
+    source = np.concatenate(sources)
+    seen = ~np.isnan(measured).any(axis=2)
+    share = np.max([seen[source == index].mean(axis=0) for index in np.unique(source)], axis=0)
     keep = share >= MIN_PRESENT
     left_out.update(
         {
@@ -87,7 +90,7 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
         }
     )
     kept_markers = tuple(m for m, kept in zip(markers, keep, strict=True) if kept)
-    return ScalingFrames(kept_markers, measured[:, keep], np.concatenate(sources), left_out)
+    return ScalingFrames(kept_markers, measured[:, keep], source, left_out)
 
 
 def _well_seen(block: Array, count: int) -> NDArray[np.intp]:

@@ -7,6 +7,8 @@ standard deviation: the two horizontal components of its long axis, A_b(x) e_z.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from mbkf.conventions import Array
@@ -27,14 +29,11 @@ class UprightPosture:
         sd: (S, 1) spread of the inclination of each segment, rad.
     """
 
-    def __init__(self, model: Body) -> None:
-        segments = model.description.segments
-        trunk = [s.name for s in segments if s.parent == model.roles.root and s.name == mirrored(s.name)]
-        names = [*model.roles.feet, model.roles.root, *trunk]
-        self._joints = np.array([model.joint(name).joint_id for name in names])
-        self.sd = np.array([FLAT_SD_RAD] * len(model.roles.feet) + [UPRIGHT_SD_RAD] * (1 + len(trunk)))[
-            :, None
-        ]
+    def __init__(self, model: Body, sd_rad: Mapping[str, float] | None = None) -> None:
+        """Takes the spread of each segment's inclination, rad; by default those of feet, root and trunk in standing."""
+        sd_rad = standing_sd_rad(model) if sd_rad is None else sd_rad
+        self._joints = np.array([model.joint(name).joint_id for name in sd_rad], dtype=np.intp)
+        self.sd = np.array([*sd_rad.values()])[:, None]
 
     def residuals(self, model: Body, q: Array) -> Array:
         """(2 S,) whitened inclinations at q (nq,)."""
@@ -49,3 +48,11 @@ class UprightPosture:
         turned = np.cross(spatial[3:].T[None], axis[:, None, :]) * moves[:, :, None]
         jacobian = turned[:, :, :2].transpose(0, 2, 1) / self.sd[:, :, None]
         return (axis[:, :2] / self.sd).ravel(), jacobian.reshape(-1, model.nv)
+
+
+def standing_sd_rad(model: Body) -> dict[str, float]:
+    """Spread of the inclination of feet, root and trunk of a person who stands, rad."""
+    root, segments = model.roles.root, model.description.segments
+    trunk = [one.name for one in segments if one.parent == root and one.name == mirrored(one.name)]
+    feet = {name: float(FLAT_SD_RAD) for name in model.roles.feet}
+    return feet | {name: float(UPRIGHT_SD_RAD) for name in (root, *trunk)}

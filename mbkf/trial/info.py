@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 
 from mbkf.errors import InvalidInput, MbkfError, UnknownName
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
-from mbkf.model.protocol import Protocol, detect_protocol
+from mbkf.model.protocol import detect_protocol
 from mbkf.numerics.runs import runs
 from mbkf.trial.axes.captures import find_axes_by_names
 from mbkf.trial.axes.decision import AxesFinding, Verdict, applied
 from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.unscaled_mass import unscaled_mass_finding
 from mbkf.trial.preparation.coverage import use_by_protocol
-from mbkf.trial.protocol.choice import shipped_protocol
-from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
+from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set
+from mbkf.trial.protocol.standing import stands_still
 
 
 @dataclass(frozen=True)
@@ -226,24 +226,22 @@ def describe(capture: Capture) -> CaptureSummary:
     )
 
 
-def _marker_set(capture: Capture) -> Protocol | InferredSet | str:
-    """The shipped protocol that knows enough of the names, else an inferred set, else why there is neither."""
-    shipped = shipped_protocol([capture])
-    if shipped is not None:
-        return shipped
+def _marker_set(capture: Capture) -> ChosenSet | str:
+    """The marker set that `mbkf scale` would use, else why there is none."""
+    still = stands_still(capture.markers)
     try:
-        return infer_marker_set(None, [capture])
+        return choose_marker_set(capture if still else None, () if still else (capture,))
     except MbkfError as error:
         return str(error).removeprefix(f"{capture.path or 'capture'}: ")
 
 
-def _protocol(capture: Capture, found: Protocol | InferredSet | str) -> ProtocolSummary | None:
+def _protocol(capture: Capture, found: ChosenSet | str) -> ProtocolSummary | None:
     """The marker set that was found, else the protocol that knows most of the names."""
     line, doubts = "", {}
-    if isinstance(found, InferredSet):
-        protocol, line, doubts = found.protocol, found.line, found.doubts
-    elif isinstance(found, Protocol):
-        protocol = found
+    if isinstance(found, ChosenSet):
+        protocol = found.protocol
+        if found.inferred is not None:
+            line, doubts = found.inferred.line, found.inferred.doubts
     else:
         try:
             protocol = detect_protocol(capture.markers.names)
@@ -251,14 +249,16 @@ def _protocol(capture: Capture, found: Protocol | InferredSet | str) -> Protocol
             return None
     use = use_by_protocol([capture.markers], protocol)
     known = use.markers - len(use.unknown)
+    if line and protocol.joined:
+        line = f"{use.summary}; {line}"
     return ProtocolSummary(
         use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored), line, doubts
     )
 
 
-def _upright(capture: Capture, axes: AxesFinding, found: Protocol | InferredSet | str) -> Capture:
+def _upright(capture: Capture, axes: AxesFinding, found: ChosenSet | str) -> Capture:
     """The capture in the axes that other commands would use; as it is where they refuse it."""
-    if isinstance(found, InferredSet):
+    if isinstance(found, ChosenSet) and not found.shipped:
         return found.captures[0]
     try:
         return applied(capture, axes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from mbkf.io.persons import check_one_person
 from mbkf.io.records import Capture
 from mbkf.io.static_exchanges import STATIC_EXCHANGED_KEY
 from mbkf.io.subject import Subject
+from mbkf.marker_sets.parts import parts_in_words, upper_body_only
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, load_protocol
@@ -23,7 +25,7 @@ from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.stature import stature_doubts
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
-from mbkf.trial.checks.unscaled_mass import PLATES_KEY, plate_notes
+from mbkf.trial.checks.unscaled_mass import PLATES_KEY, plate_notes, stated_mass_notes
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, MarkerUse, use_by_protocol
 from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right
 from mbkf.trial.preparation.in_view import others_in_view
@@ -99,7 +101,7 @@ def scale(
     if chosen is None:
         assert isinstance(protocol, Protocol)
         return scaled(ChosenSet(protocol, tuple(captures)))
-    if chosen.inferred is not None:
+    if not chosen.shipped:
         return scaled(chosen)
     return _better(scaled, chosen, lambda: inferred_choice(static, trials, body))
 
@@ -146,13 +148,13 @@ def _scaled(
     """The person scaled by a marker set; the report also holds the use of the markers, axes and exchanged names."""
     protocol = chosen.protocol
     use = use_by_protocol([one.markers for one in captures], protocol)
-    checked = checked_for_protocol(chosen.captures, protocol)
     first = 1 if standing else 0
-    exchanged = () if chosen.inferred is None else chosen.inferred.exchanged
+    checked = checked_for_protocol(chosen.captures, protocol, standing=first)
+    exchanged = chosen.exchanged
     of_static: Pairs = ()
     refusal: NotConverged | None = None
     with single_threaded():
-        if standing and chosen.inferred is None and (settings or ScalingSettings()).correct_names:
+        if standing and chosen.shipped and (settings or ScalingSettings()).correct_names:
             static = checked[0]
             try:
                 static, of_static = static_put_right(static, protocol, settings)
@@ -176,7 +178,7 @@ def _scaled(
         )
     if refusal is not None:
         raise refusal
-    contradictions = plate_notes(checked, mass_kg)
+    contradictions = [*stated_mass_notes(checked, mass_kg), *plate_notes(checked, mass_kg)]
     axes = corrected_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
     extra: dict[str, object] = {USE_KEY: use.as_report()}
@@ -188,7 +190,11 @@ def _scaled(
         extra[STATIC_EXCHANGED_KEY] = [list(pair) for pair in of_static]
     if axes:
         extra[REPORT_KEY] = axes
-    doubts = [*_others_in_view(checked, use), *stature_doubts(height_m, subject, protocol.body)]
+    doubts = [
+        *_others_in_view(checked, use),
+        *_upper_body(subject),
+        *stature_doubts(height_m, subject, protocol.body),
+    ]
     if doubts:
         before = subject.report.get(DOUBTS_KEY)
         extra[DOUBTS_KEY] = [*(before if isinstance(before, list) else ()), *doubts]
@@ -204,6 +210,17 @@ def _others_in_view(captures: Sequence[Capture], use: MarkerUse) -> list[str]:
     if not worst.is_person:
         return []
     return [f"{worst.sentence}: a second person is in view; scale from a capture of one"]
+
+
+def _upper_body(subject: Subject) -> list[str]:
+    """A sentence on a person without markers on pelvis and legs."""
+    seen = subject.report["markers"]
+    assert isinstance(seen, dict)
+    upper = upper_body_only(Counter(one.segment for one in subject.markers if one.name in seen))
+    if not upper:
+        return []
+    parts, bare = parts_in_words(upper)
+    return [f"markers are on {parts} alone; {bare} keep the reference body's proportions"]
 
 
 def _rarely_seen(captures: Sequence[Capture], protocol: Protocol, subject: Subject) -> dict[str, str]:

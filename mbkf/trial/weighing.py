@@ -14,7 +14,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks import mass
 from mbkf.trial.checks.judge import plate_checks
-from mbkf.trial.checks.unscaled_mass import PERSONS_KG, PLATES_KEY
+from mbkf.trial.checks.unscaled_mass import PERSONS_KG, PLATES_KEY, stated_mass_notes
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -55,6 +55,9 @@ def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
     sd, mass_kg, name = min(found)
     note: dict[str, object] = {"kg": mass_kg, "sd_percent": sd, "capture": name}
     report = {key: value for key, value in subject.report.items() if key != PLATES_KEY}
+    contradictions = stated_mass_notes(captures, mass_kg)
+    if contradictions:
+        report[PLATES_KEY] = contradictions
     return replace(subject, mass_kg=mass_kg, report={**report, MASS_KEY: note})
 
 

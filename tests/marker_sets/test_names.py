@@ -336,3 +336,16 @@ def test_long_names_are_left_without_a_long_search():
 def test_a_wand_on_a_segment_is_a_marker():
     reading = read_names(["RThighWand", "LThighWand"])["RThighWand"]
     assert (reading.kind, likeliest(reading)[0]) == ("marker", "right_thigh")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["AXIS1", "AXIS_X", "ORIGIN", "RHJC", "LKJC2", "PelvisCOM", "LKneeMoment", "LAnkleForce", "LKneeAngles"],
+)
+def test_outputs_of_software_are_no_markers(name):
+    assert read_names((name, "RASI", "LASI", "RKNE", "LKNE"))[name].kind == "computed"
+
+
+@pytest.mark.parametrize("name", ["ScapLocTip1", "Wheelchair_R_Handle", "R_Handle"])
+def test_tools_and_wheelchairs_are_objects(name):
+    assert read_names((name, "RASI", "LASI", "RKNE", "LKNE"))[name].kind == "object"

@@ -6,9 +6,10 @@ from scipy.stats import multivariate_normal
 
 from mbkf.marker_sets.equipment import EQUIPMENTS, equipped_weight
 from mbkf.marker_sets.places import worn_places
-from mbkf.marker_sets.posed_cloud import OFF_BODY, ROOM_M3, CloudProblem
+from mbkf.marker_sets.posed_cloud import OFF_BODY, ROOM_M3, SOLE_SD_RAD, CloudProblem
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
+from mbkf.scaling.standing import UprightPosture
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.marker_sets.worn import standing
 
@@ -155,6 +156,35 @@ def test_knees_bend_one_way(scene):
         step[np.arange(problem.model.nv)[joint.v][1]] = angle
         worth.append(problem.priors(problem.model.integrate(problem.model.neutral(), step), factors))
     assert abs(worth[0] - worth[1]) > 5.0
+
+
+def test_standing_soles_are_level(scene):
+    """The prior of a sole's pitch: its part of the objective, and the gradient of the whole."""
+    problem, q, factors = scene
+    level = CloudProblem(PLACES, problem.points_m, WEIGHT, problem.model, standing=True)
+    step = np.zeros(problem.model.nv)
+    step[problem.model.joint("right_foot").v][1] = 0.3
+    soles = UprightPosture(problem.model, dict.fromkeys(problem.model.roles.feet, SOLE_SD_RAD))
+    for pose in (q, problem.model.integrate(q, step)):
+        tilt = soles.residuals(problem.model, pose)
+        assert level.priors(pose, factors) == pytest.approx(problem.priors(pose, factors) - 0.5 * tilt @ tilt)
+        reading, _ = level.reading(pose, factors)
+        shares, _ = level.shares(reading.positions_m, WIDTH_M)
+        _, gradient = level.equations(reading, shares, level.points_m, WIDTH_M, pose)
+        _, other = problem.equations(reading, shares, level.points_m, WIDTH_M, pose)
+        numeric = [
+            -0.5
+            * np.diff(
+                [
+                    soles.residuals(problem.model, problem.model.integrate(pose, d))
+                    @ soles.residuals(problem.model, problem.model.integrate(pose, d))
+                    for d in (-e, e)
+                ]
+            )[0]
+            / 2e-6
+            for e in 1e-6 * np.eye(problem.model.nv)
+        ]
+        np.testing.assert_allclose(gradient - other, numeric, atol=1e-4)
 
 
 def test_a_body_is_found_where_its_own_markers_are():

@@ -85,6 +85,12 @@ def test_what_is_left_out_is_named_with_its_reason():
     assert frames.measured_m.shape == (100, 9, 3)
 
 
+def test_a_standing_trial_of_one_frame_shows_its_markers():
+    frames = choose_frames([trial(1), trial(100, NAMES[:8])], PROTOCOL, 40)
+    assert [marker.name for marker in frames.markers] == list(NAMES)
+    assert frames.left_out == {}
+
+
 def test_too_few_markers_are_refused():
     with pytest.raises(NotObservable, match=r"has 5 markers of protocol 'helen_hayes'.*give --protocol"):
         choose_frames([trial(10, NAMES[:5])], PROTOCOL, 10)

@@ -30,6 +30,15 @@ def test_a_segment_that_leans_is_told_by_its_angle(joint, rows, sd):
     np.testing.assert_allclose(np.delete(found, rows), 0.0, atol=1e-12)
 
 
+def test_spreads_of_some_segments_alone():
+    level = UprightPosture(MODEL, {"right_foot": 0.1})
+    step = np.zeros(MODEL.nv)
+    step[MODEL.joint("right_foot").v][1] = step[MODEL.joint("torso").v][1] = 0.2
+    found = level.residuals(MODEL, MODEL.integrate(MODEL.neutral(), step))
+    assert np.linalg.norm(found) == pytest.approx(np.sin(0.2) / 0.1)
+    assert UprightPosture(MODEL, {}).residuals(MODEL, MODEL.neutral()).size == 0
+
+
 def test_derivatives():
     q = moderate_pose(MODEL, np.random.default_rng(8))
     found, jacobian = STANDING.linearised(MODEL, q)

@@ -20,12 +20,15 @@ REPORT_KEY = "axes"
 """Key of a subject's report that lists its captures with corrected axes."""
 
 
-def checked_for_protocol(captures: Sequence[Capture], protocol: Protocol) -> list[Capture]:
+def checked_for_protocol(
+    captures: Sequence[Capture], protocol: Protocol, *, standing: int = 0
+) -> list[Capture]:
     """Captures of a person to be scaled, with their axes checked and corrected.
 
     Args:
         captures: Static and moving trials of one person.
         protocol: The markers they wear.
+        standing: Number of captures, from the first on, in which the person is known to stand.
 
     Raises:
         InvalidInput: The axes or the unit of a capture are wrong, and the right ones are not clear.
@@ -33,7 +36,7 @@ def checked_for_protocol(captures: Sequence[Capture], protocol: Protocol) -> lis
     places = [
         marker_places(one.markers.names, protocol.match(one.markers.names), protocol.body) for one in captures
     ]
-    return right_axes(captures, places, with_plates=False)
+    return right_axes(captures, places, with_plates=False, standing=standing)
 
 
 def checked_for_subject(capture: Capture, subject: Subject, withheld: Sequence[str] = ()) -> Capture:

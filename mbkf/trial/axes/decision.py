@@ -54,6 +54,9 @@ LOWEST_PERCENT, FLOOR_M, UNDER_FLOOR_M, RISES_M = 1.0, (-0.05, 0.15), -0.05, 0.3
 being on the floor; below which the axis that the file is read with puts the person under the floor; and range of the
 height of a body's lowest marker beyond which the body does not lie."""
 
+SMALL = ("head", "neck", "hand", "foot", "toes")
+"""Segments too small for their markers to show a person's size: names of fingers or of a jaw mean no exact place."""
+
 _AXES = {name: np.array(rows[2], dtype=np.float64) for name, rows in WORLD_AXES.items()}
 """World directions by the names of axes."""
 
@@ -93,7 +96,11 @@ class AxesFinding:
 
 
 def right_axes(
-    captures: Sequence[Capture], places: Sequence[MarkerPlaces], *, with_plates: bool = True
+    captures: Sequence[Capture],
+    places: Sequence[MarkerPlaces],
+    *,
+    with_plates: bool = True,
+    standing: int = 0,
 ) -> list[Capture]:
     """Captures of one person with their axes checked and, if wrong, corrected.
 
@@ -104,6 +111,7 @@ def right_axes(
         captures: The captures.
         places: Places of each one's markers on the body.
         with_plates: True to refuse upright captures whose plates push in another direction than up.
+        standing: Number of captures, from the first on, in which the person is known to stand.
 
     Returns:
         The captures, in their order; the same objects where nothing was changed or remarked.
@@ -112,7 +120,8 @@ def right_axes(
         InvalidInput: Body, plates and file contradict each other, or the body's height is impossible.
     """
     found = [
-        find_axes(one, place, with_plates=with_plates) for one, place in zip(captures, places, strict=True)
+        find_axes(one, place, with_plates=with_plates, standing=k < standing)
+        for k, (one, place) in enumerate(zip(captures, places, strict=True))
     ]
     known: dict[tuple[str, AxesSource], list[AxesFinding]] = {}
     for one, finding in zip(captures, found, strict=True):
@@ -152,13 +161,16 @@ def put_right(capture: Capture, turn: Array) -> Capture:
     return replace(found, plates=tuple(recentred(plate) for plate in found.plates))
 
 
-def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = True) -> AxesFinding:
+def find_axes(
+    capture: Capture, places: MarkerPlaces, *, with_plates: bool = True, standing: bool = False
+) -> AxesFinding:
     """Verdict on a capture's axes by the person in it.
 
     Args:
         capture: A capture whose markers have names.
         places: Places of its markers on the body.
         with_plates: As in :func:`right_axes`.
+        standing: True where the person is known to stand.
     """
     same = np.eye(3)
     if capture.axes_source is AxesSource.GIVEN:
@@ -168,7 +180,7 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
         return AxesFinding(Verdict.UNKNOWN, same)
     if impossible := _impossible_size(capture, body, places):
         return AxesFinding(Verdict.REFUSED, same, impossible)
-    old, up, mirrored = axes_matrix(capture.axes), _up(capture, body), _mirrored(body)
+    old, up, mirrored = axes_matrix(capture.axes), _up(capture, body, standing), _mirrored(body)
     if up.unclear:
         return AxesFinding(Verdict.UNCLEAR, same, up.remark)
     remarks = [up.remark] if up.remark else []
@@ -201,8 +213,11 @@ class _Up:
     unclear: bool = False
 
 
-def _up(capture: Capture, body: BodyAttitude) -> _Up:
-    """The axis that points up: the body's own, or, for a person who lies at times, the one along which it stands."""
+def _up(capture: Capture, body: BodyAttitude, standing_trial: bool) -> _Up:
+    """The axis that points up: the body's own, or, for a person who lies at times, the one along which it stands.
+
+    Markers at the heels alone do not show that a foot lies across an axis; a standing trial does.
+    """
     main = nearest_axis(body.up.mean(axis=0))
     standing = [a for a in _AXES if _along(body, a) >= EVER and _on_feet(body, a) >= STANDING]
     axis = main
@@ -221,6 +236,8 @@ def _up(capture: Capture, body: BodyAttitude) -> _Up:
         return _Up(axis)
     if stated or capture.axes_source is AxesSource.SCREEN:
         return _Up("z", f"{share}; up is {capture.up_axis}, as the file says")
+    if standing_trial and axis == main and np.isnan(body.feet).all() and _extends_along(body, axis):
+        return _Up(axis)
     if standing == ["z"]:
         return _Up(
             "z",
@@ -252,8 +269,13 @@ def _along(body: BodyAttitude, axis: str) -> float:
 
 def _stands_along(body: BodyAttitude, axis: str) -> bool:
     """True if the body stands on its feet along a world axis all the time, with straight legs."""
+    return _extends_along(body, axis) and _on_feet(body, axis) >= STANDING
+
+
+def _extends_along(body: BodyAttitude, axis: str) -> bool:
+    """True if the body extends along a world axis all the time, with straight legs."""
     straight = bool(np.median(body.stretch) >= STRAIGHT * body.size)
-    return straight and _along(body, axis) >= ALWAYS and _on_feet(body, axis) >= STANDING
+    return straight and _along(body, axis) >= ALWAYS
 
 
 def _on_feet(body: BodyAttitude, axis: str) -> float:
@@ -276,7 +298,8 @@ def _mirrored(body: BodyAttitude) -> bool | None:
 def _impossible_size(capture: Capture, body: BodyAttitude, places: MarkerPlaces) -> str:
     """Message on a body too small or too large for a person, whose unit is wrong; "" otherwise."""
     height, used = body.size * places.height_m, capture.length_unit
-    if np.isnan(height) or POSSIBLE_M[0] <= height <= POSSIBLE_M[1]:
+    unknown = np.isnan(height) or all(segment.endswith(SMALL) for segment in places.segments)
+    if unknown or POSSIBLE_M[0] <= height <= POSSIBLE_M[1]:
         return ""
     hint = "give the right unit with --unit"
     for unit, metres in METRES_PER_UNIT.items():

@@ -32,7 +32,10 @@ from mbkf.trial.checks.mass import (
 from mbkf.trial.checks.plate_contradictions import plate_contradictions
 
 PLATES_KEY = "plates_against_mass"
-"""Key of a subject's report that lists the captures whose plates contradict the mass."""
+"""Key of a subject's report that lists the captures whose plates, or whose own statement, contradict the mass."""
+
+STATED_SHARE = 0.1
+"""Largest difference of the mass from the one that a capture states, as a share of that."""
 
 PERSONS_KG = (8.0, 250.0)
 """Masses that a person who is captured standing or walking may have."""
@@ -99,6 +102,22 @@ def plate_notes(captures: Sequence[Capture], mass_kg: float | None = None) -> li
         where = f"{one.path}: " if len(captures) > 1 else ""
         notes += [f"{where}{note}" for note in (*of_mass, *plate_contradictions(one))]
     return notes
+
+
+def stated_mass_notes(captures: Sequence[Capture], mass_kg: float) -> list[str]:
+    """A sentence on each mass that captures state and that the given one contradicts.
+
+    Args:
+        captures: Captures of the person.
+        mass_kg: The given mass.
+    """
+    stated = {one.subject_mass_kg: one.path for one in reversed(captures) if one.subject_mass_kg is not None}
+    return [
+        f"{path} states a body mass of {kg:.1f} kg, and {mass_kg:.1f} kg are given "
+        f"({abs(100.0 * (mass_kg / kg - 1.0)):.0f} % {'more' if mass_kg > kg else 'less'}); check --mass"
+        for kg, path in stated.items()
+        if abs(mass_kg / kg - 1.0) > STATED_SHARE
+    ]
 
 
 def _judged(mass_kg: float, sd: float, stated_kg: float | None, subject: str) -> Finding:

@@ -39,11 +39,13 @@ class MarkerUse:
         protocol: Name of the protocol.
         used: Names in the capture that are followed or scaled from.
         ignored: The reason by each other name.
+        joined: Names that the protocol's file does not know, used or ignored by inference from the captures.
     """
 
     protocol: str
     used: tuple[str, ...]
     ignored: Mapping[str, str] = field(default_factory=dict)
+    joined: tuple[str, ...] = ()
 
     @property
     def markers(self) -> int:
@@ -68,8 +70,10 @@ class MarkerUse:
     @property
     def summary(self) -> str:
         """The protocol's coverage, in words."""
-        known = self.markers - len(self.unknown)
-        return f"{self.protocol} knows {known} of {self.markers} markers ({percent(self.share)})"
+        known = self.markers - len(self.unknown) - len(self.joined)
+        share = known / self.markers if self.markers else 1.0
+        others = f", {sum(name in self.used for name in self.joined)} more inferred" if self.joined else ""
+        return f"{self.protocol} knows {known} of {self.markers} markers ({percent(share)}){others}"
 
     @property
     def warning(self) -> str:
@@ -86,7 +90,7 @@ class MarkerUse:
         """
         used = tuple(name for name in self.used if name not in reasons)
         further = {name: reason for name, reason in reasons.items() if name in self.used}
-        return MarkerUse(self.protocol, used, {**self.ignored, **further})
+        return MarkerUse(self.protocol, used, {**self.ignored, **further}, self.joined)
 
     def as_report(self) -> dict[str, object]:
         """Plain data for a subject's report."""
@@ -97,6 +101,7 @@ class MarkerUse:
             "told": self.summary,
             "warning": self.warning,
             "ignored": dict(self.ignored),
+            "joined": list(self.joined),
         }
 
 
@@ -118,7 +123,8 @@ def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) 
     used = tuple(name for name in names if any(name in match for match in matches))
     reasons = _ignored(names, used, protocol.markers, _cut_from(protocol))
     left_out = {n: reason or LEFT_OUT for n, reason in protocol.ignored.items() if n in reasons}
-    return MarkerUse(protocol.name, used, {**reasons, **left_out})
+    joined = tuple(name for name in names if name in protocol.joined)
+    return MarkerUse(protocol.name, used, {**reasons, **left_out}, joined)
 
 
 def _cut_from(protocol: Protocol) -> str:
@@ -162,7 +168,9 @@ def _use(names: Sequence[str], match: Collection[str], subject: Subject) -> Mark
     reasons = _ignored(names, used, subject.markers, subject.protocol)
     reasons.update({name: COMPUTED for name in reasons if name in _computed(subject)})
     reasons.update({name: reason for name, reason in _left_out(subject).items() if name in reasons})
-    return MarkerUse(subject.protocol, used, reasons)
+    report = subject.report.get(USE_KEY)
+    joined = report.get("joined", ()) if isinstance(report, dict) else ()
+    return MarkerUse(subject.protocol, used, reasons, tuple(name for name in names if name in joined))
 
 
 def _left_out(subject: Subject) -> dict[str, str]:

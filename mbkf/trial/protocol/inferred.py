@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +10,10 @@ import numpy as np
 from mbkf.conventions import read_only
 from mbkf.errors import InvalidInput, NotObservable
 from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.marker_sets.combined_points import combined_points
 from mbkf.marker_sets.inference import SURE, Inference, InferredMarker, infer_markers
 from mbkf.marker_sets.names import NameReading, read_names
+from mbkf.marker_sets.parts import parts_in_words, segments_named, upper_body_only
 from mbkf.marker_sets.search import FEWEST_POINTS
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
@@ -23,7 +25,7 @@ from mbkf.model.protocol import (
     ProtocolMarker,
 )
 from mbkf.numerics.threads import single_threaded
-from mbkf.trial.preparation.coverage import COMPUTED, listed
+from mbkf.trial.preparation.coverage import listed
 from mbkf.trial.preparation.exchanged import trials_put_right
 from mbkf.trial.protocol.upright import upright_captures
 
@@ -44,6 +46,9 @@ LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
 ROUNDS = 2
 """Greatest number of inferences: it is repeated where names are exchanged between the standing trial and the others."""
 
+RARELY = 0.05
+"""Share of a capture's frames below which it hardly shows a marker."""
+
 DOUBTFUL_NOISE = 1.2
 """Noise of a marker of doubtful segment, over that of a certain one."""
 
@@ -52,6 +57,7 @@ OFF_LANDMARK_M = 0.045
 
 OFF_BODY = "off the body: it does not fit or follow a segment"
 OBJECT = "off the body, by its name"
+COMPUTED = "computed by software, by its name"
 
 
 @dataclass(frozen=True)
@@ -125,30 +131,81 @@ def infer_marker_set(
         raise InvalidInput("inferring a marker set needs captures: a static trial, moving trials, or both")
     names = tuple(dict.fromkeys(name for one in captures for name in _named(one.markers)))
     readings = read_names(names) if use_names else {}
-    ignored = _ignored_by_name(readings)
+    try:
+        return _inferred_set(captures, 0 if static is None else 1, readings, reference, leave_out)
+    except (NotObservable, InvalidInput) as error:
+        partial = _partial_body(readings)
+        if not partial:
+            raise
+        raise NotObservable(partial) from error
+
+
+def _inferred_set(
+    captures: Sequence[Capture],
+    standing: int,
+    readings: Mapping[str, NameReading],
+    reference: BodyDescription,
+    leave_out: Sequence[str],
+) -> InferredSet:
+    """The inferred set of captures, of which so many first ones are standing trials."""
+    names = tuple(dict.fromkeys(name for one in captures for name in _named(one.markers)))
+    ignored = off_the_skin(captures, readings)
     if len(names) - len(ignored) < FEWEST_POINTS:
         raise NotObservable(
             f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names) or 'none'}); "
             f"fewer than {FEWEST_POINTS} do not show which part of it they are on; give --protocol"
         )
     keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
-    standing = 0 if static is None else 1
     exchanged: tuple[tuple[str, str, int], ...] = ()
     with single_threaded():
-        upright = upright_captures(captures, readings, reference)
+        upright = upright_captures(captures, readings, reference, standing=standing)
         for _ in range(ROUNDS):
-            worn = [_without(one.markers, ignored) for one in upright]
+            worn = worn_markers(upright, ignored)
             found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
-            _require_person(found, LEAST_NAMED_LOG_ODDS if _mostly_named(worn, readings) else LEAST_LOG_ODDS)
+            require_person(found, LEAST_NAMED_LOG_ODDS if _mostly_named(worn, readings) else LEAST_LOG_ODDS)
             left_out = ignored | {marker.name: OFF_BODY for marker in found.markers if not marker.segment}
             protocol = _protocol(found, reference, left_out, keypoints)
-            if not (standing and trials):
+            if not standing or len(captures) == 1:
                 break
             corrected, pairs = trials_put_right(upright[0].markers, upright[1:], protocol)
             if not pairs:
                 break
             upright, exchanged = [upright[0], *corrected], (*exchanged, *pairs)
     return InferredSet(protocol, tuple(upright), found.found.equipment.name, found.rms_m, exchanged)
+
+
+def _partial_body(readings: Mapping[str, NameReading]) -> str:
+    """Message on names of the upper body, hands or a head alone, "" for others."""
+    upper = upper_body_only(segments_named(readings))
+    if not upper:
+        return ""
+    seen, bare = parts_in_words(upper)
+    return (
+        f"the names of {sum(upper.values())} of {len(readings)} markers mean {seen}; no marker is on {bare}: add "
+        "markers of the pelvis or the legs, or place these with --protocol"
+    )
+
+
+def off_the_skin(captures: Sequence[Capture], readings: Mapping[str, NameReading]) -> dict[str, str]:
+    """The reason by name of points that are not on a person's skin, by their names or as combinations of others.
+
+    Combinations count only where the points beside them suffice for a body.
+
+    Args:
+        captures: The captures of a person.
+        readings: Readings of the points' names; empty to ignore names.
+    """
+    reasons = {"object": OBJECT, "computed": COMPUTED}
+    ignored = {name: reasons[one.kind] for name, one in readings.items() if one.kind in reasons}
+    worn = worn_markers(captures, ignored)
+    combined = combined_points([one.markers for one in captures])
+    names = {name for one in worn for name in one.names}
+    if len(names.difference(combined)) >= FEWEST_POINTS:
+        ignored |= {
+            name: f"computed by software: a combination of {', '.join(combined[name])}"
+            for name in sorted(names.intersection(combined))
+        }
+    return ignored
 
 
 def _named(markers: MarkerTrajectories) -> tuple[str, ...]:
@@ -159,14 +216,30 @@ def _named(markers: MarkerTrajectories) -> tuple[str, ...]:
     )
 
 
-def _ignored_by_name(readings: Mapping[str, NameReading]) -> dict[str, str]:
-    """The reason by name of points that are not markers of a body, by their names."""
-    reasons = {"object": OBJECT, "computed": COMPUTED}
-    return {name: reasons[one.kind] for name, one in readings.items() if one.kind in reasons}
+def worn_markers(captures: Sequence[Capture], ignored: Collection[str]) -> list[MarkerTrajectories]:
+    """The markers of each capture that have a name of their own, are seen, and are not ignored.
 
+    A capture that hardly shows a marker does not count for it where another one does: a few frames may be a ghost's.
 
-def _without(markers: MarkerTrajectories, ignored: Mapping[str, str]) -> MarkerTrajectories:
-    return markers.select(tuple(name for name in _named(markers) if name not in ignored))
+    Args:
+        captures: The captures of a person.
+        ignored: Names to leave out.
+    """
+    shares = [
+        dict(zip(one.names, (one.present.sum(axis=0) / max(one.frames, 1)).tolist(), strict=True))
+        for one in (capture.markers for capture in captures)
+    ]
+    most = {name: max(one.get(name, 0.0) for one in shares) for name in set().union(*shares)}
+    return [
+        one.markers.select(
+            tuple(
+                name
+                for name in _named(one.markers)
+                if name not in ignored and (share[name] >= RARELY or most[name] < RARELY)
+            )
+        )
+        for one, share in zip(captures, shares, strict=True)
+    ]
 
 
 def _mostly_named(captures: Sequence[MarkerTrajectories], readings: Mapping[str, NameReading]) -> bool:
@@ -175,7 +248,7 @@ def _mostly_named(captures: Sequence[MarkerTrajectories], readings: Mapping[str,
     return 2 * sum(name in readings and bool(readings[name].places) for name in names) > len(names)
 
 
-def _require_person(found: Inference, least_log_odds: float) -> None:
+def require_person(found: Inference, least_log_odds: float) -> None:
     """Refuses points that do not form a body, or too small a part of one.
 
     Raises:
@@ -197,12 +270,7 @@ def _require_person(found: Inference, least_log_odds: float) -> None:
 def _protocol(
     found: Inference, body: BodyDescription, ignored: Mapping[str, str], keypoints: set[str]
 ) -> Protocol:
-    on_landmark = _nearest_on_landmarks(found, body)
-    markers = tuple(
-        _marker(marker, body, marker.name in on_landmark, marker.name in keypoints)
-        for marker in found.markers
-        if marker.segment
-    )
+    markers = protocol_markers([one for one in found.markers if one.segment], body, keypoints)
     return Protocol(
         NAME,
         "inferred from the captures",
@@ -213,11 +281,31 @@ def _protocol(
     )
 
 
-def _nearest_on_landmarks(found: Inference, body: BodyDescription) -> set[str]:
+def protocol_markers(
+    inferred: Sequence[InferredMarker],
+    body: BodyDescription,
+    keypoints: Collection[str],
+    taken: Collection[str] = (),
+) -> tuple[ProtocolMarker, ...]:
+    """Markers of a protocol out of inferred ones.
+
+    Args:
+        inferred: The inferred markers, each on a segment.
+        body: The reference body.
+        keypoints: Names of those that are keypoints.
+        taken: Landmarks that other markers are on.
+    """
+    on_landmark = _nearest_on_landmarks(inferred, body, taken)
+    return tuple(_marker(one, body, one.name in on_landmark, one.name in keypoints) for one in inferred)
+
+
+def _nearest_on_landmarks(
+    inferred: Sequence[InferredMarker], body: BodyDescription, taken: Collection[str]
+) -> set[str]:
     """Names of the markers on landmarks: of those with the same one, the nearest, if it is near enough."""
     nearest: dict[str, tuple[float, str]] = {}
-    for marker in found.markers:
-        if marker.landmark:
+    for marker in inferred:
+        if marker.landmark and marker.landmark not in taken:
             away = float(np.linalg.norm(marker.position_m - body.landmark(marker.landmark).position_m))
             if away <= OFF_LANDMARK_M:
                 nearest[marker.landmark] = min(

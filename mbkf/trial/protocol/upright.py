@@ -31,7 +31,11 @@ UPS = ("z", "-z", "x", "-x", "y", "-y")
 
 
 def upright_captures(
-    captures: Sequence[Capture], readings: Mapping[str, NameReading], body: BodyDescription
+    captures: Sequence[Capture],
+    readings: Mapping[str, NameReading],
+    body: BodyDescription,
+    *,
+    standing: int = 0,
 ) -> list[Capture]:
     """Captures of one person with checked and corrected axes.
 
@@ -42,14 +46,20 @@ def upright_captures(
         captures: The captures.
         readings: Readings of their markers' names, by name.
         body: The reference body.
+        standing: Number of captures, from the first on, in which the person is known to stand.
 
     Raises:
         InvalidInput: The axes or the unit of a capture are wrong, and the right ones are ambiguous.
     """
     known = known_places(readings, body)
     found = [
-        find_axes(one, marker_places(one.markers.names, _of(known, one), body), with_plates=False)
-        for one in captures
+        find_axes(
+            one,
+            marker_places(one.markers.names, _of(known, one), body),
+            with_plates=False,
+            standing=k < standing,
+        )
+        for k, one in enumerate(captures)
     ]
     clear = next((one for one in found if one.verdict in (Verdict.RIGHT, Verdict.PUT_RIGHT)), None)
     result = []

@@ -196,6 +196,32 @@ def rising(turn: np.ndarray = SAME, stretched_rad: float = 1.0) -> Capture:
     return misread(replace(standing, markers=replace(standing.markers, positions_m=positions)), turn)
 
 
+def test_a_standing_trial_without_forefoot_markers_stands():
+    """Markers at the heels do not show the direction of a foot; those of the forefoot contradict a wrong statement."""
+    capture = misread(made_capture(10, plates=()), ON_ITS_BACK)
+    toeless = tuple(s.name for s in PROTOCOL.body.segments if not s.name.endswith(("foot", "toes")))
+    few = replace(capture, markers=only(capture.markers, toeless))
+    assert found(few).verdict is Verdict.UNCLEAR
+    standing = find_axes(few, places(few), standing=True)
+    assert standing.verdict is Verdict.PUT_RIGHT
+    upright = standing.turn @ ON_ITS_BACK
+    assert (upright[2].tolist(), np.linalg.det(upright)) == ([0.0, 0.0, 1.0], pytest.approx(1.0))
+    lying = misread(moved_foot(made_capture(10, plates=())), ON_ITS_BACK)
+    assert find_axes(lying, places(lying), standing=True).verdict is Verdict.UNCLEAR
+    (put_right,) = right_axes([few], [places(few)], standing=1)
+    assert put_right.axes != few.axes
+
+
+def test_fingers_show_no_size():
+    """A hundredth of a person's size is refused, except where only segments of uncertain size carry markers."""
+    capture = made_capture(10, plates=())
+    small = replace(capture, markers=replace(capture.markers, positions_m=0.01 * capture.markers.positions_m))
+    assert found(small).verdict is Verdict.REFUSED
+    where = places(small)
+    hands = replace(where, segments=tuple("right_hand" for _ in where.segments))
+    assert find_axes(small, hands).verdict is not Verdict.REFUSED
+
+
 def test_a_person_who_gets_up_is_left_as_read():
     kept = found(rising())
     assert kept.verdict is Verdict.KEPT

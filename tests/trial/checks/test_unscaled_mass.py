@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.trial.checks.unscaled_mass import plate_notes, unscaled_mass_finding
+from mbkf.trial.checks.unscaled_mass import plate_notes, stated_mass_notes, unscaled_mass_finding
 from tests.checked import amplified, body, plates, recorded
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -118,3 +118,11 @@ def test_plates_that_were_recorded_for_a_part_only():
     )
     found = unscaled_mass_finding(replace(whole, plates=cut))
     assert found.better == pytest.approx(body("squat").mass_kg, rel=0.03)
+
+
+@pytest.mark.parametrize(("given", "words"), [(1.09, ""), (0.91, ""), (1.2, "20 % more"), (0.8, "20 % less")])
+def test_a_mass_that_contradicts_the_files_own_is_reported(given, words):
+    own = body().mass_kg
+    notes = stated_mass_notes([capture(), capture("squat", stated=None)], given * own)
+    assert len(notes) == bool(words)
+    assert all(words in note and "trial.c3d states" in note and "--mass" in note for note in notes)

@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable
+from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.model.body_file import load_body
-from mbkf.trial.preparation.coverage import COMPUTED
 from mbkf.trial.protocol.inferred import (
+    COMPUTED,
     DOUBTFUL_NOISE,
     NAME,
     OBJECT,
     OFF_BODY,
     infer_marker_set,
+    worn_markers,
 )
 from tests.marker_sets.worn import box_at, near, standing, walking
 
@@ -105,7 +107,7 @@ def test_without_captures_nothing_is_inferred():
 
 
 def test_eleven_markers_are_refused(worn):
-    few = Capture("", worn.markers.select(worn.markers.names[:11]))
+    few = Capture("", worn.markers.select(worn.markers.names[-11:]))
     with pytest.raises(NotObservable, match=r"11 markers of a body .* fewer than 12 do not show"):
         infer_marker_set(few)
 
@@ -140,3 +142,64 @@ def test_a_person_who_lies_is_put_up_or_refused(worn):
     truth = dict(zip(names, worn.segments.values(), strict=True))
     assert np.mean([near(one.segment, truth[one.name]) for one in found.protocol.markers]) >= 0.95
     assert "axes put right" in found.captures[0].notes[-1]
+
+
+def test_a_cluster_at_the_heel_is_behind_and_below_the_ankle(worn):
+    """Four markers at each heel and none on the forefoot; soles are level in standing."""
+    own = [name for name, segment in worn.segments.items() if not segment.endswith("foot")]
+    ankles = {s: worn.markers.positions_m[:, worn.markers.names.index(f"{s}ANK")] for s in "RL"}
+    cluster = np.array(
+        [[-0.05, 0.0, -0.03], [-0.06, 0.02, -0.06], [-0.06, -0.02, -0.05], [-0.07, 0.0, -0.04]]
+    )
+    kept = worn.markers.select(own)
+    points, names = [kept.positions_m], [*own]
+    for side, inwards in (("R", 0.04), ("L", -0.04)):
+        points.append(ankles[side][:, None] + cluster + [0.0, inwards, 0.0])
+        names += [f"{side}_foot_{k}" for k in range(4)]
+    markers = MarkerTrajectories(tuple(names), np.concatenate(points, axis=1), 100.0)
+    found = infer_marker_set(Capture("", markers), leave_out=[SET])
+    feet = [one for one in found.protocol.markers if "_foot_" in one.name]
+    assert len(feet) == 8
+    for one in feet:
+        assert one.segment == ("right_foot" if one.name.startswith("R") else "left_foot")
+        assert -0.11 < one.position_m[0] < -0.02
+        assert -0.08 < one.position_m[2] < 0.0
+
+
+def test_heels_of_a_public_runner(real_data):
+    found = infer_marker_set(read_capture(real_data / "strangers3" / "clusters_heel_only.trc"))
+    for side in ("right", "left"):
+        own = [one.position_m for one in found.protocol.markers if one.segment == f"{side}_foot"]
+        assert len(own) == 4
+        np.testing.assert_allclose(np.mean(own, axis=0)[[0, 2]], [-0.06, -0.04], atol=0.02)
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (
+            [f"R{f}{j}" for f in ("THUMB", "INDEX", "PINKY") for j in ("MCP", "PIP", "DIP", "TIP")],
+            "right hand",
+        ),
+        ([f"JAW{k}" for k in range(8)], "head"),
+    ],
+)
+def test_parts_of_a_body_are_named(names, words):
+    rng = np.random.default_rng(2)
+    points = rng.uniform([-0.1, -0.1, 1.0], [0.1, 0.1, 1.1], (len(names), 3))
+    markers = MarkerTrajectories(tuple(names), np.tile(points, (5, 1, 1)), 100.0)
+    with pytest.raises(NotObservable, match=f"mean {words}; no marker is on .*trunk.*legs") as refused:
+        infer_marker_set(Capture("", markers))
+    assert "--unit" not in str(refused.value)
+
+
+def test_a_capture_that_hardly_shows_a_marker_does_not_place_it(worn):
+    """A ghost of one frame in standing, and the marker itself in the other trial."""
+    first = replace(worn.markers, positions_m=np.tile(worn.markers.positions_m, (10, 1, 1)))
+    ghost = first.positions_m.copy()
+    ghost[1:, 0] = np.nan
+    static, trial = (Capture("", replace(first, positions_m=points)) for points in (ghost, first.positions_m))
+    shown, other = worn_markers([static, trial], ())
+    assert shown.names == first.names[1:]
+    assert other.names == first.names
+    assert worn_markers([static], ())[0].names == first.names, "no other capture shows it"
