@@ -299,8 +299,8 @@ def _print(report: dict[str, Any], protocol: str, out: str, advice: str) -> None
     console.print(markers)
     if "inferred" in report:
         console.print(f"note: {report['inferred']['told']}", soft_wrap=True)
-    else:
-        use = report["marker_use"]
+    use = report["marker_use"]
+    if "inferred" not in report or use["joined"]:
         names = f": {listed(use['ignored'])}" if use["ignored"] else ""
         console.print(f"{use['told']}; {len(use['ignored'])} ignored{names}", soft_wrap=True)
     if "mass" in report:

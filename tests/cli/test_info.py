@@ -51,7 +51,7 @@ def test_tables_name_what_there_is(folder, capsys):
 def test_the_protocol_stands_in_table_and_json(tmp_path, capsys):
     whole = made_capture(5, 0.0)
     for kept, told, name in (
-        (30, "knows 30 of 36 markers (83 %); ignored: X30, X31", "reference36"),
+        (30, "knows 30 of 36 markers (83 %), 6 more inferred; joined to reference36 by", "reference36"),
         (12, "marker set inferred: 36 markers on", "inferred"),
     ):
         names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))

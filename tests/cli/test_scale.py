@@ -79,13 +79,19 @@ def test_trc_and_c3d_give_the_same_subject(person, tmp_path):
     assert list(a.scale_factors.values()) == pytest.approx(list(b.scale_factors.values()), abs=1e-4)
 
 
-def test_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys):
+def test_joined_and_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys):
     whole = made_capture(30, 0.0, plates=())
     for kept, file in ((34, "most.c3d"), (12, "few.c3d")):
         names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))
         write_c3d(replace(whole, markers=replace(whole.markers, names=names)), tmp_path / file)
     out = tmp_path / "s.toml"
     assert scale(tmp_path / "most.c3d", "--out", out) == 0
+    shown = capsys.readouterr()
+    assert "reference36 knows 34 of 36 markers (94 %), 2 more inferred; 0 ignored" in shown.out
+    assert "note: joined to reference36 by inference: X34 (right" in shown.out
+    assert "the segment of marker X34 is uncertain: right" in shown.err
+    out.unlink()
+    assert scale(tmp_path / "most.c3d", "--protocol", "reference36", "--out", out) == 0
     shown = capsys.readouterr()
     assert "reference36 knows 34 of 36 markers (94 %); 2 ignored: X34, X35" in shown.out
     assert "warning" not in shown.err

@@ -200,7 +200,10 @@ def test_a_standing_trial_without_forefoot_markers_stands():
     """Markers at the heels do not show the direction of a foot; those of the forefoot contradict a wrong statement."""
     capture = misread(made_capture(10, plates=()), ON_ITS_BACK)
     toeless = tuple(s.name for s in PROTOCOL.body.segments if not s.name.endswith(("foot", "toes")))
-    few = replace(capture, markers=only(capture.markers, toeless))
+    some = only(capture.markers, toeless)
+    few = replace(
+        capture, markers=replace(some, positions_m=some.positions_m + 2.0)
+    )  # the floor is not at the origin
     assert found(few).verdict is Verdict.UNCLEAR
     standing = find_axes(few, places(few), standing=True)
     assert standing.verdict is Verdict.PUT_RIGHT
