@@ -14,6 +14,22 @@ from tests.walker import walker
 pytestmark = pytest.mark.slow
 
 HEIGHT_M = 1.86
+OFF = ("RMID", "LTUB", "RHA5")
+"""Markers that the walker does not wear here."""
+
+
+def worn():
+    """The walk's markers but for those taken off."""
+    every = walker().trial.markers
+    return every.select(tuple(name for name in every.names if name not in OFF))
+
+
+def shuffled():
+    """The walk's points without names, those of the markers taken off left out."""
+    raw, gone = walker().raw, walker().trial.markers.select(OFF).positions_m
+    points = raw.markers.positions_m.copy()
+    points[(points[:, :, None] == gone[:, None]).all(axis=3).any(axis=2)] = np.nan
+    return replace(raw, markers=replace(raw.markers, positions_m=points))
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +37,7 @@ def found():
     """Labels, subject and the stages that were reported."""
     stages = []
     labelling, subject = label_unscaled(
-        walker().raw,
+        shuffled(),
         "reference36",
         mass_kg=walker().subject.mass_kg,
         height_m=HEIGHT_M,
@@ -32,35 +48,29 @@ def found():
 
 def test_shuffled_points_of_a_stranger_are_named(found):
     labelling, subject, _ = found
-    result = score(labelling.markers, walker().trial.markers, subject)
+    result = score(labelling.markers, worn(), subject)
     assert result.correct_fraction >= 0.995
     assert result.wrong_fraction <= 0.001
 
 
 def test_the_person_is_scaled_on_the_way(found):
     _, subject, stages = found
-    named = scale(None, [walker().trial], mass_kg=subject.mass_kg, height_m=HEIGHT_M)
+    named = replace(walker().trial, markers=worn())
+    expected = scale(None, [named], mass_kg=subject.mass_kg, height_m=HEIGHT_M)
     for factor, value in subject.scale_factors.items():
-        assert value == pytest.approx(named.scale_factors[factor], abs=0.03), factor
+        assert value == pytest.approx(expected.scale_factors[factor], abs=0.03), factor
     assert subject.report["marker_rms_mm"] < 10.0
     assert subject.protocol == "reference36"
     assert "Searching any attitude" in stages
     assert "Judging names" in stages
 
 
-def test_markers_that_are_not_worn_are_not_named():
-    """Three markers taken off: their names go to nobody, and no neighbour takes another's."""
-    made, off = walker(), ("RMID", "LTUB", "RHA5")
-    kept = made.trial.markers.select(tuple(n for n in made.trial.markers.names if n not in off))
-    names = tuple(f"*{k}" for k in range(len(kept.names)))
-    raw = replace(made.trial, markers=replace(kept, names=names))
-    labelling, subject = label_unscaled(raw, "reference36", mass_kg=made.subject.mass_kg, height_m=HEIGHT_M)
-    result = score(labelling.markers, kept, subject)
-    assert result.correct_fraction >= 0.995
-    assert result.wrong_fraction <= 0.001
-    assert not set(off) & set(subject.report["markers"])
+def test_markers_that_are_not_worn_are_not_named(found):
+    """Their names go to no point, and no neighbour takes another's."""
+    labelling, subject, _ = found
+    assert not set(OFF) & set(subject.report["markers"])
     assert labelling.doubts is not None
-    assert set(off) == set(labelling.doubts.unused)
+    assert set(OFF) == set(labelling.doubts.unused)
 
 
 def test_points_that_are_nobody_are_refused():
