@@ -229,9 +229,17 @@ class _Set:
         text = "".join(tokens_of(core.core))
         return len(text) > 2 and text.endswith("v") and text[:-1] in self.texts
 
+    def _frame(self, core: Core) -> str:
+        """The name of a segment's frame that is stored as its origin and the tips of two axes: LUAR, LUARY, LUARZ."""
+        text = "".join(tokens_of(core.core))
+        stem = text[:-1] if text[:-1] in self.texts and text.endswith(("y", "z")) else text
+        return stem if len(stem) > 2 and {f"{stem}y", f"{stem}z"} <= self.texts else ""
+
     def _text(self, core: Core) -> str:
-        """The name, without the sign of a virtual twin."""
-        return "".join(tokens_of(core.core))[:-1] if self._virtual(core) else core.core
+        """The name, without the sign of a virtual twin or of an axis."""
+        if self._virtual(core):
+            return "".join(tokens_of(core.core))[:-1]
+        return self._frame(core) or core.core
 
     def _reading(self, core: Core) -> NameReading:
         ways = self.ways[core.name]
@@ -259,6 +267,8 @@ class _Set:
     def _kind_without_place(self, core: Core, ways: Sequence[_Way]) -> str:
         """Kind of a name without a place of the body, "" for one with a place."""
         dictionary, tokens = self.dictionary, set(tokens_of(core.core))
+        if self._frame(core) and ways:
+            return ""
         rests = {guess.rest for guess in side_guesses(core.core)}
         if tokens & dictionary.objects:
             return "object"

@@ -349,3 +349,15 @@ def test_outputs_of_software_are_no_markers(name):
 @pytest.mark.parametrize("name", ["ScapLocTip1", "Wheelchair_R_Handle", "R_Handle"])
 def test_tools_and_wheelchairs_are_objects(name):
     assert read_names((name, "RASI", "LASI", "RKNE", "LKNE"))[name].kind == "object"
+
+
+def test_frames_of_segments_are_read_by_their_names():
+    """An origin and the tips of two axes each; one tip alone is a name that means nothing."""
+    bodies = {"RULE": "right_thigh", "LLLE": "left_shank", "RFOO": "right_foot", "LLAR": "left_forearm"}
+    whole = [*bodies, "LULE", "LFOO", "RLLE", "RLAR"]
+    found = read_names([f"{name}{axis}" for name in whole for axis in ("", "Y", "Z")])
+    for name, segment in bodies.items():
+        for axis in ("", "Y", "Z"):
+            assert found[f"{name}{axis}"].kind == "marker"
+            assert likeliest(found[f"{name}{axis}"])[0] == segment
+    assert read_names(["RASI", "LASI", "RULEY", "RULE"])["RULEY"].places == ()
