@@ -21,6 +21,7 @@ from mbkf.io.imu.plausible import plausible_readings
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.session import read_folder, read_together
 from mbkf.io.imu.table import read_imu_csv
+from mbkf.io.imu.trigno_discover import is_trigno_discover
 from mbkf.io.imu.x_imu import is_x_imu, read_x_imu
 from mbkf.io.imu.xsens_text import is_xsens, is_xsens_folder, read_xsens, read_xsens_folder
 from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry, lazily
@@ -155,6 +156,9 @@ def _stating_all(module: str, function: str) -> ReadImu:
     return lambda path, _: read(path)
 
 
+register_imu_reader(".csv", title="export of Trigno Discover", recognises=is_trigno_discover)(
+    _stating_all("imu.trigno_discover", "read_trigno_discover")
+)
 register_imu_reader(".mvnx", title="Xsens MVN export")(_stating_all("imu.mvnx", "read_mvnx"))
 register_imu_reader(".mat", title="MATLAB file of BROAD or qmt")(_stating_all("imu.mat", "read_imu_mat"))
 register_imu_reader(".h5", ".hdf5", title="APDM recording")(_stating_all("imu.apdm", "read_apdm"))
