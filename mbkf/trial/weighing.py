@@ -26,6 +26,9 @@ PROVISIONAL_KG = 70.0
 PASSES = 2
 """Number of passes: the second judges impossible readings by the mass of the first."""
 
+GIVE_MASS = "; give --mass KG"
+"""Remedy of a person whom no plates weigh, for a command that has the option."""
+
 MASS_KEY = "mass"
 """Key of a subject's report for the capture by which a person was weighed."""
 
@@ -51,7 +54,7 @@ def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
         elif finding.better is not None and finding.expected_sd is not None:
             found.append((finding.expected_sd, finding.better, Path(capture.path).name))
     if not found:
-        raise InvalidInput(f"the plates do not give the body mass ({why}); give --mass KG")
+        raise InvalidInput(f"the plates do not give the body mass ({why}){GIVE_MASS}")
     sd, mass_kg, name = min(found)
     note: dict[str, object] = {"kg": mass_kg, "sd_percent": sd, "capture": name}
     report = {key: value for key, value in subject.report.items() if key != PLATES_KEY}

@@ -26,7 +26,7 @@ from mbkf.study.scaling.report import LEFT_OUT_KEY, SCALED_FROM_KEY, used_trials
 from mbkf.study.scaling.session import MOST_MOVING, SessionTrial, scale_from_moving, scale_from_session
 from mbkf.trial.protocol.standing import stands_still
 from mbkf.trial.scale import scale
-from mbkf.trial.weighing import PROVISIONAL_KG, weighed
+from mbkf.trial.weighing import GIVE_MASS, PROVISIONAL_KG, weighed
 
 SUBJECT_FILE, RECORD = "subject.toml", "subject.json"
 """Files of a scaled person in the person's folder: the body, and its inputs."""
@@ -149,7 +149,8 @@ def scaled(
         return weighed(subject, [named(one, subject).capture for one in captures])
     except InvalidInput as error:
         raise InvalidInput(
-            f"the body mass follows from no capture; state mass_kg in session.toml or in the list ({error})"
+            "the body mass follows from no capture; state mass_kg in session.toml or in the list "
+            f"({str(error).removesuffix(GIVE_MASS)})"
         ) from error
 
 

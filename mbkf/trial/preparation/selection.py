@@ -22,6 +22,8 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
         NotObservable: There are too few of them.
     """
     found = match_names(markers.names, subject.markers)
+    if len(found) < MIN_MARKERS and all(name.startswith("*") for name in markers.names):
+        raise NotObservable("no marker of the capture has a name; name them with 'mbkf label'")
     if len(found) < MIN_MARKERS:
         raise NotObservable(
             f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "

@@ -150,6 +150,8 @@ def _inferred_set(
     """The inferred set of captures, of which so many first ones are standing trials."""
     names = tuple(dict.fromkeys(name for one in captures for name in _named(one.markers)))
     ignored = off_the_skin(captures, readings)
+    if not names:
+        raise NotObservable("no marker that is seen has a name; name them with 'mbkf label'")
     if len(names) - len(ignored) < FEWEST_POINTS:
         raise NotObservable(
             f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names) or 'none'}); "

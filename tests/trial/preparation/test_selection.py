@@ -36,6 +36,11 @@ def test_markers_come_under_the_subjects_names_and_strangers_are_left_out(subjec
     )
 
 
+def test_points_without_names_are_to_be_named(subject):
+    with pytest.raises(NotObservable, match="name them with 'mbkf label'"):
+        subject_markers(trajectories([f"*{k}" for k in range(8)]), subject)
+
+
 def test_too_few_markers_of_the_subject_are_refused(subject):
     with pytest.raises(NotObservable, match="has 1 of the subject's markers"):
         subject_markers(trajectories(["RKNE", "A", "B"]), subject)

@@ -203,3 +203,9 @@ def test_a_capture_that_hardly_shows_a_marker_does_not_place_it(worn):
     assert shown.names == first.names[1:]
     assert other.names == first.names
     assert worn_markers([static], ())[0].names == first.names, "no other capture shows it"
+
+
+def test_points_without_names_are_to_be_named():
+    markers = MarkerTrajectories(tuple(f"*{k}" for k in range(30)), np.zeros((5, 30, 3)), 100.0)
+    with pytest.raises(NotObservable, match="no marker that is seen has a name; name them with 'mbkf label'"):
+        infer_marker_set(None, [Capture("", markers)])
