@@ -19,6 +19,7 @@ from benchmarks.strangers.orientation_spreads import orientation_spread_rows
 from benchmarks.strangers.plates import plate_point_rows
 from benchmarks.strangers.shared_captures import shared_capture_rows
 from benchmarks.strangers.small_inputs import small_input_rows
+from benchmarks.strangers.two_persons import two_persons_rows
 
 PARTS: Mapping[str, Part] = {
     "folders": lambda context: mixed_folder_rows(context.require_data(), context.out),
@@ -31,6 +32,7 @@ PARTS: Mapping[str, Part] = {
     "plate_points": lambda context: plate_point_rows(context.require_data()),
     "shared_captures": lambda context: shared_capture_rows(context.require_data(), context.out),
     "small_inputs": lambda context: small_input_rows(context.require_data(), context.out),
+    "two_persons": lambda context: two_persons_rows(context.require_data()),
 }
 """Rows by the part's name."""
 

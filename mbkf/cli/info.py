@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from mbkf.trial.info import AxesSummary, CaptureSummary, MarkerSummary, PlatesMass, ProtocolSummary
+    from mbkf.trial.persons import PersonSummary
 
 _MOST_WITH_GAPS = 30
 
@@ -66,6 +67,9 @@ def _show(summary: CaptureSummary, console: Console) -> None:
     )
     if gaps:
         console.print(_gaps(gaps[:_MOST_WITH_GAPS], len(gaps)))
+    if summary.persons:
+        console.print(_persons(summary.persons))
+        console.print("note: choose one of the persons with --person NAME", soft_wrap=True)
     if summary.plates:
         console.print(_plates(summary))
     if summary.events:
@@ -79,6 +83,14 @@ def _show(summary: CaptureSummary, console: Console) -> None:
         console.print(f"warning: {contradiction}", soft_wrap=True)
     for note in summary.notes:
         console.print(f"note: {note}")
+
+
+def _persons(persons: Sequence[PersonSummary]) -> Table:
+    found = _bare("Persons", "name", "markers>", "height>", "middle (x, y)>")
+    for one in persons:
+        x, y = one.place_m
+        found.add_row(one.name, str(one.markers), f"{one.height_m:.2f} m", f"{x:.2f}, {y:.2f} m")
+    return found
 
 
 def _bare(title: str, *headings: str) -> Table:

@@ -22,6 +22,7 @@ from mbkf.io.plausible import plausible
 from mbkf.io.readable_plates import left_out_notes
 from mbkf.io.readers import FileFormat, FormatRegistry, either, lazily
 from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
+from mbkf.io.shared_plates import without_others_plates
 from mbkf.io.turning import turned
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
@@ -146,8 +147,8 @@ def read_capture(
             choice mirrors the file. They hold, whatever the body of the person looks like in them.
         unneeded_plates: Names of plates that will be withheld; a file of ground reactions may hold only those that
             cannot be read among them.
-        person: Of a capture of several persons ("Anna:LASI", "Ben:LASI") the one to take, by name or by number from 1
-            on.
+        person: Of a capture of several persons the one to take, by name ("Anna" of "Anna:LASI") or by number in the
+            order of the file, from 1 on. Plates on which only others stand are left out, with a remark.
 
     Returns:
         The capture in SI units and world axes. A plate that cannot be read is left out, with a remark.
@@ -180,6 +181,7 @@ def read_capture(
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
     capture = plausible(_with_left_out(capture, options), None if forces is None else Path(forces))
+    capture = without_others_plates(capture)
     if matrix is None:
         return capture
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)

@@ -185,6 +185,7 @@ class Capture:
         processing: Numbers that the laboratory's software stored of the person, by their name in capitals and in its
             units (C3D's PROCESSING group: widths of joints in mm, offsets of Plug-in Gait in rad).
         plates_left_out: Force plates of the file that are not among ``plates``, by their names, with the reason.
+        others: Markers of the other persons in the file, where one of several was chosen; None otherwise.
     """
 
     path: str
@@ -201,3 +202,4 @@ class Capture:
     axes_source: AxesSource = AxesSource.MADE
     processing: Mapping[str, float] = field(default_factory=dict)
     plates_left_out: Mapping[str, str] = field(default_factory=dict)
+    others: MarkerTrajectories | None = None

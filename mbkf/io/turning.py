@@ -32,10 +32,14 @@ def turned(capture: Capture, turn: Array, source: AxesSource) -> Capture:
     if turn.shape != (3, 3) or not np.array_equal(turn @ turn.T, np.eye(3)) or (np.abs(turn) % 1).any():
         raise ShapeError("turn", "(3, 3), a signed permutation", turn.shape)
     axes = axes_text(turn @ axes_matrix(capture.axes))
-    markers = replace(capture.markers, positions_m=capture.markers.positions_m @ turn.T)
+    markers, others = (
+        one and replace(one, positions_m=one.positions_m @ turn.T)
+        for one in (capture.markers, capture.others)
+    )
     return replace(
         capture,
         markers=markers,
+        others=others,
         plates=tuple(turned_plate(plate, turn) for plate in capture.plates),
         axes=axes,
         up_axis=axes.split(",")[2],

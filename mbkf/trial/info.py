@@ -14,6 +14,7 @@ from mbkf.trial.axes.captures import find_axes_by_names
 from mbkf.trial.axes.decision import AxesFinding, Verdict, applied
 from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.unscaled_mass import unscaled_mass_finding
+from mbkf.trial.persons import PersonSummary, persons_in, summaries
 from mbkf.trial.preparation.coverage import use_by_protocol
 from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set
 from mbkf.trial.protocol.standing import stands_still
@@ -150,6 +151,7 @@ class CaptureSummary:
         extent_m: Lowest and highest x, y, z of all markers in m, in the axes that `mbkf scale` uses; None without
             markers.
         markers: Each marker.
+        persons: Each of several persons, in the order of the file; empty for one.
         plates: Each force plate.
         derived: Number of derived points by kind.
         channels: Each analog channel.
@@ -176,6 +178,7 @@ class CaptureSummary:
     missing_fraction: float
     extent_m: tuple[tuple[float, ...], tuple[float, ...]] | None
     markers: tuple[MarkerSummary, ...]
+    persons: tuple[PersonSummary, ...]
     plates: tuple[PlateSummary, ...]
     derived: Mapping[str, int]
     channels: tuple[ChannelSummary, ...]
@@ -215,6 +218,7 @@ def describe(capture: Capture) -> CaptureSummary:
             MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, len(runs(column)))
             for name, column in zip(markers.names, present.T, strict=True)
         ),
+        persons=summaries(upright, persons_in(upright)),
         plates=tuple(_plate(plate) for plate in upright.plates),
         derived=dict(Counter(point.kind for point in capture.derived)),
         channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),

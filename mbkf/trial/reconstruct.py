@@ -25,6 +25,7 @@ from mbkf.trial.checks.in_view import in_view_finding
 from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
+from mbkf.trial.loads.partners import others_of, with_contacts
 from mbkf.trial.preparation.coverage import use_by_subject
 from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, renamed_by_filter
 from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, tracking_filter
@@ -107,6 +108,8 @@ def reconstruct(
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         capture = replace(capture, notes=tuple(notes))
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
+        others = others_of(capture, use.used)
+        found = with_contacts(found, inputs.sensor.model, subject, measured, others)
         seen = (shown, subject, inputs, recording, alone, before, lengths)
         judged = (*trial_checks(*seen), in_view_finding(capture.markers, use.used)) if settings.checks else ()
         return judged_result(

@@ -11,7 +11,6 @@ import numpy as np
 
 from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput, MbkfError, NotConverged, NotObservable
-from mbkf.io.persons import check_one_person
 from mbkf.io.records import Capture
 from mbkf.io.static_exchanges import STATIC_EXCHANGED_KEY
 from mbkf.io.subject import Subject
@@ -26,6 +25,7 @@ from mbkf.scaling.stature import stature_doubts
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
 from mbkf.trial.checks.unscaled_mass import PLATES_KEY, plate_notes, stated_mass_notes
+from mbkf.trial.persons import check_one_person
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, MarkerUse, use_by_protocol
 from mbkf.trial.preparation.exchanged import EXCHANGED_KEY, trials_put_right
 from mbkf.trial.preparation.in_view import others_in_view
