@@ -97,6 +97,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     stream.add_argument("--up", metavar="AXIS", help="NatNet and files: vertical axis (NatNet: y)")
     stream.add_argument("--forces", metavar="FILE", help="file: its ground reactions, as for reconstruct")
     stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
+    stream.add_argument(
+        "--person", metavar="NAME", help="file: of several persons in it the one to follow: name or number"
+    )
     stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
     add_speed_option(stream)
     add_following_options(parser)
@@ -228,7 +231,7 @@ def _source(args: argparse.Namespace) -> FrameSource:
     from mbkf.stream.file_source import FileSource
     from mbkf.stream.played import played
 
-    capture = read_capture(path, forces=args.forces, up=args.up, unit=args.unit)
+    capture = read_capture(path, forces=args.forces, up=args.up, unit=args.unit, person=args.person)
     return FileSource(played(capture, args.unlabelled), args.speed)
 
 

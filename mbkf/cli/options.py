@@ -71,7 +71,9 @@ def add_axes_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
     parser.add_argument(
-        "--person", metavar="NAME", help="of several persons in the file the one to take: its name or number"
+        "--person",
+        metavar="NAME|N",
+        help="of several persons in the file the one to take: name, or number as 'mbkf info' lists",
     )
 
 

@@ -22,6 +22,7 @@ from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.label import label
 from mbkf.trial.labelling.result import Labelling
+from mbkf.trial.persons import check_one_person
 from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
 from mbkf.trial.scale import scale
 
@@ -54,7 +55,7 @@ def label_nameless(
         The labels, the person, and the marker set with its doubts.
 
     Raises:
-        InvalidInput: No mass, or an impossible mass or height.
+        InvalidInput: No mass, an impossible mass or height, or points of several persons.
         NotObservable: Too few points, or no body is found among them.
         NotConverged: The points do not fit a body.
     """
@@ -62,6 +63,7 @@ def label_nameless(
     mass = capture.subject_mass_kg if mass_kg is None else mass_kg
     if mass is None:
         raise InvalidInput("the capture does not state the body mass; give --mass KG")
+    check_one_person(capture)
     report(STAGE, 0, 1)
     points = capture.markers.positions_m
     with single_threaded():

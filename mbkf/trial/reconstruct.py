@@ -108,8 +108,7 @@ def reconstruct(
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         capture = replace(capture, notes=tuple(notes))
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-        others = others_of(capture, use.used)
-        found = with_contacts(found, inputs.sensor.model, subject, measured, others)
+        found = with_contacts(found, inputs.sensor.model, subject, measured, others_of(capture, use.used))
         seen = (shown, subject, inputs, recording, alone, before, lengths)
         judged = (*trial_checks(*seen), in_view_finding(capture.markers, use.used)) if settings.checks else ()
         return judged_result(

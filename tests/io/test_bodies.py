@@ -31,7 +31,9 @@ def test_parts_of_one_body_are_not_cut(apart_m):
 
 def test_upper_and_lower_half_are_one_person():
     """Their middles lie far apart, and neither extends across that line."""
-    places = np.concatenate([figure(1, [0, 0, 0]) * [1, 1, 0.1], figure(2, [0, 0, 1.0]) * [1, 1, 0.1]], axis=1)
+    places = np.concatenate(
+        [figure(1, [0, 0, 0]) * [1, 1, 0.1], figure(2, [0, 0, 1.0]) * [1, 1, 0.1]], axis=1
+    )
     places[:, 12:, 2] += 0.9
     assert [len(body) for body in bodies_of(places * [1, 0.5, 1])] == [24]
 

@@ -58,7 +58,7 @@ def test_a_mass_of_a_file_of_several_persons_could_be_anybody_s(tmp_path):
 def test_a_person_who_is_not_there_is_refused_with_those_who_are(tmp_path, choice):
     with pytest.raises(InvalidInput, match=r"its persons are Anna \(7 markers\), Ben"):
         read_capture(two(tmp_path / "a.c3d"), person=choice)
-    with pytest.raises(InvalidInput, match="names and distances .* of one person"):
+    with pytest.raises(InvalidInput, match=r"names and distances .* of one person"):
         read_capture(build_c3d(tmp_path / "b.c3d"), person=choice)
 
 

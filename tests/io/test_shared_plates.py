@@ -9,7 +9,9 @@ from mbkf.io.shared_plates import without_others_plates
 
 def plate(name, centre):
     force = np.tile([0.0, 0.0, 600.0], (100, 1))
-    return PlateReadings(name, 100.0, 0.0, np.zeros(3), force, np.zeros((100, 3)), np.tile(centre, (100, 1)), 20.0)
+    return PlateReadings(
+        name, 100.0, 0.0, np.zeros(3), force, np.zeros((100, 3)), np.tile(centre, (100, 1)), 20.0
+    )
 
 
 def person(y):
@@ -17,7 +19,9 @@ def person(y):
     return MarkerTrajectories(("TOE", "SACR"), places, 100.0)
 
 
-@pytest.mark.parametrize(("mine", "theirs", "left"), [(0.0, 1.0, ["1"]), (1.0, 0.0, ["2"]), (5.0, 6.0, ["1", "2"])])
+@pytest.mark.parametrize(
+    ("mine", "theirs", "left"), [(0.0, 1.0, ["1"]), (1.0, 0.0, ["2"]), (5.0, 6.0, ["1", "2"])]
+)
 def test_a_plate_below_the_other_person_is_left_out(mine, theirs, left):
     plates = plate("1", [0.1, 0.0, 0.0]), plate("2", [0.1, 1.0, 0.0])
     found = without_others_plates(Capture("a", person(mine), plates, others=person(theirs)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from mbkf.marker_sets.frames import anchor_frames
 from mbkf.marker_sets.inference import CLEAR_LOG_RATIO
 from mbkf.marker_sets.names import NameReading
 from mbkf.marker_sets.places import worn_places
-from mbkf.marker_sets.search import find_body
+from mbkf.marker_sets.search import FEWEST_POINTS, find_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import DEFAULT_NOISE_M, DEFAULT_PLACEMENT_SD_M, ProtocolMarker
 from mbkf.trial.axes.decision import AxesFinding, Verdict, applied, find_axes, may_follow
@@ -69,6 +70,8 @@ def upright_captures(
             own = clear = _by_body(capture, body)
         elif clear is not None and _alike(captures, found, clear, capture) and may_follow(own, clear.turn):
             own = clear
+        if own.verdict in (Verdict.UNKNOWN, Verdict.KEPT):
+            own = _by_others(capture, body, own)
         result.append(applied(capture, own))
     return result
 
@@ -104,6 +107,14 @@ def _alike(
         for one, finding in zip(captures, found, strict=True)
         if finding is clear
     )
+
+
+def _by_others(capture: Capture, body: BodyDescription, own: AxesFinding) -> AxesFinding:
+    """The finding about another person of the same file, which has the same axes, where that one is clear."""
+    if capture.others is None or len(capture.others.names) < FEWEST_POINTS:
+        return own
+    other = _by_body(replace(capture, markers=capture.others, others=None), body)
+    return other if other.verdict is Verdict.PUT_RIGHT and may_follow(own, other.turn) else own
 
 
 def _by_body(capture: Capture, body: BodyDescription) -> AxesFinding:

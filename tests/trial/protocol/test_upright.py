@@ -98,3 +98,14 @@ def test_only_sure_landmarks_are_known_places():
     assert list(known) == ["sure"]
     np.testing.assert_array_equal(known["sure"].position_m, BODY.landmark("right_asis").position_m)
     assert known["sure"].segment == "pelvis"
+
+
+def test_a_person_whose_axes_are_unclear_takes_those_of_the_other_in_the_file(real_data):
+    """The file says y; both stand along z, and only the second one's points show it."""
+    path = real_data / "two_persons_art" / "ART-Human_2persons_integer.c3d"
+    chosen = read_capture(path, person="Human1")
+    readings = read_names(chosen.markers.names)
+    (found,) = upright_captures([chosen], readings, load_body())
+    assert found.axes == "x,y,z"
+    (alone,) = upright_captures([replace(chosen, others=None)], readings, load_body())
+    assert alone.axes == chosen.axes == "x,-z,y"
