@@ -32,10 +32,10 @@ def turned(capture: Capture, turn: Array, source: AxesSource) -> Capture:
     if turn.shape != (3, 3) or not np.array_equal(turn @ turn.T, np.eye(3)) or (np.abs(turn) % 1).any():
         raise ShapeError("turn", "(3, 3), a signed permutation", turn.shape)
     axes = axes_text(turn @ axes_matrix(capture.axes))
-    markers, others = (
-        one and replace(one, positions_m=one.positions_m @ turn.T)
-        for one in (capture.markers, capture.others)
-    )
+    markers = replace(capture.markers, positions_m=capture.markers.positions_m @ turn.T)
+    others = capture.others
+    if others is not None:
+        others = replace(others, positions_m=others.positions_m @ turn.T)
     return replace(
         capture,
         markers=markers,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.axes import axes_matrix
+from mbkf.io.capture import read_capture
 from mbkf.io.records import AxesSource, Capture
 from mbkf.io.turning import turned
 from mbkf.marker_sets.names import NamedPlace, NameReading, read_names
@@ -105,7 +106,7 @@ def test_a_person_whose_axes_are_unclear_takes_those_of_the_other_in_the_file(re
     path = real_data / "two_persons_art" / "ART-Human_2persons_integer.c3d"
     chosen = read_capture(path, person="Human1")
     readings = read_names(chosen.markers.names)
-    (found,) = upright_captures([chosen], readings, load_body())
+    (found,) = upright_captures([chosen], readings, BODY)
     assert found.axes == "x,y,z"
-    (alone,) = upright_captures([replace(chosen, others=None)], readings, load_body())
+    (alone,) = upright_captures([replace(chosen, others=None)], readings, BODY)
     assert alone.axes == chosen.axes == "x,-z,y"
