@@ -1,6 +1,6 @@
 """Bodies among the points of a capture, without names: points of one body stay at their distances, those of two do not.
 
-A normalised cut (Shi & Malik 2000) parts the points where few of them keep near each other: with weights
+A normalised cut (Shi 2000) parts the points where few of them keep near each other: with weights
 
     w_ij = exp(−(m_ij² + (2 s_ij)²) / ℓ²),
 
