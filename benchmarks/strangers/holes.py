@@ -72,7 +72,6 @@ SHOWN_ON = (
     Public("rajagopal_walk_run", "static_walk_1.trc", "motion_capture_walk.trc", "grf_walk.mot", 85.07),
     Public("rajagopal_walk_run", "static_run.trc", "motion_capture_run.trc", "grf_run.mot", 72.84),
     Public("unipd_walk", "Static1.c3d", "Walking1.c3d", None, 70.0),
-    Public("ric_run", "20140515T133244_static.c3d", "20140515T133244_run.c3d", None, 70.0),
     Public("rehazenter_walk", "2014001_ST_static.c3d", "2014001_C1_01.c3d", None, 67.0),
     Public("opencap_s6_walk", "s6_static1.trc", "s6_walking1.trc", "s6_walking1_forces.mot", 59.0),
     Public("bmc_walk_run", "run_static.trc", "run.trc", "run_grf.mot", 70.0),

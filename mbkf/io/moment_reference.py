@@ -61,7 +61,9 @@ def reference_at_point(force: Array, point: Array, moment: Array) -> MomentRefer
     tilt, free = _levers(force, moment)
     if tilt < _EXACT_SHARE * free and _LARGEST_FREE_M < free <= 1e3 * _LARGEST_FREE_M:
         return MomentReference(1e-3, None)
-    if max(tilt / _LARGEST_TILT_M, free / _LARGEST_FREE_M) <= 1.0 or point.std(axis=0).max() < _LEAST_MOVED_M:
+    if point.std(axis=0).max() < _LEAST_MOVED_M:  # a wrench there, at most a laboratory away from its force
+        return MomentReference(1.0 if tilt <= LABORATORY_M else 1e-3, None)
+    if max(tilt / _LARGEST_TILT_M, free / _LARGEST_FREE_M) <= 1.0:
         return MomentReference(1.0, None)
     doubt = (
         f"torques at the points of application are {tilt:.2g} m times the force about horizontal axes and {free:.2g} m "
