@@ -55,8 +55,8 @@ class Trial:
         return float(np.nanmin(angles)), float(np.nanmax(angles))
 
     def sd_deg(self, name: str) -> float:
-        """Mean standard deviation of an angle, degrees."""
-        return np.nan if self.result is None else float(np.rad2deg(np.nanmean(self.result.angle_sd(name))))
+        """Median standard deviation of an angle, degrees: persons walk in and out of the volume."""
+        return np.nan if self.result is None else float(np.rad2deg(np.nanmedian(self.result.angle_sd(name))))
 
     def word(self, part: str) -> str:
         """The verdict on a part; "" where nothing was judged."""
