@@ -73,22 +73,30 @@ def _combined(markers: MarkerTrajectories) -> dict[str, tuple[str, ...]]:
 def _candidates(points: Array, k: int) -> Iterator[tuple[int, ...]]:
     """Numbers of the points that point k combines in some frames, fewest first."""
     yield from _opposite(points, k)
-    away = np.nanmean(np.linalg.norm(points - points[:, k : k + 1], axis=2), axis=0)
-    near = np.argsort(np.where(np.isfinite(away), away, np.inf), kind="stable")[1 : NEIGHBOURS + 1]
+    near = _nearest(points, k)
     complete = np.flatnonzero(np.isfinite(points[:, [k, *near]]).all(axis=(1, 2)))
     if len(complete) < FEWEST_FRAMES:
         return
     few = points[complete[spread_indices(len(complete), FEWEST_FRAMES)]]
     for count in range(3, min(LARGEST, len(near)) + 1):
-        sets = np.array(list(combinations(near.tolist(), count)))
-        edges = (few[:, sets[:, 1:]] - few[:, sets[:, :1]]).transpose(
-            1, 0, 3, 2
-        )  # (sets, frames, 3, count − 1)
-        edges = edges.reshape(len(sets), -1, count - 1)
+        sets = np.array(list(combinations(near, count)))
+        edges = few[:, sets[:, 1:]] - few[:, sets[:, :1]]  # (frames, sets, count - 1, 3)
+        edges = edges.transpose(1, 0, 3, 2).reshape(len(sets), -1, count - 1)
         target = (few[:, k, None] - few[:, sets[:, 0]]).transpose(1, 0, 2).reshape(len(sets), -1, 1)
         off = target - edges @ (np.linalg.pinv(edges) @ target)
         close = np.sqrt(np.mean(off[:, :, 0] ** 2, axis=1) * 3.0) <= EXACT_M
         yield from (tuple(map(int, some)) for some in sets[close])
+
+
+def _nearest(points: Array, k: int) -> list[int]:
+    """Numbers of the points nearest to point k on average over the frames that show both."""
+    away = np.linalg.norm(points - points[:, k : k + 1], axis=2)
+    both = np.isfinite(away)
+    mean = np.full(away.shape[1], np.inf)
+    np.divide(np.where(both, away, 0.0).sum(axis=0), both.sum(axis=0), out=mean, where=both.any(axis=0))
+    mean[k] = np.inf
+    near = np.argsort(mean, kind="stable")[:NEIGHBOURS]
+    return [int(j) for j in near if np.isfinite(mean[j])]
 
 
 def _opposite(points: Array, k: int) -> list[tuple[int, int]]:

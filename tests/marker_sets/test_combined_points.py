@@ -83,3 +83,11 @@ def test_frames_without_a_point_do_not_count_and_one_capture_suffices():
     gappy[2:, 3] = np.nan
     assert combined_points([replace(made, positions_m=gappy)]) == {}, "two frames show no relation"
     assert combined_points([replace(made, positions_m=made.positions_m[:1])]) == {}
+
+
+@pytest.mark.filterwarnings("error")
+def test_points_that_no_frame_shows_together():
+    made = with_point(moving(), {"M3": 0.5, "M8": 0.5})
+    gappy = made.positions_m.copy()
+    gappy[::2, 0] = gappy[1::2, 1] = np.nan
+    assert combined_points([replace(made, positions_m=gappy)]) == {"V": ("M3", "M8")}

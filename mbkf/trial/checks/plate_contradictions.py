@@ -147,19 +147,21 @@ def _beside_feet(
 
 def _silent(capture: Capture) -> Iterator[str]:
     """A sentence on plates that read next to nothing while a foot stands on one of them."""
-    peaks = [float(np.abs(plate.force_n[:, 2]).max(initial=0.0)) for plate in capture.plates]
-    if not peaks or max(peaks) >= SILENT_N or not max(peaks):
+    vertical = [plate.force_n[:, 2] for plate in capture.plates]
+    read = np.abs(np.concatenate([one[np.isfinite(one)] for one in vertical] or [np.zeros(0)]))
+    if not len(read) or read.max() >= SILENT_N:
         return
     seconds = max(_standing_s(plate, capture.markers) for plate in capture.plates)
     if seconds >= STANDING_S:
+        cause = "the unit of their forces" if read.max() else "that they were on and recorded"
         yield (
-            f"the force plates read at most {max(peaks):.2g} N, and a foot stands on one for {seconds:.1f} s; check "
-            "the unit of their forces"
+            f"the force plates read at most {read.max():.2g} N, and a foot stands on one for {seconds:.1f} s; check "
+            f"{cause}"
         )
 
 
 def _standing_s(plate: PlateReadings, markers: MarkerTrajectories) -> float:
-    """Longest time in all during which a marker is low and slow above a plate, s; 0 for a plate without corners."""
+    """Time in which a marker is low and slow above a plate, the longest of all markers', s; 0 without corners."""
     if plate.corners_m is None or markers.frames < 2:
         return 0.0
     places = markers.positions_m

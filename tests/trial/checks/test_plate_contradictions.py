@@ -35,13 +35,15 @@ def test_right_plates_contradict_nothing(name):
     bare = replace(capture(name), plates=tuple(replace(p, corners_m=None) for p in capture(name).plates))
     assert plate_contradictions(bare) == ()
     assert plate_contradictions(replace(bare, plates=())) == ()
+    assert plate_contradictions(capture(name, force=np.nan)) == (), "nothing was read"
 
 
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
         ({"force": -1.0, "moment": -1.0}, "pull feet down; check their sign"),
-        ({"force": 1e-3, "moment": 1e-3}, "N, and a foot stands on one for"),
+        ({"force": 1e-3, "moment": 1e-3}, "s; check the unit of their forces"),
+        ({"force": 0.0, "moment": 0.0}, "at most 0 N, and a foot stands on one for"),
         ({"moment": 1e3}, "m outside the area; check corners, and the unit of the moments"),
         ({"moment": 1e-3}, "mm of the middle; check the unit of the moments"),
         ({"corners": 1e3}, "m; check the unit of the corners"),
@@ -53,7 +55,7 @@ def test_each_fault_is_named_once_with_its_plates(wrong, message):
     (found,) = plate_contradictions(capture("squat", **wrong))
     assert message in found
     assert found.startswith(
-        "the force plates read" if "force" in wrong and wrong["force"] > 0 else "force plates '"
+        "the force plates read" if wrong.get("force", -1.0) >= 0.0 else "force plates '"
     )
 
 
