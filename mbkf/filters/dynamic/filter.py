@@ -70,7 +70,8 @@ def dynamic_blocks(
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
     weight_n = GRAVITY_M_S2 * model.mass_kg
-    dilution = np.where(beside_holes(sensor, unobservable), s.posture.hole_posture_share, 1.0)
+    beside = beside_holes(sensor, unobservable)
+    dilution = np.where(beside, s.posture.hole_posture_scale / s.posture.posture_scale, 1.0)
     if spread_m is not None:
         dilution = dilution * prior_dilution(sensor, noise_m, spread_m)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)

@@ -57,7 +57,7 @@ def kinematic_blocks(
             posture,
             unobservable,
             PostureSettings(s.posture_scale),
-            np.where(holes, s.hole_posture_share, 1.0),
+            np.where(holes, s.hole_posture_scale / s.posture_scale, 1.0),
         ),
         *([JointLimits(posture, ~holes)] if holes.any() else []),
     ]

@@ -11,7 +11,7 @@ from mbkf.conventions import Array
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.model.protocol import Protocol
 from mbkf.stream.source import SourceFrame, StreamDescription, plausible
-from mbkf.trial.live.scaling import Stance, StillWatch, worn_markers
+from mbkf.trial.live.scaling import Stance, StillWatch, watched_names
 
 MOST_LISTED = 4
 """Missing markers that are listed by name."""
@@ -28,7 +28,7 @@ class StanceFrames:
     def __init__(self, stream: StreamDescription, protocol: Protocol | None) -> None:
         """Args: the stream, and the protocol worn; it may be None where markers have names."""
         self._stream = stream
-        self._names = worn_markers(stream.marker_names, protocol)
+        self._names = watched_names(stream.marker_names, protocol)
         self._columns = [stream.marker_names.index(name) for name in self._names]
         self.named = bool(stream.marker_names)
         self._worn = len(self._names)

@@ -105,16 +105,16 @@ def plate_notes(captures: Sequence[Capture], mass_kg: float | None = None) -> li
 
 
 def stated_mass_notes(captures: Sequence[Capture], mass_kg: float) -> list[str]:
-    """A sentence on each mass that captures state and that the given one contradicts.
+    """A sentence on each mass that captures state and that the person's contradicts.
 
     Args:
         captures: Captures of the person.
-        mass_kg: The given mass.
+        mass_kg: The person's mass: given, stated by another capture, or weighed by plates.
     """
     stated = {one.subject_mass_kg: one.path for one in reversed(captures) if one.subject_mass_kg is not None}
     return [
-        f"{path} states a body mass of {kg:.1f} kg, and {mass_kg:.1f} kg are given "
-        f"({abs(100.0 * (mass_kg / kg - 1.0)):.0f} % {'more' if mass_kg > kg else 'less'}); check --mass"
+        f"{path} states a body mass of {kg:.1f} kg, and the person is scaled with {mass_kg:.1f} kg "
+        f"({percent(abs(mass_kg / kg - 1.0))} {'more' if mass_kg > kg else 'less'}); give the right one with --mass KG"
         for kg, path in stated.items()
         if abs(mass_kg / kg - 1.0) > STATED_SHARE
     ]

@@ -125,8 +125,10 @@ class StillWatch:
         return float(np.quantile(away, 1.0 - STRAY, method="lower")), None
 
 
-def worn_markers(names: Sequence[str], protocol: Protocol | None) -> tuple[str, ...]:
-    """Names of a stream that belong to the person: those its protocol knows, all where no protocol knows them.
+def watched_names(names: Sequence[str], protocol: Protocol | None) -> tuple[str, ...]:
+    """Names of a stream's markers that have to stay still: those that a protocol knows, all where no protocol does.
+
+    Others may be tools; scaling judges by the frames whether they belong to the person.
 
     Args:
         names: The stream's.

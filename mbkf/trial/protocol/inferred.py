@@ -25,6 +25,7 @@ from mbkf.model.protocol import (
     ProtocolMarker,
 )
 from mbkf.numerics.threads import single_threaded
+from mbkf.scaling.frames import MIN_PRESENT
 from mbkf.trial.preparation.coverage import listed
 from mbkf.trial.preparation.exchanged import trials_put_right
 from mbkf.trial.protocol.upright import upright_captures
@@ -45,9 +46,6 @@ LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
 
 ROUNDS = 2
 """Greatest number of inferences: it is repeated where names are exchanged between the standing trial and the others."""
-
-RARELY = 0.05
-"""Share of a capture's frames below which it hardly shows a marker."""
 
 DOUBTFUL_NOISE = 1.2
 """Noise of a marker of doubtful segment, over that of a certain one."""
@@ -154,7 +152,7 @@ def _inferred_set(
         raise NotObservable("no marker that is seen has a name; name them with 'mbkf label'")
     if len(names) - len(ignored) < FEWEST_POINTS:
         raise NotObservable(
-            f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names) or 'none'}); "
+            f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names)}); "
             f"fewer than {FEWEST_POINTS} do not show which part of it they are on; give --protocol"
         )
     keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
@@ -237,7 +235,7 @@ def worn_markers(captures: Sequence[Capture], ignored: Collection[str]) -> list[
             tuple(
                 name
                 for name in _named(one.markers)
-                if name not in ignored and (share[name] >= RARELY or most[name] < RARELY)
+                if name not in ignored and (share[name] >= MIN_PRESENT or most[name] < MIN_PRESENT)
             )
         )
         for one, share in zip(captures, shares, strict=True)

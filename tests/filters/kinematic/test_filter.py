@@ -313,7 +313,9 @@ def test_joints_beside_an_unmarked_segment_are_known_by_posture_and_limits_too()
     *_, prior, limits = kinematic_blocks(bare, np.full(len(marked), 0.01), DT, nothing, settings)
     usual = whole[-1].prepare(state, None).information.matrix
     known = prior.prepare(state, None).information.matrix
-    assert known[right, right] == pytest.approx(usual[right, right] / settings.hole_posture_share**2)
+    assert known[right, right] == pytest.approx(
+        usual[right, right] * (settings.posture_scale / settings.hole_posture_scale) ** 2
+    )
     assert known[left, left] == pytest.approx(usual[left, left])
     held = limits.prepare(state, None).matrix
     assert held[right, right] > 100.0 and held[left, left] == 0.0

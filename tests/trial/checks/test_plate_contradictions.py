@@ -54,9 +54,7 @@ def test_right_plates_contradict_nothing(name):
 def test_each_fault_is_named_once_with_its_plates(wrong, message):
     (found,) = plate_contradictions(capture("squat", **wrong))
     assert message in found
-    assert found.startswith(
-        "the force plates read" if wrong.get("force", -1.0) >= 0.0 else "force plates '"
-    )
+    assert found.startswith("the force plates read" if wrong.get("force", -1.0) >= 0.0 else "force plates '")
 
 
 def test_a_load_that_was_zeroed_and_lifted_is_no_wrong_sign():

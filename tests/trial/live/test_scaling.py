@@ -16,7 +16,7 @@ from mbkf.trial.live.scaling import (
     StillWatch,
     plates_mass_kg,
     scale_standing,
-    worn_markers,
+    watched_names,
 )
 from mbkf.trial.scale import scale
 from tests.captures import MASS_KG, made_capture, made_markers
@@ -114,9 +114,9 @@ def test_who_moves_is_told_from_who_stands(named, speed_m_s):
 
 def test_only_markers_of_the_protocol_are_looked_at():
     names = (*made_markers(2).names, "wand1", "wand2")
-    assert worn_markers(names, None) == names[:-2]
-    assert worn_markers(names, load_protocol("reference36")) == names[:-2]
-    assert worn_markers(("A", "B"), None) == ("A", "B")
+    assert watched_names(names, None) == names[:-2]
+    assert watched_names(names, load_protocol("reference36")) == names[:-2]
+    assert watched_names(("A", "B"), None) == ("A", "B")
 
 
 def test_the_subject_is_the_one_of_scale():
