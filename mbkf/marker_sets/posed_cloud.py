@@ -39,7 +39,7 @@ TILT_RAD = 0.25
 """Spread of the pelvis about upright."""
 
 SOLE_SD_RAD = 0.12
-"""Spread of a sole's inclination in standing, shoes and forefoot gait among it."""
+"""Spread of a sole's inclination in standing: shoes raise heels, and the body is not scaled yet."""
 
 PROPORTION_SD = 0.06
 """Spread of a scale factor about the person's overall size."""

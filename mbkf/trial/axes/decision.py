@@ -49,10 +49,15 @@ within segments that it may have (0.05 to 0.32; names in a wrong order 0.64 and 
 POSSIBLE_M, PLAUSIBLE_M = (0.65, 2.6), (1.0, 2.2)
 """Heights of a person outside which a unit is refused, and between which another is proposed."""
 
-LOWEST_PERCENT, FLOOR_M, UNDER_FLOOR_M, RISES_M = 1.0, (-0.05, 0.15), -0.05, 0.3
-"""Percentile of heights that counts as the lowest; where it lies along the axis that a person stands along, the origin
-being on the floor; below which the axis that the file is read with puts the person under the floor; and range of the
-height of a body's lowest marker beyond which the body does not lie."""
+LOWEST_PERCENT = 1.0
+"""Percentile of heights that counts as the lowest: single samples may be ghosts."""
+
+FLOOR_M = (-0.05, 0.15)
+"""Heights over the origin of the lowest markers of a person who stands on a floor there: those of soles to ankles. With
+lower ones along an axis the person would be under the floor."""
+
+RISES_M = 0.3
+"""Range of the height of a body's lowest marker beyond which the body does not lie."""
 
 SMALL = ("head", "neck", "hand", "foot", "toes")
 """Segments too small for their markers to show a person's size: names of fingers or of a jaw mean no exact place."""
@@ -254,7 +259,7 @@ def _on_floor(capture: Capture, axis: str) -> bool:
     stands = FLOOR_M[0] <= np.nanpercentile(along, LOWEST_PERCENT) <= FLOOR_M[1]
     lowest = np.nanmin(up[markers.present.any(axis=1)], axis=1)
     rises = np.subtract(*np.percentile(lowest, (100.0 - LOWEST_PERCENT, LOWEST_PERCENT)))
-    return bool(stands and (np.nanpercentile(up, LOWEST_PERCENT) < UNDER_FLOOR_M or rises > RISES_M))
+    return bool(stands and (np.nanpercentile(up, LOWEST_PERCENT) < FLOOR_M[0] or rises > RISES_M))
 
 
 def _stored(axis: str, matrix: Array) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.conventions import BoolArray
 from mbkf.model.body import Body
+from mbkf.numerics.printed import rounded
 from mbkf.sensors.holes import holes_of
 
 MOST_LANDMARKS = 3
@@ -33,7 +34,7 @@ class Hole(NamedTuple):
     @property
     def found(self) -> str:
         """Sentence on the segment and the spreads."""
-        sds = [f"{_plain(name)} by {sd:.0f}°" for name, sd in self.spread_deg.items()]
+        sds = [f"{_plain(name)} by {rounded(sd)}°" for name, sd in self.spread_deg.items()]
         uncertain = f"; uncertain (1 sd) are {', '.join(sds)}" if sds else ""
         return f"the {_plain(self.segment)} has no markers{uncertain}"
 
