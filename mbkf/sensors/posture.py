@@ -49,7 +49,7 @@ class PostureSettings:
 
     Attributes:
         posture_scale: Factor k on the body's table of spreads, per frame.
-        hole_posture_scale: The same factor for joints beside a segment without markers (:mod:`mbkf.sensors.holes`).
+        hole_posture_scale: Factor k for joints beside a segment without markers (:mod:`mbkf.sensors.holes`).
         unseen_posture: Factor on the prior's weight for unobserved joints: repeated in every frame, the full weight
             would soon outweigh earlier readings.
     """

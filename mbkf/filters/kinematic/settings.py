@@ -20,7 +20,7 @@ class KinematicSettings:
         gate: Squared Mahalanobis distance (3 readings) above which a marker is refused.
         gate_radius_m: Distance below which no marker is refused, m.
         posture_scale: The posture prior's spread is the body's table times this, per reading.
-        hole_posture_scale: The same for joints beside a segment without markers.
+        hole_posture_scale: Factor in place of `posture_scale` for joints beside a segment without markers.
         velocity_sd: Spread of a velocity about rest, rad/s or m/s, per reading; holds back the joints of segments
             none of whose markers is seen.
         restart_rms_m: A pose fit better than this is accepted to start or restart the filter, m.

@@ -75,7 +75,7 @@ def _joined(chosen: ChosenSet, static: Capture | None, trials: Sequence[Capture]
 def inferred_choice(
     static: Capture | None, trials: Sequence[Capture], body: BodyDescription | None = None
 ) -> ChosenSet:
-    """The same, always inferred.
+    """The marker set of a person's captures, always inferred.
 
     Args:
         static: A standing trial, if there is one.
