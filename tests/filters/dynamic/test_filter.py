@@ -16,6 +16,7 @@ from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
+from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import (
     DT,
@@ -32,7 +33,7 @@ from tests.dynamics import (
     standing,
     trial,
 )
-from tests.motions import assert_near, random_model, reference_model, worst
+from tests.motions import assert_near, protocol_sensor, random_model, reference_model, worst
 
 MODEL = reference_model()
 NV = MODEL.nv
@@ -353,3 +354,17 @@ def test_other_bodies_are_served_too():
     s = step.state
     torques = kalman.balance.tau(s.q, s.v, s.a, s.w)
     assert worst(torques[6:] - kalman.balance.tau(q, 0 * s.v, 0 * s.a, half.ravel())[6:]) < 3.0
+
+
+@pytest.mark.parametrize("scale", [1.0, 3.0])
+def test_joints_beside_an_unmarked_segment_are_nearer_to_the_usual_posture(scale):
+    """The prior's spreads are those of the body's table times one scale or the other."""
+    sensor, names = protocol_sensor(MODEL)
+    rest = [name for name, segment in zip(names, sensor.segments, strict=True) if segment != "right_thigh"]
+    bare = dynamic_filter(MODEL, keep=rest, posture_scale=scale)
+    (prior,) = [block for block in bare.blocks if isinstance(block, PosturePrior)]
+    known = prior.prepare(at_rest(MODEL, STANDING, HALF), None).information.matrix
+    usual = prior.sensor.weights(1.0, np.zeros(NV, dtype=bool)) ** 2
+    for side, factor in (("right", SETTINGS.posture.hole_posture_scale), ("left", scale)):
+        knee = MODEL.joint(f"{side}_shank").v.start + 1
+        assert known[knee, knee] == pytest.approx(usual[knee] / factor**2)
