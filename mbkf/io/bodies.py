@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.numerics.percentiles import known_percentiles
 from mbkf.numerics.runs import spread_indices
 
 Indices = NDArray[np.intp]
@@ -107,12 +108,8 @@ def _two_bodies(shown: Array) -> BoolArray | None:
     if shown.shape[1] < 2 * FEWEST_POINTS:
         return None
     apart = np.linalg.norm(shown[:, :, None] - shown[:, None], axis=-1)
-    together = ~np.isnan(apart).all(axis=0)
-    apart[:, ~together] = np.inf
-    low, middle, high = np.nanpercentile(apart, (5.0, 50.0, 95.0), axis=0)
-    with np.errstate(invalid="ignore"):
-        spread = np.where(together, high - low, 0.0)
-    weight = np.exp(-(middle**2 + (SPREAD * spread) ** 2) / LINK_M**2)
+    low, middle, high = known_percentiles(apart, (5.0, 50.0, 95.0))
+    weight = np.nan_to_num(np.exp(-(middle**2 + (SPREAD * (high - low)) ** 2) / LINK_M**2))
     np.fill_diagonal(weight, 0.0)
     cuts = [cut for cut in _cuts(weight) if cut.value <= _most_cut(_across_m(shown, cut.first))]
     return min(cuts, key=lambda cut: cut.value).first if cuts else None
@@ -144,8 +141,15 @@ def _most_cut(across_m: float) -> float:
 
 
 def _across_m(shown: Array, first: BoolArray) -> float:
-    """Smaller extent of two parts across the line between their middles; 0 where these are too near."""
-    parts = shown[:, first], shown[:, ~first]
+    """Smaller extent of two parts across the line between their middles; 0 where these are too near.
+
+    Frames with points of both count; where these are few, one part may be the other under new names.
+    """
+    seen = ~np.isnan(shown[:, :, 0])
+    both = seen[:, first].any(axis=1) & seen[:, ~first].any(axis=1)
+    if both.mean() < LEAST_SEEN:
+        return 0.0
+    parts = shown[both][:, first], shown[both][:, ~first]
     middles = [np.nanmedian(part, axis=1) for part in parts]
     between = middles[1] - middles[0]
     far = np.linalg.norm(between, axis=1)

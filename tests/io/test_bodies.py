@@ -38,5 +38,14 @@ def test_upper_and_lower_half_are_one_person():
     assert [len(body) for body in bodies_of(places * [1, 0.5, 1])] == [24]
 
 
+@pytest.mark.parametrize(("gone", "bodies"), [(40, [12, 12]), (34, [12, 12]), (28, [24])])
+def test_a_person_who_comes_later_is_a_body(gone, bodies):
+    """Points that replace those before, as tracks of one person do, are not: both are seen in a fifth of the frames."""
+    places = np.concatenate([figure(1, [0, 0, 0]), figure(2, [0, 1.0, 0])], axis=1)
+    places[:20, 12:] = np.nan
+    places[gone:, :12] = np.nan
+    assert [len(body) for body in bodies_of(places)] == bodies
+
+
 def test_without_a_frame_all_columns_are_one_body():
     assert [len(body) for body in bodies_of(np.full((5, 24, 3), np.nan))] == [24]
