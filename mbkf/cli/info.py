@@ -69,7 +69,6 @@ def _show(summary: CaptureSummary, console: Console) -> None:
         console.print(_gaps(gaps[:_MOST_WITH_GAPS], len(gaps)))
     if summary.persons:
         console.print(_persons(summary.persons))
-        console.print("note: choose one of the persons with --person NAME", soft_wrap=True)
     if summary.plates:
         console.print(_plates(summary))
     if summary.events:
@@ -88,8 +87,9 @@ def _show(summary: CaptureSummary, console: Console) -> None:
 def _persons(persons: Sequence[PersonSummary]) -> Table:
     found = _bare("Persons", "name", "markers>", "height>", "middle (x, y)>")
     for one in persons:
-        x, y = one.place_m
-        found.add_row(one.name, str(one.markers), f"{one.height_m:.2f} m", f"{x:.2f}, {y:.2f} m")
+        height = "never seen" if one.height_m is None else f"{one.height_m:.2f} m"
+        place = "" if one.place_m is None else "{:.2f}, {:.2f} m".format(*one.place_m)
+        found.add_row(one.name, str(one.markers), height, place)
     return found
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mbkf.errors import InvalidInput, MbkfError, UnknownName
+from mbkf.io.persons import several_persons
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
 from mbkf.model.protocol import detect_protocol
 from mbkf.numerics.runs import runs
@@ -159,7 +160,7 @@ class CaptureSummary:
         notes: Remarks of the reader.
         axes: The axes as read, and as the body shows them.
         protocol: The marker set: a shipped protocol or an inferred one, else the protocol that knows most of the names;
-            None without any.
+            None without any, and for several persons.
         refusal: Reason why `mbkf scale` takes no marker set by itself, with the remedy; "" where it takes one.
     """
 
@@ -197,6 +198,7 @@ def describe(capture: Capture) -> CaptureSummary:
     axes = find_axes_by_names(capture)
     found = _marker_set(capture)
     upright = _upright(capture, axes, found)
+    persons = persons_in(upright)
     seen = upright.markers.positions_m[present]
     extent = (tuple(seen.min(axis=0).tolist()), tuple(seen.max(axis=0).tolist())) if len(seen) else None
     return CaptureSummary(
@@ -218,15 +220,15 @@ def describe(capture: Capture) -> CaptureSummary:
             MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, len(runs(column)))
             for name, column in zip(markers.names, present.T, strict=True)
         ),
-        persons=summaries(upright, persons_in(upright)),
+        persons=summaries(upright, persons),
         plates=tuple(_plate(plate) for plate in upright.plates),
         derived=dict(Counter(point.kind for point in capture.derived)),
         channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),
         events=capture.events,
         notes=capture.notes,
         axes=_axes(capture, axes, upright),
-        protocol=_protocol(capture, found),
-        refusal=found if isinstance(found, str) else "",
+        protocol=None if persons else _protocol(capture, found),
+        refusal=several_persons(persons) if persons else found if isinstance(found, str) else "",
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.persons import PersonMarkers, named_persons, persons_by_shape, several_persons
 from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.numerics.percentiles import known_percentiles
 from mbkf.numerics.runs import spread_indices
 from mbkf.trial.protocol.inferred import infer_marker_set
 
@@ -29,14 +30,14 @@ class PersonSummary:
     Attributes:
         name: Name or number, as ``--person`` takes it.
         markers: Number of markers.
-        height_m: Median height of the highest marker above the lowest, in m.
-        place_m: (x, y) median of the markers, in m.
+        height_m: Median height of the highest marker above the lowest, in m; None where no marker is seen.
+        place_m: (x, y) median of the markers, in m; None where no marker is seen.
     """
 
     name: str
     markers: int
-    height_m: float
-    place_m: tuple[float, float]
+    height_m: float | None
+    place_m: tuple[float, float] | None
 
 
 def persons_in(capture: Capture) -> tuple[PersonMarkers, ...]:
@@ -74,6 +75,8 @@ def summaries(capture: Capture, found: Sequence[PersonMarkers]) -> tuple[PersonS
 
 def _summary(name: str, markers: MarkerTrajectories) -> PersonSummary:
     places = markers.positions_m[markers.present.any(axis=1)]
+    if not len(places):
+        return PersonSummary(name, len(markers.names), None, None)
     heights = np.nanmax(places[:, :, 2], axis=1) - np.nanmin(places[:, :, 2], axis=1)
     x, y = np.nanmedian(places[:, :, :2], axis=(0, 1))
     return PersonSummary(name, len(markers.names), float(np.median(heights)), (float(x), float(y)))
@@ -101,5 +104,5 @@ def _bends(markers: MarkerTrajectories) -> bool:
     shown = markers.positions_m[spread_indices(markers.frames, FRAMES)]
     apart = np.linalg.norm(shown[:, :, None] - shown[:, None], axis=3)
     both = np.isfinite(apart).sum(axis=0) >= 0.5 * len(shown)
-    low, high = np.nanpercentile(np.where(both, apart, 0.0), (5.0, 95.0), axis=0)
+    low, high = known_percentiles(apart, (5.0, 95.0))
     return bool(np.percentile((high - low)[both], 90.0) >= BENDS_M) if both.any() else False

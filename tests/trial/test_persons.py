@@ -1,11 +1,14 @@
 """Several persons in a capture: listed, refused without a choice, and no object taken for one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.trial.info import describe
 from mbkf.trial.persons import check_one_person, persons_in, summaries
 from mbkf.trial.scale import scale
 from tests.io.test_persons import NAMES, figure, together
@@ -17,6 +20,14 @@ def test_persons_by_name_are_listed_with_their_size_and_place():
     assert (first.name, first.markers, second.name) == ("A", 12, "B")
     assert first.height_m == pytest.approx(1.65, abs=0.05)
     assert np.subtract(second.place_m, first.place_m) == pytest.approx([0.0, 1.0], abs=0.1)
+
+
+def test_a_person_who_is_never_seen_has_no_place(tmp_path):
+    both = together([f"A:{name}" for name in NAMES], [f"B:{name}" for name in NAMES])
+    hidden = np.where([[[name.startswith("B")] for name in both.names]], np.nan, both.positions_m)
+    found = describe(Capture("a", replace(both, positions_m=hidden)))
+    assert [(one.name, one.place_m is None) for one in found.persons] == [("A", False), ("B", True)]
+    assert found.protocol is None and "choose one with --person" in found.refusal
 
 
 def test_a_box_beside_a_person_is_no_person():
