@@ -54,7 +54,9 @@ def weighed(subject: Subject, captures: Sequence[Capture]) -> Subject:
         elif finding.better is not None and finding.expected_sd is not None:
             found.append((finding.expected_sd, finding.better, Path(capture.path).name))
     if not found:
-        raise InvalidInput(f"the plates do not give the body mass ({why}){GIVE_MASS}")
+        stated = [one.subject_mass_kg for one in captures if one.subject_mass_kg is not None]
+        leave = f"; {stated[0]:.1f} kg, which a capture states, is used without --mass" if stated else ""
+        raise InvalidInput(f"the plates do not give the body mass ({why}){leave}{GIVE_MASS}")
     sd, mass_kg, name = min(found)
     note: dict[str, object] = {"kg": mass_kg, "sd_percent": sd, "capture": name}
     report = {key: value for key, value in subject.report.items() if key != PLATES_KEY}

@@ -34,5 +34,8 @@ def test_captures_that_tell_nothing_do_not_count():
 
 
 def test_no_plates_tell_no_mass():
-    with pytest.raises(InvalidInput, match=r"no capture has plates.*--mass KG"):
-        weighed(person(), [replace(recorded("squat"), plates=())])
+    bare = replace(recorded("squat"), plates=(), subject_mass_kg=None)
+    with pytest.raises(InvalidInput, match=r"no capture has plates\); give --mass KG"):
+        weighed(person(), [bare])
+    with pytest.raises(InvalidInput, match=r"; 66\.0 kg, which a capture states, .*; give --mass KG"):
+        weighed(person(), [bare, replace(bare, subject_mass_kg=66.0)])

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.conventions import BoolArray
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
+from mbkf.io.persons import named_persons, several_persons
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, match_names
 from mbkf.scaling.frames import MIN_MARKERS
@@ -19,12 +20,14 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
     """The capture's trajectories of the subject's markers, under the subject's names.
 
     Raises:
-        NotObservable: There are too few of them.
+        NotObservable: There are too few of them, or they are those of several persons.
     """
     found = match_names(markers.names, subject.markers)
     if len(found) < MIN_MARKERS and all(name.startswith("*") for name in markers.names):
         raise NotObservable("no marker of the capture has a name; name them with 'mbkf label'")
     if len(found) < MIN_MARKERS:
+        if persons := named_persons(markers):
+            raise NotObservable(several_persons(persons))
         raise NotObservable(
             f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
             f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}: "

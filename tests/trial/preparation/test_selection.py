@@ -36,6 +36,12 @@ def test_markers_come_under_the_subjects_names_and_strangers_are_left_out(subjec
     )
 
 
+def test_persons_with_other_names_are_listed(subject):
+    names = [f"{who}:M{k}" for who in ("Anna", "Ben") for k in range(7)]
+    with pytest.raises(NotObservable, match=r"2 persons: Anna \(7 markers\), Ben .*--person NAME"):
+        subject_markers(trajectories(names), subject)
+
+
 def test_points_without_names_are_to_be_named(subject):
     with pytest.raises(NotObservable, match="name them with 'mbkf label'"):
         subject_markers(trajectories([f"*{k}" for k in range(8)]), subject)
