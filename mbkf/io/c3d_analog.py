@@ -90,12 +90,12 @@ def raw_plates(
 def _plate_count(parameters: C3dParameters, notes: list[str]) -> int:
     """Number of plates: USED or, where that is missing or cannot be a number, as many as TYPE lists."""
     used = parameters.numbers("FORCE_PLATFORM", "USED").ravel()
-    if used.size and used[0] >= 0.0:
+    if used.size and np.isfinite(used[0]) and used[0] >= 0.0:
         return int(used[0])
     listed = parameters.numbers("FORCE_PLATFORM", "TYPE").size
     if listed:
         found = f"{used[0]:g}" if used.size else "missing"
-        notes.append(f"FORCE_PLATFORM:USED is {found}; TYPE lists {listed} plates, which are read")
+        notes.append(f"FORCE_PLATFORM:USED is {found}; the number of plates is that of TYPE, {listed}")
     return listed
 
 
@@ -216,7 +216,7 @@ def events(content: C3dContent, notes: list[str]) -> tuple[CaptureEvent, ...]:
         seconds = np.atleast_1d(60.0 * times[0] + times[1]).tolist()
         more = [""] * len(seconds)
         notes += [
-            f"{group}:{name} holds {len(texts)} of {len(seconds)} events; the others have none"
+            f"{group}:{name} lacks {len(seconds) - len(texts)} of {len(seconds)} events"
             for name, texts in (("LABELS", labels), ("CONTEXTS", contexts))
             if len(texts) < len(seconds)
         ]

@@ -13,6 +13,9 @@ _ALIKE = 2e-3
 ENTRIES = ("POINT:RATE", "its header", "ANALOG:RATE over the samples per frame")
 """The places of a frame rate, the one that holds where all are possible first."""
 
+ANALOG = 2
+"""Index of the last one, which counts samples instead of frames: a rate by it alone has a remark."""
+
 
 def frame_rate(path: Path, stated_hz: float, header_hz: float, analog_hz: float) -> tuple[float, list[str]]:
     """The frame rate in Hz, and a remark where an entry contradicts it.
@@ -40,12 +43,13 @@ def frame_rate(path: Path, stated_hz: float, header_hz: float, analog_hz: float)
     rate_hz = values[chosen]
     others = [
         f"{name} {value:g} Hz"
-        for i, (name, value) in enumerate(zip(ENTRIES[:2], values[:2], strict=True))
+        for i, (name, value) in enumerate(zip(ENTRIES[:ANALOG], values[:ANALOG], strict=True))
         if i != chosen and value and not _alike(value, rate_hz)
     ]
-    if not others:
+    if not others and chosen < ANALOG:
         return rate_hz, []
-    return rate_hz, [f"the frame rate is {rate_hz:g} Hz by {ENTRIES[chosen]}; not used: {', '.join(others)}"]
+    unused = f"; not used: {', '.join(others)}" if others else ""
+    return rate_hz, [f"the frame rate is {rate_hz:g} Hz by {ENTRIES[chosen]}{unused}"]
 
 
 def _alike(one_hz: float, other_hz: float) -> bool:

@@ -24,7 +24,8 @@ COMMENT = "#"
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
 _LEAST_WHOLE = 3
-"""Numbers without a comma in a row whose commas may be those of thousands: frame, time, and a coordinate."""
+"""Numbers without a comma in a row whose commas may be those of thousands: frame, time, and a coordinate. Zeros alone
+are no evidence: tables with decimal commas write them without one."""
 
 _UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 
@@ -109,7 +110,12 @@ def _check_thousands(cells: Sequence[str], path: Path, line: int) -> None:
     """Refuses a row of whole numbers, some with a comma before their last three digits: "1,234" beside "567"."""
     stripped = [cell.strip() for cell in cells if cell.strip()]
     commas = [cell for cell in stripped if "," in cell]
-    if len(stripped) - len(commas) >= _LEAST_WHOLE and all(_THOUSANDS.fullmatch(cell) for cell in commas):
+    whole = [cell for cell in stripped if "," not in cell]
+    if (
+        len(whole) >= _LEAST_WHOLE
+        and set(whole) != {"0"}
+        and all(_THOUSANDS.fullmatch(cell) for cell in commas)
+    ):
         reason = f"'{commas[0]}' beside whole numbers may be a thousand or a decimal"
         raise FileFormatError(path, f"{reason}; export the file without commas for thousands", line)
 

@@ -140,13 +140,13 @@ def test_a_missing_origin_is_reported(tmp_path):
     assert len(capture.plates) == 1 and any("lacks FORCE_PLATFORM:ORIGIN" in note for note in capture.notes)
 
 
-@pytest.mark.parametrize("used", [None, -1])
+@pytest.mark.parametrize("used", [None, -1, np.inf])
 def test_plates_that_are_not_counted_are_those_of_their_types(tmp_path, used):
     extra = {} if used is None else {("FORCE_PLATFORM", "USED"): used}
     path = made(tmp_path / "a.c3d", Plate(2, channels()), Plate(2, channels()), extra=extra)
     path = renamed(path, b"USED") if used is None else path
     capture = read_c3d(path, CaptureOptions())
-    assert len(capture.plates) == 2 and any("TYPE lists 2 plates" in note for note in capture.notes)
+    assert len(capture.plates) == 2 and any("plates is that of TYPE, 2" in note for note in capture.notes)
 
 
 def test_channels_in_one_row_are_shared_out_among_the_plates(tmp_path):
@@ -187,7 +187,7 @@ def test_fewer_labels_than_events_are_reported(tmp_path):
     }
     capture = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions())
     assert [event.label for event in capture.events] == ["A", ""]
-    assert "EVENT:LABELS holds 1 of 2 events; the others have none" in capture.notes
+    assert "EVENT:LABELS lacks 1 of 2 events" in capture.notes
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,11 @@ def test_commas_are_decimal_in_a_row_without_points(tmp_path):
             numbers(cells, tmp_path, 3)
 
 
+def test_zeros_without_a_comma_are_no_evidence_of_thousands(tmp_path):
+    cells = ["1,005", "0", "0", "0", "", "0"]
+    np.testing.assert_array_equal(numbers(cells, tmp_path, 4), [1.005, 0, 0, 0, np.nan, 0])
+
+
 @pytest.mark.parametrize("cells", [["1", "0", "1,234", "567", "-8,901"], ["1", "0", "999", "", "1,234"]])
 def test_commas_of_thousands_in_a_row_of_whole_numbers_are_no_decimals(tmp_path, cells):
     with pytest.raises(FileFormatError, match="line 4: '1,234' beside whole numbers may be a thousand"):
