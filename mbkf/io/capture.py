@@ -177,11 +177,11 @@ def read_capture(
         plates=forces is None,
         unneeded_plates=tuple(unneeded_plates),
     )
-    capture = one_person(_declared(kind.read(path, options), up), person)
+    capture = _declared(kind.read(path, options), up)
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
     capture = plausible(_with_left_out(capture, options), None if forces is None else Path(forces))
-    capture = without_others_plates(capture)
+    capture = without_others_plates(one_person(capture, person))
     if matrix is None:
         return capture
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)

@@ -72,7 +72,8 @@ def named_persons(markers: MarkerTrajectories) -> tuple[PersonMarkers, ...]:
         )
     found = persons_by_shape(markers)
     if found:
-        return found if _mostly_twins(found) else ()
+        named = tuple(one for one in found if _has_twin(one, found))
+        return named if len(named) > 1 else ()
     parts = twins(markers.names, markers.positions_m)
     if parts is None:
         return ()
@@ -115,14 +116,11 @@ def _owner(name: str, affixes: Sequence[Affix], sets: Sequence[Sequence[str]]) -
     return by_name[0] if len(by_name) == 1 else next(k for k, own in enumerate(sets) if name in own)
 
 
-def _mostly_twins(found: Sequence[PersonMarkers]) -> bool:
-    """True where each person's markers have many names of another one's."""
-    bases = [set(one.own.values()) for one in found]
-    return all(
-        max(len(own & other) for other in bases if other is not own)
-        >= max(FEWEST_MARKERS, SAME_SHARE * len(own))
-        for own in bases
-    )
+def _has_twin(one: PersonMarkers, found: Sequence[PersonMarkers]) -> bool:
+    """True where a person's markers have many names of another one's."""
+    own = set(one.own.values())
+    common = max(len(own & set(other.own.values())) for other in found if other is not one)
+    return common >= max(FEWEST_MARKERS, SAME_SHARE * len(own))
 
 
 def one_person(capture: Capture, person: str | None) -> Capture:

@@ -48,9 +48,8 @@ def persons_in(capture: Capture) -> tuple[PersonMarkers, ...]:
     """
     if found := named_persons(capture.markers):
         return found
-    shapes = persons_by_shape(capture.markers)
-    found = tuple(one for one in shapes if _is_body(capture, one))
-    return shapes if len(found) > 1 else ()
+    found = tuple(one for one in persons_by_shape(capture.markers) if _is_body(capture, one))
+    return found if len(found) > 1 else ()
 
 
 def check_one_person(capture: Capture) -> None:

@@ -115,6 +115,20 @@ def test_persons_without_any_common_name_are_told_apart_by_distances():
     np.testing.assert_array_equal(chosen.markers.positions_m, both.select(chosen.markers.names).positions_m)
 
 
+def test_persons_with_names_alike_are_persons_beside_a_box_with_others():
+    both = together([f"{name}_A" for name in NAMES], [f"{name}_B" for name in NAMES])
+    box = np.repeat(np.random.default_rng(3).uniform(0.0, 1.0, (1, 25, 3)) + [0.0, 3.0, 0.0], 40, axis=0)
+    markers = MarkerTrajectories(
+        (*both.names, *(f"box{k}" for k in range(25))),
+        np.concatenate([both.positions_m, box], axis=1),
+        100.0,
+    )
+    assert [(one.name, list(one.own.values())) for one in named_persons(markers)] == [
+        ("A", NAMES),
+        ("B", NAMES),
+    ]
+
+
 def test_sides_and_numbers_of_one_body_are_no_persons():
     halves = np.concatenate([figure(1, [0, 0, 0]), figure(1, [0, 0.3, 0])], axis=1)
     for one, other in (("R{}", "L{}"), ("{}1", "{}2"), ("{}", "{}_2")):

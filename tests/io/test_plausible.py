@@ -54,6 +54,21 @@ def test_impossible_rates_are_refused(rate_hz):
         plausible(Capture("x", replace(MARKERS, rate_hz=rate_hz)))
 
 
+def test_far_samples_are_missing_before_persons_are_sought(tmp_path):
+    points = [[10.0 * k, 20.0 * k, 5.0 * k] for k in range(1, 25)]
+    points[3][1] = 1e200
+    rows = [[t, t / 100.0, *np.ravel(points)] for t in range(4)]
+    path = tmp_path / "x.trc"
+    names = "\t\t\t".join(f"M{k}" for k in range(24))
+    path.write_text(
+        "PathFileType\t4\t(X/Y/Z)\tx.trc\n"
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t4\t24\tmm\n"
+        f"Frame#\tTime\t{names}\n\t\tX1\tY1\tZ1\n"
+        + "".join("\t".join(map(str, row)) + "\n" for row in rows)
+    )
+    assert read_capture(path).markers.present[0].sum() == 23
+
+
 def test_a_file_is_read_that_way(tmp_path):
     points = standing_points(20)
     points[3, 2] = 1e9
