@@ -20,27 +20,11 @@ from mbkf.numerics.runs import spread_indices
 Indices = NDArray[np.intp]
 
 SIDES = frozenset(
-    {
-        "l",
-        "r",
-        "left",
-        "right",
-        "lt",
-        "rt",
-        "lft",
-        "rgt",
-        "links",
-        "rechts",
-        "li",
-        "re",
-        "dx",
-        "sx",
-        "der",
-        "izq",
-    }
-    | {"izquierda", "derecha", "droite", "gauche", "droit", "destra", "sinistra", "d", "g", "s", "i", "e"}
+    {"l", "r", "lt", "rt", "lft", "rgt", "left", "right", "li", "re", "links", "rechts"}
+    | {"g", "d", "gauche", "droite", "droit", "s", "sx", "dx", "sinistra", "destra"}
+    | {"i", "izq", "izquierda", "der", "derecha", "e"}
 )
-"""Words beside a name that state a side of the body."""
+"""Words beside a name that state a side of the body: English, German, French, Italian, Spanish, Portuguese."""
 
 MOSTLY, RARELY = 0.9, 0.1
 """Share of a person's names that have the person's affix at least, and of another person's at most."""

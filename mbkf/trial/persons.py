@@ -19,8 +19,8 @@ from mbkf.numerics.runs import spread_indices
 from mbkf.trial.protocol.inferred import infer_marker_set
 
 MANY, BENDS_M, FRAMES = 20, 0.05, 60
-"""Number of points that move among each other and are no stray ones, change of the distance of the upper tenth of their
-pairs, and frames that are looked at."""
+"""Points from which on a body needs no marker set if it bends, least change of the distances of a tenth of their pairs,
+and frames that are looked at."""
 
 
 @dataclass(frozen=True)

@@ -117,10 +117,10 @@ def test_persons_without_any_common_name_are_told_apart_by_distances():
 
 def test_persons_with_names_alike_are_persons_beside_a_box_with_others():
     both = together([f"{name}_A" for name in NAMES], [f"{name}_B" for name in NAMES])
-    box = np.repeat(np.random.default_rng(3).uniform(0.0, 1.0, (1, 25, 3)) + [0.0, 3.0, 0.0], 40, axis=0)
+    corners = np.random.default_rng(3).uniform([0.0, 3.0, 0.0], [1.0, 4.0, 1.0], (1, 25, 3))
     markers = MarkerTrajectories(
         (*both.names, *(f"box{k}" for k in range(25))),
-        np.concatenate([both.positions_m, box], axis=1),
+        np.concatenate([both.positions_m, np.repeat(corners, 40, axis=0)], axis=1),
         100.0,
     )
     assert [(one.name, list(one.own.values())) for one in named_persons(markers)] == [

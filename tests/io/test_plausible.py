@@ -63,8 +63,7 @@ def test_far_samples_are_missing_before_persons_are_sought(tmp_path):
     path.write_text(
         "PathFileType\t4\t(X/Y/Z)\tx.trc\n"
         "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t4\t24\tmm\n"
-        f"Frame#\tTime\t{names}\n\t\tX1\tY1\tZ1\n"
-        + "".join("\t".join(map(str, row)) + "\n" for row in rows)
+        f"Frame#\tTime\t{names}\n\t\tX1\tY1\tZ1\n" + "".join("\t".join(map(str, row)) + "\n" for row in rows)
     )
     assert read_capture(path).markers.present[0].sum() == 23
 
