@@ -68,13 +68,10 @@ def raw_plates(
     """
     analog, parameters = content.analogs, content.parameters
     count = _plate_count(parameters, notes)
-    listed = parameters.numbers("FORCE_PLATFORM", "CHANNEL")
-    rows = len(listed) // count if listed.ndim == 1 and count else -1
-    channels = parameters.per_plate("CHANNEL", (rows,)) if listed.size else []
+    channels = _channels(parameters, count)
     wired = []
     for i in range(count):
-        indices = channels[i].astype(int) - 1 if i < len(channels) else np.zeros(0, dtype=int)
-        indices = indices[indices >= 0]
+        indices = channels[i] if i < len(channels) else np.zeros(0, dtype=int)
         if analog.size and indices.size:
             wired.append((str(i + 1), (i, indices)))
         else:
@@ -97,6 +94,14 @@ def _plate_count(parameters: C3dParameters, notes: list[str]) -> int:
         found = f"{used[0]:g}" if used.size else "missing"
         notes.append(f"FORCE_PLATFORM:USED is {found}; the number of plates is that of TYPE, {listed}")
     return listed
+
+
+def _channels(parameters: C3dParameters, count: int) -> list[NDArray[np.int_]]:
+    """Indices of each plate's channels, from 0, of a table or of a list that the plates share equally."""
+    listed = parameters.numbers("FORCE_PLATFORM", "CHANNEL")
+    rows = len(listed) if listed.ndim > 1 else listed.size // max(count, 1)
+    numbers = parameters.per_plate("CHANNEL", (rows,)) if rows else []
+    return [(one[one >= 1.0] - 1.0).astype(int) for one in numbers]
 
 
 def _raw_plate(path: Path, content: C3dContent, unit: str, i: int, indices: NDArray[np.int_]) -> RawPlate:

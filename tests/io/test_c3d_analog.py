@@ -125,6 +125,14 @@ def test_plates_without_channels_or_with_absent_ones_are_left_out(tmp_path):
     assert "names channel 8, the file has 6" in beyond.left_out["1"]
 
 
+@pytest.mark.parametrize("channel", [7.0, np.arange(1.0, 3.0), np.zeros((6, 0))])
+def test_fewer_channels_than_plates_belong_to_nobody(tmp_path, channel):
+    extra = {("FORCE_PLATFORM", "CHANNEL"): channel, ("FORCE_PLATFORM", "USED"): 3}
+    options = CaptureOptions()
+    assert read_c3d(made(tmp_path / "a.c3d", Plate(2, channels()), extra=extra), options).plates == ()
+    assert list(options.left_out) == ["1", "2", "3"]
+
+
 def renamed(path, name):
     """The file without a parameter of FORCE_PLATFORM, whose name becomes another."""
     content = path.read_bytes()
