@@ -179,8 +179,9 @@ def _of_folder(args: argparse.Namespace) -> Subject:
     from mbkf.study.batch.sorting import one_person
 
     person = replace(person_of_folder(Path(args.static)), **_stated(args))
+    read = _Reader(args)
     if person.unsorted:
-        person = one_person(person)
+        person = one_person(person, read)
     if args.trial:
         stated = {name: getattr(person, name) for name in ("mass_kg", "height_m", "protocol")}
         return _of_captures(args, next(iter(person.statics), None), stated)
@@ -189,7 +190,6 @@ def _of_folder(args: argparse.Namespace) -> Subject:
             "--forces belongs to trials that are named; name them with --trial, or lay the file beside its trial"
         )
     person = replace(person, static_only=args.static_only or person.static_only)
-    read = _Reader(args)
     with stages() as report:
         subject = scaled(person, report, body=args.body, settings=_settings(args), read=read)
     read.check()

@@ -36,7 +36,7 @@ def stated_sd(
         magnetic_field: (T, 3) in the sensor's axes, µT, NaN where missing; None where it was not used.
         rate_hz: Sample rate.
         settings: Offsets, delays and the noise that makes the filter's memory.
-        smooth: Whether later samples count as earlier ones do.
+        smooth: True where later samples count as earlier ones do.
     """
     s = settings
     turning = np.nan_to_num(rotate(quaternion, angular_velocity_rad_s))

@@ -26,6 +26,8 @@ _LEAST_SAMPLES, _FULLER = 20, 8.0
 for a bin of the same width. On sound public recordings (BROAD, qmt, gaitmap) it is at most 4."""
 
 _SAME_LIMIT = 0.01
+"""Relative difference of two limits of one range: readings gather in the last hundredth below it."""
+
 _SCALES = (1.25, 1.5, 2.0, 2.5)
 _BETTER = 0.03
 _WINDOW_S, _MOST_WINDOWS = 2.0, 40

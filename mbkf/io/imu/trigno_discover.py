@@ -21,7 +21,7 @@ from mbkf.io.imu.signals import Signal, readings_of
 
 _MARK, _LINE_BYTES = b"Trigno Discover", 1000
 _CHANNEL = re.compile(r"(ACC|GYRO) ([XYZ])( Time Series)? \(", re.IGNORECASE)
-_RATE = re.compile(r"([0-9.]+) ?Hz", re.IGNORECASE)
+_RATE = re.compile(r"(\d+(?:\.\d+)?) ?Hz", re.IGNORECASE)
 _KINDS = {"ACC": ("acc", GRAVITY_M_S2), "GYRO": ("gyr", np.pi / 180.0)}
 _MOST_HEADER_LINES = 20
 
@@ -72,18 +72,20 @@ def _sensors(row: Sequence[str]) -> list[str]:
 def _channels(
     path: Path, titles: Sequence[str], rates: Sequence[str], sensors: Sequence[str], table: Array
 ) -> dict[tuple[str, str, str], tuple[Array, Array]]:
-    """Times and values of each channel, by sensor, quantity and axis."""
+    """Times and values of each channel up to its last cell, by sensor, quantity and axis; blanks before it are NaN."""
     found = {}
     for column, title in enumerate(titles):
         named = _CHANNEL.match(title)
         if named is None or named[3]:
             continue
-        there = np.isfinite(table[:, column])
-        values = table[there, column]
         before = _CHANNEL.match(titles[column - 1]) if column else None
+        is_timed = before is not None and before[3] is not None
+        filled = np.flatnonzero(np.isfinite(table[:, column - 1 if is_timed else column]))
+        rows = filled if is_timed else np.arange(filled[-1] + 1 if len(filled) else 0)
+        values = table[rows, column]
         rate = _RATE.search(rates[column]) if column < len(rates) else _RATE.search(title)
-        if before is not None and before[3]:
-            times = table[there, column - 1]
+        if is_timed:
+            times = table[rows, column - 1]
         elif rate is not None and float(rate[1]) > 0.0:
             times = np.arange(len(values)) / float(rate[1])
         else:

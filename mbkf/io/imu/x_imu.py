@@ -66,7 +66,7 @@ def _stated_rate(registers: Path) -> float | None:
     """Rate of calibrated readings in Hz by a file of registers, None without the file or the register.
 
     Raises:
-        FileFormatError: The register says that none are sent, or holds no rate.
+        FileFormatError: The register switches the readings off, or holds no rate.
     """
     if not registers.is_file():
         return None

@@ -147,7 +147,7 @@ class Plan:
         )
 
     def with_persons(self, sorted_: Mapping[Person, Sorted | str]) -> Plan:
-        """The same with captures sorted into persons; one that belongs to nobody has that as its fault.
+        """Replaces the persons of sorted captures; a capture without an owner gets the reason as its fault.
 
         Args:
             sorted_: By person, the owners of the captures, or a reason why they could not be compared.
@@ -210,8 +210,7 @@ def _with_owner(trial: Trial, captures: Sorted | str | None) -> Trial:
         return trial
     if isinstance(captures, str):
         return replace(trial, fault=captures)
-    nobody = replace(trial.person, unsorted=(), hosts=())
-    person = captures.persons.get(trial.path, nobody)
+    person = captures.persons.get(trial.path, replace(trial.person, unsorted=(), hosts=()))
     return replace(trial, person=person, fault=captures.faults.get(trial.path, ""))
 
 

@@ -27,7 +27,6 @@ from mbkf.trial.weighing import PROVISIONAL_KG
 
 STAGE = "Comparing captures"
 
-
 MOST_LISTED = 3
 """Trials of a group that a message names."""
 
@@ -63,7 +62,7 @@ class _Group:
 def sorted_captures(
     person: Person, read: Callable[..., Capture] | None = None, progress: StageCallback = ignored
 ) -> Sorted:
-    """The persons of captures that nothing states the person of, and the reasons for those of nobody.
+    """Sorts captures whose person nothing states: their persons, and the reasons for captures without an owner.
 
     Args:
         person: The person as the folder shows it, with the captures in ``unsorted``.
@@ -88,19 +87,21 @@ def sorted_captures(
     return sorting.result()
 
 
-def one_person(person: Person) -> Person:
+def one_person(person: Person, read: Callable[..., Capture] | None = None) -> Person:
     """The person of a folder whose captures are all one person's.
 
     Args:
         person: The person as the folder shows it, with the captures in ``unsorted``.
+        read: Reads a capture, as :func:`mbkf.read_capture` does.
 
     Raises:
         InvalidInput: The markers show several persons, or were put on anew.
     """
-    found = sorted_captures(person).persons.values()
+    found = sorted_captures(person, read).persons.values()
     owners = {one.place: one for one in found}
     if len(owners) > 1:
-        raise InvalidInput(f"{next(iter(found)).remarks[-1]}; {REMEDY}")
+        groups = next(iter(found)).remarks[len(person.remarks)]
+        raise InvalidInput(f"{groups}; {REMEDY}")
     return next(iter(found), replace(person, unsorted=()))
 
 
@@ -167,8 +168,8 @@ class _Sorting:
     def trial(self, files: Files, look: Capture | str) -> None:
         """Adds a trial to the group that it belongs to.
 
-        A trial that belongs to none is refused where a standing trial has markers to compare it with, and else the
-        first one of a new group.
+        A trial without a group is refused where a standing trial has markers to compare it with; else it is the first
+        one of a new group.
 
         Args:
             files: The trial.
@@ -193,7 +194,7 @@ class _Sorting:
             self._open[files.path] = f"{files.path.name}: its markers fit no body; {REMEDY}"
 
     def result(self) -> Sorted:
-        """The persons of the captures, and the reasons of those that belong to nobody."""
+        """The persons of the captures, and the reasons for captures without an owner."""
         plain = replace(self._person, unsorted=(), hosts=())
         found = [group for group in self.groups if group.trials]
         own = [group for group in found if group.host is None]
@@ -259,7 +260,7 @@ def _words(person: Person, same: list[list[_Group]], group: _Group, are_open: bo
             f"the markers were put on anew between {listed}, and lengths of bones agree: each session is scaled from "
             "its own captures"
         )
-    mass = "" if person.mass_kg is None else "; the mass in session.toml is used for neither"
+    mass = "" if person.mass_kg is None else "; the mass in session.toml is not used"
     by = "" if group.stands else ", moving ones: no standing trial has its markers"
     or_one = ", or one with markers put on anew (lengths of bones leave it open)" if are_open else ""
     return (

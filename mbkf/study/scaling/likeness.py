@@ -31,11 +31,11 @@ LEAST_PAIRS = 3
 
 SKIN_M, ANEW_M, SIZE = 0.003, 0.015, 0.05
 """Spread of a distance between trials of one session; between two sessions, with markers put on anew; and, as a share,
-between two persons."""
+between two persons. With :data:`DEGREES` and :data:`LOOSE` chosen on the persons that
+``benchmarks/strangers/mixed_folders.py`` names as chosen on."""
 
 DEGREES = 3.0
 """Degrees of freedom of Student's distribution of the changes: a marker that fell off changes few of the distances."""
-
 
 LOOSE = 0.05
 """Probability that skin or cloth moves the markers of a segment as far as putting them on anew would: shoulders in a

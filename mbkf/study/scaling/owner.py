@@ -28,7 +28,6 @@ OWN_BONES = -2.2
 """Powers of ten for another person below which bones agree. With markers put on anew, five made persons have −2.5 to
 −3.7 against their own bodies; persons of nearly one size, made and public, −2.0 and more against each other's."""
 
-
 MOST_FRAMES = 60
 """Evenly spread frames of a capture that are looked at."""
 
@@ -38,7 +37,7 @@ class Owner:
     """The reference that a trial belongs to.
 
     Attributes:
-        number: Its number; None where the trial belongs to none of them.
+        number: Its number; None where the trial belongs to no reference.
         found: Numbers of the comparison, a clause; empty where the markers are where they were.
     """
 
@@ -63,7 +62,7 @@ class Reference:
         self._standing = StandingMarkers(subject, checked_for_subject(capture, subject).markers)
         keypoints = sum(marker.correlated_m > 0.0 for marker in subject.markers)
         self.by_bones = 2 * keypoints > len(subject.markers)
-        """Key points that a network finds in videos are nowhere put on: bones alone tell persons apart."""
+        """Key points that a network finds in videos are nowhere put on: bones alone separate persons."""
 
     def places(self, capture: Capture) -> Places | None:
         """Changes of the markers' places in a trial; None where they cannot be compared, as key points cannot.

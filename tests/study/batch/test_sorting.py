@@ -90,7 +90,7 @@ def test_each_trial_gets_the_standing_trial_that_it_fits():
     assert (
         small.mass_kg is None and "2 persons: static1 (walk1, squat1); static2 (walk2)" in small.remarks[-1]
     )
-    assert "the mass in session.toml is used for neither" in small.remarks[-1]
+    assert "the mass in session.toml is not used" in small.remarks[-1]
 
 
 def test_a_trial_that_fits_no_standing_trial_is_refused_with_numbers_and_a_remedy():
