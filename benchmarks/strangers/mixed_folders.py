@@ -1,8 +1,9 @@
 """Mixed folders: captures of two to six persons in one folder, with their own names and with names that state nothing.
 
 Folders are put together from public captures and from persons made by us. The settings that separate persons by their
-movements (:mod:`mbkf.study.scaling.owner`) were chosen on the persons of :data:`CHOSEN_ON`; those of :data:`SHOWN_ON`
-show them. Captures of a folder whose names state nothing are cut, and state no mass, height or subject.
+movements (:mod:`mbkf.study.scaling.owner`) were chosen on the persons of :data:`CHOSEN_ON`; others are those of
+:data:`OTHERS`. Captures of a folder whose names state nothing are cut, and state no mass, height
+or subject.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ CHOSEN_ON: Mapping[str, Files] = {
     "rajagopal walk": Files("rajagopal_walk_run", "static_walk_1.trc", ("motion_capture_walk.trc",)),
     "adult": Files("foreign_truth/adult", "static.trc", ("walk/trial.trc", "squat/trial.trc")),
 }
-SHOWN_ON: Mapping[str, Files] = {
+OTHERS: Mapping[str, Files] = {
     "rehazenter": Files("rehazenter_walk", "2014001_ST_static.c3d", ("2014001_C1_01.c3d",)),
     "stoop": Files(
         "stoop_lift_box",
@@ -100,8 +101,9 @@ SHOWN_ON: Mapping[str, Files] = {
 }
 """Public persons, and made ones by their seeds. The bounds of lengths of bones (:mod:`mbkf.trial.checks.persons`) and
 of changed distances (:mod:`mbkf.study.scaling.likeness`), on which the settings build, had seen pairs of some of them.
-The standing trial of the landing is left out: of a marker set of other names, it cannot be compared and stands as
-another person's."""
+Folders of ric and of the landing failed at first. The axis that points up is given for ric, whose standing trial does
+not show it; the standing trial of the landing is left out, since of a marker set of other names it cannot be compared
+and stands as another person's."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +139,7 @@ CHOSEN_FOLDERS = (
     Folder(("adult", "rajagopal walk"), "one static"),
     Folder(("HC044A", "HC032A", "functional"), "moving"),
 )
-SHOWN_FOLDERS = (
+OTHER_FOLDERS = (
     Folder(("rehazenter", "stoop"), "own"),
     Folder(("stoop", "unipd", "bmc"), "own"),
     Folder(("fukuchi", "rehazenter"), "own"),
@@ -175,7 +177,7 @@ def mixed_folder_rows(data: Path, out: Path) -> list[Check]:
     """
     rows: list[Check] = []
     workers = LocalWorkers(cpu_count() or 1)
-    for title, folders in (("chosen on", CHOSEN_FOLDERS), ("shown on", SHOWN_FOLDERS)):
+    for title, folders in (("chosen on", CHOSEN_FOLDERS), ("other persons", OTHER_FOLDERS)):
         found = [
             _judged(folder, data, out / "mixed" / f"{title[:6]}{n}", workers)
             for n, folder in enumerate(folders)
@@ -346,7 +348,7 @@ def _write(capture: Capture, path: Path, owners: dict[Path, str], person: str) -
 
 
 def _files(person: str) -> Files:
-    return CHOSEN_ON[person] if person in CHOSEN_ON else SHOWN_ON[person]
+    return CHOSEN_ON[person] if person in CHOSEN_ON else OTHERS[person]
 
 
 @cache

@@ -117,10 +117,10 @@ def point_rows(data: Path) -> Iterator[Check]:
     tables = [table for name, forces in FORCES.items() if (table := _table(data, name, forces)) is not None]
     for point, (share, added) in POINTS.items():
         off = [_off(table, _about(table, share, added)) for table in tables]
-        yield Check(f"torques about {point}, moments", max(off), MOMENT_BOUND_NM, "<=", "N m")
+        yield Check(f"torques about {point}, moments", float(np.max(off)), MOMENT_BOUND_NM, "<=", "N m")
     for name, scaled in (("points in mm", (1e3, 1.0)), ("torques in N mm", (1.0, 1e3)), ("both", (1e3, 1e3))):
         off = [_off(table, _in_units(table, *scaled)) for table in tables]
-        yield Check(f"{name}, moments", max(off), MOMENT_BOUND_NM, "<=", "N m")
+        yield Check(f"{name}, moments", float(np.max(off)), MOMENT_BOUND_NM, "<=", "N m")
 
 
 def fault_rows(data: Path) -> Iterator[Check]:
@@ -175,10 +175,11 @@ def _off(stated: _Stated, faulty: _Stated) -> float:
     """Largest difference of moments about the world's origin, N m."""
     right = [torque + np.cross(point, force) for force, point, torque in stated.sets]
     read_as = _read(faulty)
-    return max(
-        float(np.abs(plate.moment_nm + np.cross(plate.origin_m, plate.force_n) - one).max())
+    off = [
+        np.abs(plate.moment_nm + np.cross(plate.origin_m, plate.force_n) - one).max()
         for plate, one in zip(read_as, right, strict=True)
-    )
+    ]
+    return float(np.max(off))
 
 
 def _read(stated: _Stated) -> tuple[PlateReadings, ...]:

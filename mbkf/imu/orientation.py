@@ -213,7 +213,7 @@ def _bridged(gyro: Array, most: int) -> Array:
     for n in range(gyro.shape[1]):
         lost = np.any(np.isnan(gyro[:, n]), axis=1)
         known = np.flatnonzero(~lost)
-        gaps = [range(a, b) for a, b in runs(lost) if 0 < a and b < len(gyro) and b - a <= most]
+        gaps = [range(a, b) for a, b in runs(lost) if a > 0 and b < len(gyro) and b - a <= most]
         rows = [row for gap in gaps for row in gap]
         for axis in range(3):
             found[rows, n, axis] = np.interp(rows, known, gyro[known, n, axis]) if rows else 0.0

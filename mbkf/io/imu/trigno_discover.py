@@ -21,7 +21,7 @@ from mbkf.io.imu.signals import Signal, readings_of
 
 _MARK, _LINE_BYTES = b"Trigno Discover", 1000
 _CHANNEL = re.compile(r"(ACC|GYRO) ([XYZ])( Time Series)? \(", re.IGNORECASE)
-_RATE = re.compile(r"(\d+(?:\.\d+)?) ?Hz", re.IGNORECASE)
+_RATE = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?) ?Hz", re.IGNORECASE)
 _KINDS = {"ACC": ("acc", GRAVITY_M_S2), "GYRO": ("gyr", np.pi / 180.0)}
 _MOST_HEADER_LINES = 20
 

@@ -1,4 +1,4 @@
-"""Mixed folders: persons are shown on whom nothing was chosen, and each kind of mistake fails its row."""
+"""Mixed folders: settings were chosen on no person of the others, and each kind of mistake fails its row."""
 
 from pathlib import Path
 
@@ -7,8 +7,8 @@ import pytest
 from benchmarks.strangers.mixed_folders import (
     CHOSEN_FOLDERS,
     CHOSEN_ON,
-    SHOWN_FOLDERS,
-    SHOWN_ON,
+    OTHER_FOLDERS,
+    OTHERS,
     Folder,
     Judged,
     compared,
@@ -35,11 +35,11 @@ def mistakes(judged: Judged):
 
 
 def test_folders_are_of_the_persons_of_their_half():
-    assert not set(CHOSEN_ON) & set(SHOWN_ON)
-    for folders, persons in ((CHOSEN_FOLDERS, CHOSEN_ON), (SHOWN_FOLDERS, SHOWN_ON)):
+    assert not set(CHOSEN_ON) & set(OTHERS)
+    for folders, persons in ((CHOSEN_FOLDERS, CHOSEN_ON), (OTHER_FOLDERS, OTHERS)):
         assert all(set(folder.persons) <= set(persons) for folder in folders)
         assert len(set(folders)) == len(folders)
-    sizes = [len(folder.persons) for folder in SHOWN_FOLDERS if len(folder.persons) > 1]
+    sizes = [len(folder.persons) for folder in OTHER_FOLDERS if len(folder.persons) > 1]
     assert len(sizes) >= 20 and (min(sizes), max(sizes)) == (2, 6)
 
 

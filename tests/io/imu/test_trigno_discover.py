@@ -67,3 +67,19 @@ def test_faults_are_named(tmp_path, change, told):
     path.write_text(change(path.read_text()))
     with pytest.raises(FileFormatError, match=told):
         read_imu(path)
+
+
+@pytest.mark.parametrize("form", ["titles", "rates", "times"])
+def test_a_blank_cell_is_a_missing_sample_and_moves_no_other(tmp_path, form):
+    path = export(tmp_path / "a.csv", form)
+    path.write_text(path.read_text().replace(" 2.4,", " ,"))  # ACC X in the fifth row
+    first, _ = read_imu(path)
+    force = first.specific_force_mps2[:, 0] / 9.80665
+    np.testing.assert_allclose(force, [2.0, 2.1, 2.2, 2.3, np.nan, 2.5, 2.6, 2.7, 2.8, 2.9])
+
+
+def test_a_rate_that_is_no_number_counts_as_not_stated(tmp_path):
+    path = export(tmp_path / "a.csv", "rates")
+    path.write_text(path.read_text().replace("148.1481 Hz", "148.1.481 Hz"))
+    with pytest.raises(FileFormatError, match="states no rate"):
+        read_imu(path)
