@@ -34,6 +34,7 @@ from mbkf.trial.preparation.markers_alone import Motion, markers_alone
 from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
 from mbkf.trial.preparation.selection import hidden_samples, subject_markers, without_plates
 from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.preparation.shrunken import without_shrunken
 from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.progression import PELVIS_FRAMES
 from mbkf.trial.results.readings import ANGLES, zero_posture
@@ -78,9 +79,9 @@ def reconstruct(
     zero_posture(settings.angles_zero, subject)
     with single_threaded():
         capture = checked_for_subject(capture, subject, settings.without_plates)
-        measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
+        measured, exchanged, put_right = _put_right(capture, subject)
         use = use_by_subject(capture.markers, subject)
-        notes = [*capture.notes, *exchange_notes(exchanged), *([use.warning] if use.warning else [])]
+        notes = [*capture.notes, *put_right, *([use.warning] if use.warning else [])]
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = without_plates(capture, settings.without_plates).plates
@@ -121,6 +122,15 @@ def reconstruct(
                 names_exchanged=(*exchanged, *taken_up),
             )
         )
+
+
+def _put_right(
+    capture: Capture, subject: Subject
+) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...], list[str]]:
+    """The subject's markers under their right names without mixtures, the exchanges, and notes."""
+    named, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
+    measured, shrunken = without_shrunken(named, subject)
+    return measured, exchanged, [*exchange_notes(exchanged), *shrunken]
 
 
 def _check_names(settings: ReconstructSettings, sensors: bool) -> None:
