@@ -41,11 +41,20 @@ def test_exact_markers_are_fitted(subject):
     assert (np.abs(found - MODEL.scale) < 1.5 * errors).all()
 
 
-def test_a_second_person_and_a_contradicted_height_are_doubts_of_the_file(subject):
-    assert DOUBTS_KEY not in subject.report
+def test_two_persons_are_refused_until_one_is_chosen():
     one, beside = made(standing=True), np.array([0.0, 1.5, 0.0])
     names = (*one.markers.names, *(f"B:{name}" for name in one.markers.names))
     places = np.concatenate([one.markers.positions_m, one.markers.positions_m + beside], axis=1)
+    both = replace(one, markers=replace(one.markers, names=names, positions_m=places))
+    with pytest.raises(InvalidInput, match=r"2 persons: .*\(36 markers\).*choose one with --person"):
+        scale(both, mass_kg=70.0, protocol="reference36")
+
+
+def test_some_points_of_a_second_person_and_a_contradicted_height_are_doubts_of_the_file(subject):
+    assert DOUBTS_KEY not in subject.report
+    one, beside = made(standing=True), np.array([0.0, 1.5, 0.0])
+    names = (*one.markers.names, *(f"*{number}" for number in range(12)))
+    places = np.concatenate([one.markers.positions_m, one.markers.positions_m[:, :12] + beside], axis=1)
     both = replace(one, markers=replace(one.markers, names=names, positions_m=places))
     found = scale(both, mass_kg=70.0, height_m=1.3, protocol="reference36")
     second, height = found.report[DOUBTS_KEY][-2:]
