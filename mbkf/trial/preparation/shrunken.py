@@ -15,8 +15,8 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.runs import runs
 
 SMALLER = 0.85
-"""A cluster smaller than this share of its median size holds mixtures; set on one run, between its mixtures and the feet of
-17 captures without such (0.92)."""
+"""A cluster smaller than this share of its median size holds mixtures; set on one run, between its mixtures and the
+feet of 17 captures without such (0.92)."""
 
 BESIDE_S = 0.05
 """A low-pass spreads an exchange over so much time before and after."""
