@@ -39,7 +39,7 @@ ROUNDS = 3
 """Rounds of alternately finding pose and tracks."""
 
 _PAIRS, _SINGLES, _KEPT = 120, 40, 24
-_PARENT_PULL = 2e-4
+_PULL = 2e-4
 
 
 class KeyframePlacing:
@@ -106,8 +106,10 @@ class KeyframePlacing:
         own = (weight[..., None] * local_m).sum(axis=2) / total
         arms, away = local_m - own[:, :, None], found - middle[:, :, None]
         attitude = np.einsum("nkm,nkmi,nkmj->nkij", weight, away, arms)
-        if parents is not None:
-            attitude += joint * np.einsum("nki,nkj->nkij", origins_m - middle, -own) + _PARENT_PULL * parents
+        if parents is None:
+            attitude += _PULL * self._determined_nearby(attitude)
+        else:
+            attitude += joint * np.einsum("nki,nkj->nkij", origins_m - middle, -own) + _PULL * parents
         rotations = nearest_rotations(attitude.reshape(-1, 3, 3)).reshape(attitude.shape)
         return rotations, middle - np.einsum("nkij,nkj->nki", rotations, own)
 
@@ -137,6 +139,16 @@ class KeyframePlacing:
         squared = np.where(allowed[:, None] & (weight.sum(axis=0) > 0), squared, np.inf)
         found, least = nearest(squared, reach_m)
         return np.where(found == HIDDEN, HIDDEN, free[found]), match_log_ratios(cluster, found, least)
+
+    def _determined_nearby(self, attitude: Array) -> Array:
+        """(n, K, 3, 3) the root's orientation at the nearest keyframe that determines it, by Wahba's matrices.
+
+        Tracks in one line, as two always are, leave the turn about it open: rounding would decide it.
+        """
+        determined = np.linalg.svd(attitude, compute_uv=False)[:, :, 1] > _PULL
+        away = np.abs(self.seen.frames[:, None] - self.seen.frames)
+        near = np.where(determined[:, None], away, np.inf).argmin(axis=2)  # (n, K)
+        return nearest_rotations(np.take_along_axis(attitude, near[:, :, None, None], axis=1))
 
     def _squared(self, placed_m: Array, free: Indices) -> Array:
         """(n, k, F) squared distances of markers (n, K, k, 3) from tracks, summed over the keyframes with these."""

@@ -36,7 +36,8 @@ from mbkf.trial.labelling.doubts import Doubts, doubts
 from mbkf.trial.labelling.starts import Start
 
 ANCHORS = (0.35, 0.65, 0.05, 0.95)
-"""Parts of the capture at which a body is matched with the tracks, until two outcomes agree; the likeliest is kept."""
+"""Parts of the capture at which a body is matched with the tracks; persons are scaled from the likeliest bodies first,
+until two outcomes agree, and the likeliest person is kept."""
 
 SIZES = (0.85, 1.0, 1.15)
 """Sizes of the reference body that are tried without a height."""
@@ -107,16 +108,19 @@ class TrackNaming:
         """
         sizes = SIZES if self._height_m is None else (self._height_m / self._reference_height_m,)
         anchors = [round(share * (len(self._points_m) - 1)) for share in ANCHORS]
-        found: list[NamedTracks | None] = []
+        searched, steps = [], 2 * len(anchors)
         for done, anchor in enumerate(anchors):
-            progress(done, len(anchors))
-            owner, _ = max((self._searched(anchor, size) for size in sizes), key=lambda one: one[1])
+            progress(done, steps)
+            searched.append(max((self._searched(anchor, size) for size in sizes), key=lambda one: one[1]))
+        found: list[NamedTracks | None] = []
+        for owner, _ in sorted(searched, key=lambda one: -one[1]):
+            progress(len(anchors) + len(found), steps)
             one = self._scaled(owner)
             agreed = one is not None and any(_agree(one, other) for other in found)
             found.append(one)
             if agreed:
                 break
-        progress(len(anchors), len(anchors))
+        progress(steps, steps)
         good = [one for one in found if one is not None]
         if not good:
             raise NotObservable(
