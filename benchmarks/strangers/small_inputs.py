@@ -93,12 +93,8 @@ def marker_table_rows(folder: Path) -> Iterator[Check]:
     found_set = json.loads(typed("info", folder / "one_person_prefix.trc", "--json").out)["protocol"]
     yield _yes(
         "a subject's name before the markers: plug_in_gait, 37 of 41",
-        _set(found_set) == ("plug_in_gait", 37, 41),
+        "plug_in_gait knows 37 of 41 markers" in str(found_set["told"]),
     )
-
-
-def _set(found: dict[str, object]) -> tuple[object, ...]:
-    return found["name"], found["known"], found["markers"]
 
 
 def heel_cluster_rows(folder: Path, out: Path) -> Iterator[Check]:
