@@ -58,7 +58,7 @@ def measured_rows(compared: Sequence[Compared]) -> Iterator[Check]:
 
 
 def clipped_rows(folder: Path) -> Iterator[Check]:
-    """The same strides from gyroscopes that clip softly: lengths, and how many lie within twice their spreads."""
+    """Strides from gyroscopes that clip softly: errors of their lengths, and the share within twice the spreads."""
     readings, reference = read_feet(folder), reference_strides(folder)
     for limit_deg_s in CLIPPED_DEG_S:
         cut = [clipped(one, math.radians(limit_deg_s)) for one in readings]

@@ -37,7 +37,7 @@ class Trial:
         return None if self.result is None else read_summary(self.out / "result")
 
     def said(self, command: str) -> str:
-        """What a command printed, with its lines joined by blanks."""
+        """The command's output as one line."""
         path = self.out / f"{command}.txt"
         return " ".join(path.read_text(encoding="utf-8").split()) if path.is_file() else ""
 

@@ -32,9 +32,9 @@ def test_a_person_who_is_never_seen_has_no_place(tmp_path):
 
 def test_a_box_beside_a_person_is_no_person():
     """Neither are scattered points, as the figures of these tests are."""
-    box = np.random.default_rng(3).uniform(0.0, 1.0, (1, 25, 3)) + np.array([0.0, 2.0, 0.0])
+    box = np.random.default_rng(3).uniform(0.0, 1.0, (1, 12, 3)) + np.array([0.0, 2.0, 0.0])
     places = np.concatenate([figure(1, [0, 0, 0]), np.repeat(box, 40, axis=0)], axis=1)
-    names = (*NAMES, *(f"box{k}" for k in range(25)))
+    names = (*NAMES, *(f"box{k}" for k in range(12)))
     capture = Capture("a", MarkerTrajectories(names, places, 100.0))
     assert persons_in(capture) == ()
     check_one_person(capture)
