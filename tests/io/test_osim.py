@@ -1,11 +1,10 @@
-"""OpenSim's models of both forms: the same joints and markers, functions at zero, and what is refused."""
+"""OpenSim's models of both forms: the same joints, markers, bodies and constraints, and files that are refused."""
 
 import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError
-from mbkf.io.loose_xml import parse_loose_xml
-from mbkf.io.osim import _value_at_zero, read_osim
+from mbkf.io.osim import read_osim
 from tests.osim_files import marker_set, osim_3, osim_4, skeleton
 
 MARKERS = [("R.ASIS", "pelvis", (0.01, 0.02, 0.13), True), ("R.Thigh", "femur_r", (0.05, -0.2, 0.03), False)]
@@ -25,31 +24,6 @@ def test_both_forms_hold_the_same(text, tmp_path):
         pose[:3, 3] = expected[joint.parent, joint.child]
         assert joint.child_in_parent == pytest.approx(pose, abs=1e-12)
         assert joint.centre_m == pytest.approx(np.zeros(3))
-
-
-@pytest.mark.parametrize(
-    ("function", "value"),
-    [
-        ("<Constant><value>0.25</value></Constant>", 0.25),
-        ("<LinearFunction><coefficients>2 0.5</coefficients></LinearFunction>", 0.5),
-        ("<PolynomialFunction><coefficients>3 2 1 -0.75</coefficients></PolynomialFunction>", -0.75),
-        ("<function><Constant><value>4</value></Constant></function>", 4.0),
-        ("<PiecewiseLinearFunction><x>-1 1</x><y>0 3</y></PiecewiseLinearFunction>", 1.5),
-        # a natural cubic through points of a straight line is the line
-        ("<SimmSpline><x>-2 -1 1 2</x><y>-3 -1 3 5</y></SimmSpline>", 1.0),
-        ("<NaturalCubicSpline><x>-1 0 1</x><y>7 0.125 -9</y></NaturalCubicSpline>", 0.125),
-        (
-            "<MultiplierFunction><function><SimmSpline><x>-1 0 1</x><y>1 2 5</y></SimmSpline></function>"
-            "<scale>1.5</scale></MultiplierFunction>",
-            3.0,
-        ),
-        ("<SimmSpline><x>0</x><y>1</y></SimmSpline>", 0.0),
-        ("<Unheard/>", 0.0),
-    ],
-)
-def test_functions_at_zero(function, value):
-    (element,) = parse_loose_xml(function).children
-    assert _value_at_zero(element) == pytest.approx(value)
 
 
 def test_a_joint_that_shifts_and_turns_at_zero(tmp_path):
@@ -124,3 +98,39 @@ def test_hostile_nesting_and_lengths_cost_time_in_proportion_and_are_survived(tm
     found = read_osim(path)
     assert [marker.name for marker in found.markers] == ["A"] and list(found.damaged) == ["B"]
     np.testing.assert_array_equal(found.joints[0].child_in_parent, np.eye(4))
+
+
+CONSTRAINTS = """<ConstraintSet><objects>
+<CoordinateCouplerConstraint name="patella">
+<coupled_coordinates_function><LinearFunction><coefficients>2 1</coefficients>
+</LinearFunction></coupled_coordinates_function><independent_coordinate_names>knee</independent_coordinate_names>
+<dependent_coordinate_name>beta</dependent_coordinate_name><scale_factor>3</scale_factor></CoordinateCouplerConstraint>
+<PointConstraint name="strap"/><PointConstraint name="off"><isEnforced>false</isEnforced></PointConstraint>
+<WeldConstraint name="old"><isDisabled>true</isDisabled></WeldConstraint></objects></ConstraintSet></Model>"""
+
+
+def test_constraints_between_coordinates_are_read_and_others_named(tmp_path):
+    text = osim_4(skeleton(), MARKERS).replace("</Model>", CONSTRAINTS)
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    model = read_osim(tmp_path / "model.osim")
+    (coupler,) = model.couplers
+    assert (coupler.follower, coupler.leader) == ("beta", "knee")
+    assert coupler.value.line == (3.0, 6.0)
+    assert model.other_constraints == ("strap (PointConstraint)",)
+
+
+@pytest.mark.parametrize(
+    "inertia",
+    [
+        "<inertia>1 2 3 0.1 0.2 0.3</inertia>",
+        "<inertia_xx>1</inertia_xx><inertia_yy>2</inertia_yy><inertia_zz>3</inertia_zz><inertia_xy>0.1</inertia_xy>"
+        "<inertia_xz>0.2</inertia_xz><inertia_yz>0.3</inertia_yz>",
+    ],
+)
+def test_masses_of_both_forms(inertia, tmp_path):
+    body = f'<Body name="pelvis"><mass>9</mass><mass_center>0 0.1 0</mass_center>{inertia}</Body>'
+    text = f'<Model name="m"><BodySet><objects><Body name="ground"/>{body}</objects></BodySet></Model>'
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    (pelvis,) = read_osim(tmp_path / "model.osim", markers_needed=False).bodies
+    assert (pelvis.name, pelvis.mass_kg, tuple(pelvis.centre_m)) == ("pelvis", 9.0, (0.0, 0.1, 0.0))
+    assert pelvis.inertia_kgm2.tolist() == [[1, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 3]]

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.io.osim import OsimJoint
+from mbkf.io.osim_joints import OsimJoint
 
 _LEFT = re.compile(r"(?:^|[_.\s-])(?:l|left)(?:$|[_.\s-])")
 _RIGHT = re.compile(r"(?:^|[_.\s-])(?:r|right)(?:$|[_.\s-])")
@@ -61,7 +61,7 @@ def segment_of(body: str) -> tuple[str, float, tuple[tuple[str, float], ...]]:
 def _joint(parent: str, child: str, *origin_m: float) -> OsimJoint:
     pose = np.eye(4)
     pose[:3, 3] = origin_m
-    return OsimJoint(parent, child, read_only(pose), read_only(np.zeros(3)))
+    return OsimJoint(parent, child, read_only(pose), read_only(np.eye(4)))
 
 
 def _both_sides(parent: str, child: str, x: float, y: float, z: float) -> tuple[OsimJoint, OsimJoint]:

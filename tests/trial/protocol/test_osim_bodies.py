@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.io.osim import OsimJoint
+from mbkf.io.osim_joints import OsimJoint
 from mbkf.model.body_file import load_body
 from mbkf.trial.protocol.osim_bodies import COMMON_JOINTS, head_origin, poses_at_zero, segment_of
 
@@ -53,11 +53,11 @@ def test_the_common_skeleton_is_a_symmetric_person_of_the_reference_body_s_size(
 def test_a_model_s_joints_go_before_the_common_ones_and_loose_bodies_are_left_out():
     pose = np.eye(4)
     pose[:3, 3] = [1.0, 2.0, 3.0]
-    mine = OsimJoint("pelvis", "femur_r", pose, np.zeros(3))
+    mine = OsimJoint("pelvis", "femur_r", pose, np.eye(4))
     loose = (
-        OsimJoint("nowhere", "box", pose, np.zeros(3)),
-        OsimJoint("a", "b", pose, np.zeros(3)),
-        OsimJoint("b", "a", pose, np.zeros(3)),
+        OsimJoint("nowhere", "box", pose, np.eye(4)),
+        OsimJoint("a", "b", pose, np.eye(4)),
+        OsimJoint("b", "a", pose, np.eye(4)),
     )
     poses = poses_at_zero((mine, *loose))
     assert poses["femur_r"][:3, 3] == pytest.approx([1.0, 2.0, 3.0])
@@ -82,7 +82,7 @@ def test_joints_that_hang_on_nothing_or_each_other_leave_the_common_ones():
     common = poses_at_zero(())
     pose = np.eye(4)
     loops = [("nowhere", "femur_r"), ("toes_l", "tibia_l"), ("mast", "boom"), ("boom", "mast")]
-    joints = tuple(OsimJoint(parent, child, pose, np.zeros(3)) for parent, child in loops)
+    joints = tuple(OsimJoint(parent, child, pose, np.eye(4)) for parent, child in loops)
     found = poses_at_zero(joints)
     assert found.keys() == common.keys()
     for body, place in common.items():
