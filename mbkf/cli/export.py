@@ -9,7 +9,8 @@ A subject:
 
 A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
   c3d   markers; under Plug-in Gait's names angles (deg), moments (Nm), powers (W), joint centres, reactions (N), the
-        centre of mass, foot strikes and offs; for Mokka, Visual3D, Nexus.
+        centre of mass, foot strikes and offs; plates of type 2; for Mokka, Visual3D, Nexus. With --trial, plates and
+        analog channels (EMG) are the trial's, and loads that no plate reads are plates beside them.
   bvh   rotations of the segments, cm, y up, z forward; for animation programs.
   glb   the moving body as 'mbkf view' draws it; m, y up; for animation programs and browsers.
   mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and the extra 'film'.
@@ -18,6 +19,7 @@ Examples:
   mbkf export subject.toml --to urdf --out subject.urdf
   mbkf export subject.toml --to mjcf --out subject.xml     python -m mujoco.viewer --mjcf=subject.xml shows it
   mbkf export result --to c3d --out walk_model.c3d
+  mbkf export result --to c3d --trial walk.c3d --out walk_model.c3d
   mbkf export result --to bvh --out walk.bvh
   mbkf export result --to glb --out walk.glb
   mbkf export result --to mp4 --out walk.mp4
@@ -40,6 +42,8 @@ def options(parser: argparse.ArgumentParser) -> None:
         "source", metavar="SUBJECT.toml|DIR", help="written by 'mbkf scale', or by 'mbkf reconstruct'"
     )
     parser.add_argument("--to", required=True, choices=(*_OF_SUBJECT, *_OF_RESULT), help="format")
+    parser.add_argument("--trial", metavar="FILE", help="c3d: the capture that the result was made from")
+    parser.add_argument("--forces", metavar="FILE", help="c3d: ground reactions that it was made with")
     add_out(parser, "FILE", "file to write", required=True)
 
 
@@ -68,6 +72,10 @@ def run(args: argparse.Namespace) -> int:
             f"{source} is {found}, and {args.to} is a format for {other}: name {hint}, or choose "
             f"--to {' or '.join(formats)}"
         )
+    if (args.trial or args.forces) and args.to != "c3d":
+        raise InvalidInput(f"--trial and --forces are of --to c3d; leave them out for {args.to}")
+    if args.forces and not args.trial:
+        raise InvalidInput("--forces belongs to a trial; name its file with --trial")
     if args.to in _FILMS:
         from mbkf.cli.progress import stages
         from mbkf.viz.film.film import write_film
@@ -76,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
         with stages() as report:
             write_film(result, args.to, args.out, progress=report)
     elif is_result:
-        export_result(read_reconstruction(source), args.to, args.out)
+        export_result(read_reconstruction(source), args.to, args.out, trial=args.trial, forces=args.forces)
     else:
         export_subject(read_subject(source), args.to, args.out)
     print(args.out)

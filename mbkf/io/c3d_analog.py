@@ -13,6 +13,7 @@ from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
 from mbkf.io.c3d_decode import C3dContent
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import CALIBRATION_OF_TYPE, RawPlate, check_geometry, wrench_at_surface
+from mbkf.io.c3d_scaling import sample_scalings
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.plate_table import plate_with_corners
 from mbkf.io.readable_plates import NO_CHANNELS, readable_plates
@@ -41,14 +42,19 @@ def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
     values, parameters = content.analogs, content.parameters
     if not values.size:
         return ()
-    labels, units = parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS")
+    labels, units, descriptions = (
+        parameters.texts("ANALOG", name) for name in ("LABELS", "UNITS", "DESCRIPTIONS")
+    )
     rate_hz = analog_rate_hz(content)
+    scalings = sample_scalings(parameters, len(values))
     return tuple(
         AnalogChannel(
             name=(labels[i] if i < len(labels) else "") or f"channel {i + 1}",
             values=np.array(row, dtype=np.float64),
             unit=units[i] if i < len(units) else "",
             rate_hz=rate_hz,
+            scaling=scalings[i],
+            description=descriptions[i] if i < len(descriptions) else "",
         )
         for i, row in enumerate(values)
     )

@@ -11,6 +11,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.records import SampleScaling
 
 _UNSIGNED_OFFSET = -16384
 """An analog offset below this, read with a sign, is the middle of an unsigned range."""
@@ -34,8 +35,7 @@ def scaled_samples(
     """
     if not channels or not samples.size:
         return np.zeros((0, 0)), ()
-    offset = _filled(parameters.all_numbers("ANALOG", "OFFSET"), channels, 0.0)
-    scale = _filled(parameters.all_numbers("ANALOG", "SCALE"), channels, 1.0)
+    scale, general, offset = _stated_scaling(parameters, channels)
     stated = parameters.text("ANALOG", "FORMAT").upper().startswith("UNSIGNED")
     likely = stated or bool((parameters.all_numbers("ANALOG", "OFFSET") < _UNSIGNED_OFFSET).any())
     raw = samples.reshape(-1, channels).T
@@ -43,8 +43,7 @@ def scaled_samples(
     if unsigned:
         raw, offset = raw % 65536 if integers else raw, offset % 65536
     with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
-        gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)
-        scaled: Array = (raw - offset[:, None]) * gain[:, None]
+        scaled: Array = (raw - offset[:, None]) * (scale * general)[:, None]
     remarks = [TAKEN_AS_UNSIGNED] if unsigned and not stated else []
     counts = {name: parameters.all_numbers("ANALOG", name).size for name in ANALOG_SCALING}
     missing = [f"ANALOG:{name}" for name, count in counts.items() if not count]
@@ -59,6 +58,33 @@ def scaled_samples(
             "weight, or give their readings with --forces"
         )
     return scaled, tuple(remarks)
+
+
+def sample_scalings(parameters: C3dParameters, channels: int) -> tuple[SampleScaling, ...]:
+    """The scaling of each channel; offsets as they are stored, with a sign."""
+    scale, general, offset = _stated_scaling(parameters, channels)
+    return tuple(SampleScaling(one, general, zero) for one, zero in zip(scale, offset, strict=True))
+
+
+def stored_samples(values: Array, scaling: SampleScaling) -> Array:
+    """(S,) samples that a reader of the format scales to the values (S,) again; 0 where the scale is 0.
+
+    Counts of a converter, and floats without an offset, are found exactly: scaling rounds doubles, whose error is far
+    below the last bit of a float.
+    """
+    gain = scaling.scale * scaling.general
+    if not gain:
+        return np.zeros(len(values))
+    return np.asarray(np.float32(values / gain + scaling.offset), dtype=np.float64)
+
+
+def _stated_scaling(parameters: C3dParameters, channels: int) -> tuple[Array, float, Array]:
+    """(C,) scales, the general scale, and (C,) offsets; 1 and 0 where the file states none."""
+    return (
+        _filled(parameters.all_numbers("ANALOG", "SCALE"), channels, 1.0),
+        parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0,
+        _filled(parameters.all_numbers("ANALOG", "OFFSET"), channels, 0.0),
+    )
 
 
 def _fit_unsigned(raw: Array, offset: Array) -> bool:

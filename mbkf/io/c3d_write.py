@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence, Set
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -13,16 +13,17 @@ from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.axes import METRES_PER_UNIT, finite, length_unit, rotation_to_world
 from mbkf.io.c3d_encode import MOST_ENTRIES, Value, encoded
+from mbkf.io.c3d_scaling import stored_samples
 from mbkf.io.derived import COMPUTED_PLACES, GROUP_KINDS, TYPE_WORDS, UNIT_PARAMETERS
-from mbkf.io.plate_corners import plate_axes
-from mbkf.io.records import Capture, DerivedPoint, PlateReadings
+from mbkf.io.plate_corners import QUADRANTS, plate_axes, plate_sides
+from mbkf.io.records import AnalogChannel, Capture, DerivedPoint, PlateReadings, SampleScaling
 from mbkf.io.written import MARK
 
 Parameters: TypeAlias = dict[str, Value]
 """Parameters of a group by their names."""
 
 _MM = 1000.0
-_DEFAULT_HALF_SIDES_M = np.array([[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]])
+_DEFAULT_HALF_SIDES_M = QUADRANTS * [0.3, 0.2]
 """Corners given to a plate whose geometry is not known, about the point its moments refer to."""
 
 MOST_CHANNELS = 255
@@ -33,12 +34,21 @@ EVENT_ICONS = {"Foot Strike": 1, "Foot Off": 2}
 
 _CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
+_OFFSET_LIMIT = 2.0**15
+"""OFFSET is an integer of 16 bits with a sign."""
 
-def write_c3d(capture: Capture, path: str | Path) -> None:
+
+def write_c3d(capture: Capture, path: str | Path, *, every_channel: bool = False) -> None:
     """Writes a capture as C3D: z up, mm, plates of type 2 with their offset already removed; whole or not at all.
 
     Missing samples get residual −1. Plate and analog samples are interpolated to a whole number per frame
-    where they are not; where a recording does not reach, they hold 0. C3D stores 32-bit floats.
+    where they are not; where a recording does not reach, they hold 0. C3D stores 32-bit floats. Samples that came from
+    a C3D file keep its scaling, and so every bit.
+
+    Args:
+        capture: The capture.
+        path: The file.
+        every_channel: Write channels that are named as those of the plates, too; the plates' then get other names.
 
     Raises:
         InvalidInput: The name does not end in ``.c3d``, the capture has no frames, or more channels than fit.
@@ -51,7 +61,7 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
         raise InvalidInput(f"{path}: nothing to write, the capture has no frames")
     markers = capture.markers
     points, missing, point = _points(capture)
-    analogs, channels = _analogs(capture)
+    analogs, channels = _analogs(capture, every_channel)
     groups = {"POINT": point, **channels, **_events(capture)}
     if capture.subject_mass_kg is not None:
         groups["PROCESSING"] = {"BODYMASS": float(capture.subject_mass_kg)}
@@ -107,8 +117,18 @@ def _in_file_axes(point: DerivedPoint, capture: Capture) -> Array:
     return point.values @ rotation_to_world(capture.up_axis).T * (METRES_PER_UNIT[unit] * _MM)
 
 
-def _analogs(capture: Capture) -> tuple[Array, dict[str, Parameters]]:
-    """(C, S) samples and the groups about them: six channels per plate, then every channel with a name of its own."""
+class _Channel(NamedTuple):
+    """A channel of the file: samples as they are stored, label, unit, description and scaling."""
+
+    samples: Array
+    name: str
+    unit: str
+    description: str
+    scaling: SampleScaling
+
+
+def _analogs(capture: Capture, every_channel: bool) -> tuple[Array, dict[str, Parameters]]:
+    """(C, S) samples and the groups about them: six channels per plate, then the others."""
     markers = capture.markers
     rates = [plate.rate_hz for plate in capture.plates] + [channel.rate_hz for channel in capture.analog]
     if not rates:
@@ -116,30 +136,74 @@ def _analogs(capture: Capture) -> tuple[Array, dict[str, Parameters]]:
     per_frame = max(1, round(max(rates) / markers.rate_hz))
     rate_hz = per_frame * markers.rate_hz
     times = markers.start_time_s + np.arange(markers.frames * per_frame) / rate_hz
-    rows: list[Array] = []
-    names: list[str] = []
-    units: list[str] = []
-    corners = []
-    for number, plate in enumerate(capture.plates, start=1):
-        outline = _corners(plate)
-        corners.append(outline)
-        wrench = _plate_channels(plate, outline)
-        rows += [_sampled(times, plate.times_s, row, per_frame) for row in wrench.T]
-        names += [f"{channel}{number}" for channel in _CHANNELS]
-        units += ["N"] * 3 + ["Nmm"] * 3
+    general = _general_scale(capture)
+    outlines = [_corners(plate) for plate in capture.plates]
+    taken = {channel.name for channel in capture.analog} if every_channel else set()
+    found = list(_of_plates(capture.plates, outlines, (times, per_frame, general), taken))
+    names = {one.name for one in found}
     for channel in capture.analog:
-        if channel.name not in names:
-            stamps = markers.start_time_s + np.arange(len(channel.values)) / channel.rate_hz
-            rows.append(_sampled(times, stamps, channel.values, per_frame))
-            names.append(channel.name)
-            units.append(channel.unit)
-    if len(names) > MOST_CHANNELS:
+        if every_channel or channel.name not in names:
+            names.add(channel.name)
+            found.append(_as_stored(channel, times, markers.start_time_s, per_frame, general))
+    if len(found) > MOST_CHANNELS:
         raise InvalidInput(
-            f"{len(names)} analog channels, six of them for each of {len(capture.plates)} plates; a C3D file holds "
+            f"{len(found)} analog channels, six of them for each of {len(capture.plates)} plates; a C3D file holds "
             f"{MOST_CHANNELS}: leave some away"
         )
-    analog: Parameters = {"RATE": rate_hz, "LABELS": names, "DESCRIPTIONS": [""] * len(names), "UNITS": units}
-    return np.array(rows), {"ANALOG": analog, **_plates(corners)}
+    analog: Parameters = {
+        "RATE": rate_hz,
+        "LABELS": [one.name for one in found],
+        "DESCRIPTIONS": [_ascii(one.description) for one in found],
+        "UNITS": [one.unit for one in found],
+        "GEN_SCALE": general,
+        "SCALE": np.array([one.scaling.scale for one in found]),
+        "OFFSET": np.array([one.scaling.offset for one in found]).astype(np.int16),
+    }
+    return np.array([one.samples for one in found]), {"ANALOG": analog, **_plates(capture.plates, outlines)}
+
+
+def _general_scale(capture: Capture) -> float:
+    """The scale of all channels, where those of the capture share one; else 1."""
+    scales = {channel.scaling.general for channel in capture.analog}
+    return scales.pop() if len(scales) == 1 else 1.0
+
+
+def _of_plates(
+    plates: Sequence[PlateReadings],
+    outlines: Sequence[Array],
+    clock: tuple[Array, int, float],
+    taken: Set[str],
+) -> Iterator[_Channel]:
+    """Six channels of each plate, under names that are not taken.
+
+    Args:
+        plates: The plates.
+        outlines: Their corners (4, 3), m.
+        clock: The file's (S,) sample times, samples per frame, and the general scale.
+        taken: Names of other channels.
+    """
+    times, per_frame, general = clock
+    for number, (plate, outline) in enumerate(zip(plates, outlines, strict=True), start=1):
+        for row, channel in zip(_plate_channels(plate, outline).T, _CHANNELS, strict=True):
+            name = f"{channel}{number}"
+            name = f"{name}_tared" if name in taken else name
+            unit = "N" if channel.startswith("F") else "Nmm"
+            values = _sampled(times, plate.times_s, row, per_frame) / general
+            yield _Channel(values, name, unit, plate.description, SampleScaling(general=general))
+
+
+def _as_stored(
+    channel: AnalogChannel, times_s: Array, start_s: float, per_frame: int, general: float
+) -> _Channel:
+    """A channel whose samples are those of its own file where that has as many of them."""
+    scaling = channel.scaling
+    if scaling.general != general or abs(scaling.offset) >= _OFFSET_LIMIT:
+        scaling = SampleScaling(scaling.scale * scaling.general / general, general)
+    values = channel.values
+    if len(values) != len(times_s):
+        stamps = start_s + np.arange(len(values)) / channel.rate_hz
+        values = _sampled(times_s, stamps, values, per_frame)
+    return _Channel(stored_samples(values, scaling), channel.name, channel.unit, channel.description, scaling)
 
 
 def _sampled(times_s: Array, stamps_s: Array, values: Array, per_frame: int) -> Array:
@@ -150,27 +214,33 @@ def _sampled(times_s: Array, stamps_s: Array, values: Array, per_frame: int) -> 
     return sampled
 
 
-def _plates(corners: list[Array]) -> dict[str, Parameters]:
+def _plates(plates: Sequence[PlateReadings], corners: list[Array]) -> dict[str, Parameters]:
     """The group about plates with these corners (4, 3), m; nothing where there are none."""
     count = len(corners)
     if not count:
         return {}
-    return {
-        "FORCE_PLATFORM": {
-            "USED": count,
-            "TYPE": np.full(count, 2, dtype=np.int16),
-            "ZERO": np.array([1, 0], dtype=np.int16),
-            "CORNERS": np.stack([outline.T * _MM for outline in corners], axis=2),
-            "ORIGIN": np.zeros((3, count)),
-            "CHANNEL": np.arange(1, 6 * count + 1, dtype=np.int16).reshape(6, count, order="F"),
-        }
+    group: Parameters = {
+        "USED": count,
+        "TYPE": np.full(count, 2, dtype=np.int16),
+        "ZERO": np.array([1, 0], dtype=np.int16),
+        "CORNERS": np.stack([outline.T * _MM for outline in corners], axis=2),
+        "ORIGIN": np.zeros((3, count)),
+        "CHANNEL": np.arange(1, 6 * count + 1, dtype=np.int16).reshape(6, count, order="F"),
     }
+    if any(plate.description for plate in plates):
+        group["DESCRIPTIONS"] = [_ascii(plate.description) for plate in plates]
+    return {"FORCE_PLATFORM": group}
 
 
 def _corners(plate: PlateReadings) -> Array:
-    """(4, 3) corners in m; an outline about the reference point where the geometry is not known."""
+    """(4, 3) corners in m; an outline about the reference point where the geometry is not known.
+
+    Measured corners are hardly ever a rectangle's, and programs take the plate's axes from different sides: those of
+    the rectangle with its middle, axes and mean sides have one answer.
+    """
     if plate.corners_m is not None:
-        return plate.corners_m
+        x, y = (0.25 * np.linalg.norm(side) for side in plate_sides(plate.corners_m))
+        return plate.corners_m.mean(axis=0) + (QUADRANTS * [x, y]) @ plate_axes(plate.corners_m)[:, :2].T
     outline = np.tile(plate.origin_m, (4, 1))
     # Seen from above, x and −y to the quadrants, so that the plate's own z points down.
     outline[:, :2] += _DEFAULT_HALF_SIDES_M * [1.0, -1.0]

@@ -10,6 +10,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.numerics.orthonormal import axes_from
 
+QUADRANTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+"""Signs of x and y of the corners, in their order."""
+
 LEAST_SIDE_M = 0.02
 """Corners that enclose less than the square of this are those of no plate."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -99,6 +100,7 @@ class PlateReadings:
         threshold_n: Vertical force below which no centre of pressure is given, in N.
         corners_m: (4, 3) world corners of the surface, or None where the file has no geometry.
         offset: (6,) wrench (N, N m; world axes, about ``origin_m``) that was removed as offset.
+        description: Origin of the readings, in words; empty where the plate itself read them.
     """
 
     name: str
@@ -111,6 +113,7 @@ class PlateReadings:
     threshold_n: float
     corners_m: Array | None = None
     offset: Array = field(default_factory=lambda: np.zeros(6))
+    description: str = ""
 
     def __post_init__(self) -> None:
         for name in ("origin_m", "force_n", "moment_nm", "centre_of_pressure_m", "offset"):
@@ -146,14 +149,37 @@ class DerivedPoint:
     description: str = ""
 
 
+class SampleScaling(NamedTuple):
+    """Scaling of stored samples: value = (sample − offset) · scale · general; ``general`` is that of all channels."""
+
+    scale: float = 1.0
+    general: float = 1.0
+    offset: float = 0.0
+
+
+UNSCALED = SampleScaling()
+"""Samples that are the values themselves."""
+
+
 @dataclass(frozen=True)
 class AnalogChannel:
-    """One analog channel, kept as stored (EMG, raw plate channels, …): (S,) ``values`` in ``unit``."""
+    """One analog channel, kept as stored (EMG, raw plate channels, …).
+
+    Attributes:
+        name: Its label.
+        values: (S,) samples in ``unit``.
+        unit: Their unit, "" where the file states none.
+        rate_hz: Sample rate in Hz.
+        scaling: Of the samples in the file, so that they can be written again bit by bit.
+        description: What the file says of it.
+    """
 
     name: str
     values: Array
     unit: str
     rate_hz: float
+    scaling: SampleScaling = UNSCALED
+    description: str = ""
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from mbkf.model.urdf_side import urdf_side_text
 from mbkf.trial.exchange.result_bvh import write_result_bvh
 from mbkf.trial.exchange.result_c3d import write_result_c3d
 from mbkf.trial.exchange.result_glb import write_result_glb
+from mbkf.trial.exchange.result_plates import trial_of
 
 FORMATS = {"urdf": to_urdf, "mjcf": to_mjcf}
 """Formats of a subject, by name."""
@@ -59,7 +60,14 @@ def _height_m(subject: Subject, model: HumanModel) -> float:
     return subject.height_m or model.description.reference_height_m * float(model.scale.mean())
 
 
-def export_result(reconstruction: Reconstruction, kind: str, path: str | Path) -> None:
+def export_result(
+    reconstruction: Reconstruction,
+    kind: str,
+    path: str | Path,
+    *,
+    trial: str | Path | None = None,
+    forces: str | Path | None = None,
+) -> None:
     """Writes a reconstruction as a file of other programs, whole or not at all.
 
     Args:
@@ -67,15 +75,21 @@ def export_result(reconstruction: Reconstruction, kind: str, path: str | Path) -
         kind: "c3d" (Mokka, Visual3D, Nexus: markers, angles, moments, powers, joint centres, reactions, events), "bvh"
             (animation: the segments' rotations, cm, y up) or "glb" (glTF 2.0: the moving body, m, y up).
         path: The file to write; the name of a C3D file ends in ``.c3d``.
+        trial: File of the capture that the result was made from: a C3D file then has its plates and analog channels.
+        forces: File of ground reactions, where the result was made with one beside the capture.
 
     Raises:
         UnknownName: The format or the subject's body is unknown.
         FileFormatError: The path is a folder.
-        InvalidInput: The result holds no motion, or the name of a C3D file ends otherwise.
+        InvalidInput: The result holds no motion, the name of a C3D file ends otherwise, or ``trial`` is another one.
         OSError: The file cannot be written.
     """
     _check(kind, RESULT_FORMATS, path)
-    RESULT_FORMATS[kind](reconstruction, path)
+    if kind == "c3d":
+        capture = None if trial is None else trial_of(reconstruction, trial, forces)
+        write_result_c3d(reconstruction, path, capture)
+    else:
+        RESULT_FORMATS[kind](reconstruction, path)
 
 
 def _check(kind: str, formats: Iterable[str], path: str | Path) -> None:

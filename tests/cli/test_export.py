@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.cli.main import build_parser, main
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results_folder import MOTION_FILE, write_reconstruction
 from mbkf.io.subject import Subject, SubjectMarker, write_subject
 from mbkf.model.body_file import load_body
@@ -83,6 +85,20 @@ def test_what_cannot_be_read_or_written_is_told(result, tmp_path, capsys):
         assert main(["export", str(source), "--to", kind, "--out", str(tmp_path / out)]) == 2
         assert said in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["empty"]
+
+
+def test_a_trial_gives_its_plates_to_c3d_alone(result, tmp_path, capsys):
+    words = ["export", str(result), "--out", str(tmp_path / "x.c3d")]
+    r = walk()
+    write_c3d(Capture("", MarkerTrajectories(r.marker_names, r.measured_m, r.rate_hz)), tmp_path / "t.c3d")
+    assert main([*words, "--to", "c3d", "--trial", str(tmp_path / "t.c3d")]) == 0
+    capsys.readouterr()
+    for more, said in (
+        (["--to", "bvh", "--trial", "t.c3d"], "of --to c3d"),
+        (["--to", "c3d", "--forces", "t.mot"], "--trial"),
+    ):
+        assert main([*words, *more]) == 2
+        assert said in capsys.readouterr().err
 
 
 def test_a_urdf_file_and_its_side_file_are_written_together_or_not_at_all(tmp_path, capsys):

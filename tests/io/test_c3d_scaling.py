@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mbkf.io.c3d_decode import decode
 from mbkf.io.c3d_layout import check_layout
-from mbkf.io.c3d_scaling import TAKEN_AS_UNSIGNED
+from mbkf.io.c3d_scaling import TAKEN_AS_UNSIGNED, stored_samples
 from mbkf.io.capture import read_capture
+from mbkf.io.records import SampleScaling
 from tests.io.c3d_builder import standing_points
 from tests.io.c3d_bytes import INTEL, c3d_bytes, floats, integers
 
@@ -68,3 +71,27 @@ def test_three_encodings_of_one_standing_load(real_data, name):
 def test_a_standing_person_on_plates_of_unsigned_floats(real_data):
     plates = read_capture(real_data / "functional_walk" / "FunctionalStatic.c3d", tare=False).plates
     np.testing.assert_allclose([p.force_n[:, 2].mean() for p in plates], [287.0, 309.0, -11.0], atol=1.5)
+
+
+COUNTS = st.integers(-(2**15), 2**15 - 1)
+
+
+@given(
+    st.one_of(
+        st.tuples(st.lists(COUNTS, min_size=1), COUNTS),
+        st.tuples(
+            st.lists(st.floats(width=32, allow_nan=False, allow_infinity=False), min_size=1), st.just(0)
+        ),
+    ),
+    st.floats(2.0**-20, 2.0**10, width=32),
+    st.floats(2.0**-10, 2.0**10, width=32),
+)
+def test_samples_are_found_so_that_they_scale_to_the_values_again(stored, scale, general):
+    """Counts of a converter beside any offset, and floats without one."""
+    samples, offset = np.array(stored[0], dtype=float), float(stored[1])
+    values = (samples - offset) * (scale * general)
+    np.testing.assert_array_equal(stored_samples(values, SampleScaling(scale, general, offset)), samples)
+
+
+def test_a_channel_without_a_scale_holds_zeros():
+    np.testing.assert_array_equal(stored_samples(np.zeros(3), SampleScaling(0.0)), 0.0)

@@ -12,6 +12,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.plate_corners import plate_axes
 from mbkf.io.records import (
     AnalogChannel,
     Capture,
@@ -161,3 +162,17 @@ def test_more_events_than_a_list_holds_come_back(tmp_path, count):
     events = tuple(CaptureEvent(labels[k % 3], ("Left", "Right")[k % 2], 0.25 * k) for k in range(count))
     write_c3d(Capture("", markers_of(standing_points(5) / 1e3), events=events), tmp_path / "a.c3d")
     assert read_c3d(tmp_path / "a.c3d", CaptureOptions()).events == events
+
+
+def test_corners_that_form_no_rectangle_become_those_of_the_one_with_their_axes(tmp_path):
+    """Programs that take the axes from other sides compute the same force: every angle is right to 32 bits."""
+    plate = plate_of()
+    moved = np.array([[0.01, 0.0, 0.0], [0.0, 0.006, 0.001], [0.0, 0.0, 0.0], [-0.004, 0.01, 0.002]])
+    skewed = plate.corners_m + moved
+    path = tmp_path / "a.c3d"
+    write_c3d(Capture("", markers_of(np.ones((50, 1, 3))), (replace(plate, corners_m=skewed),)), path)
+    corners = read_c3d(path, CaptureOptions(unit="mm")).plates[0].corners_m
+    x, y = corners[0] - corners[1], corners[0] - corners[3]
+    assert abs(x @ y) < 1e-7 and np.linalg.norm(corners[0] - corners[1] + corners[2] - corners[3]) < 1e-6
+    np.testing.assert_allclose(plate_axes(corners), plate_axes(skewed), atol=1e-6)
+    np.testing.assert_allclose(corners.mean(axis=0), skewed.mean(axis=0), atol=1e-6)

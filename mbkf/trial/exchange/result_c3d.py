@@ -1,4 +1,8 @@
-"""A reconstruction as a C3D file: markers, angles, moments, powers, joint centres, reactions and foot events."""
+"""A reconstruction as a C3D file: markers, angles, moments, powers, joint centres, reactions, plates and foot events.
+
+Plates and analog channels are those of the trial that the result was made from, where that is given. Loads that no
+plate reads stand in the file as plates that the filter estimates, one for each part of the body.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.model.human import HumanModel
 from mbkf.trial.exchange.even_frames import at_rows, even_rows
 from mbkf.trial.exchange.joint_points import derived_from_joints, joint_point_names, side_of
+from mbkf.trial.exchange.result_plates import analog_of, plates_of
 from mbkf.trial.gait.events import foot_events
 
 FITTED = "_model"
@@ -29,26 +34,31 @@ MOST_FRAMES = 2**31
 SIDE_WORDS = (("R", "Right"), ("L", "Left"))
 
 
-def write_result_c3d(r: Reconstruction, path: str | Path) -> None:
+def write_result_c3d(r: Reconstruction, path: str | Path, trial: Capture | None = None) -> None:
     """Writes a result as a C3D file.
 
     Args:
         r: The result.
         path: The file; its suffix is ``.c3d``.
+        trial: The capture that the result was made from, for its plates and analog channels (:func:`trial_of`).
 
     Raises:
         InvalidInput: The suffix is another one, or the result has no frames.
         UnknownName: The subject's body is unknown.
         OSError: The file cannot be written.
     """
-    write_c3d(result_capture(r), path)
+    write_c3d(result_capture(r, trial), path, every_channel=True)
 
 
-def result_capture(r: Reconstruction) -> Capture:
-    """The measured markers as a capture, with everything that was computed as derived points.
+def result_capture(r: Reconstruction, trial: Capture | None = None) -> Capture:
+    """The measured markers as a capture, with everything that was computed as derived points, plates and channels.
 
     Frames that a live run lost are missing in all points, and so are derived points where the body is not followed.
     Points that are never known are left out.
+
+    Args:
+        r: The result.
+        trial: The capture that it was made from.
 
     Raises:
         UnknownName: The subject's body is unknown.
@@ -71,6 +81,8 @@ def result_capture(r: Reconstruction) -> Capture:
         derived=tuple(replace(p, values=at_rows(p.values, rows)) for p in known),
         events=_events(r, start_s),
         subject_mass_kg=r.subject.mass_kg,
+        plates=plates_of(r, rows, start_s, trial),
+        analog=analog_of(markers, r, trial),
     )
 
 
