@@ -10,13 +10,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.numerics.runs import runs
 
 SMALLER = 0.85
-"""A cluster smaller than this share of its median size holds mixtures; set on one run, between its mixtures and the
-feet of 17 captures without such (0.92)."""
+"""A cluster smaller than this share of its median size can hold mixtures; set on one run (ric_run), between its
+mixtures and the feet of 17 captures without such (0.92)."""
+
+BEYOND_SDS = 10.0
+"""A mixture is so many standard deviations of the cluster's size below the median: 195 and more in ric_run, up to 4.6
+for key points of 20 mm noise and for shoulders that move on a trunk (landings)."""
 
 BESIDE_S = 0.05
 """A low-pass spreads an exchange over so much time before and after."""
@@ -44,7 +49,7 @@ def without_shrunken(
         size = np.linalg.norm(cluster - cluster.mean(axis=1, keepdims=True), axis=(1, 2))
         if len(own) < LEAST_MARKERS or np.isnan(size).all():
             continue
-        shrunken = runs(size < SMALLER * np.nanmedian(size))
+        shrunken = runs(size < _least_size(size))
         for first, after in shrunken:
             positions[max(first - beside, 0) : after + beside, own] = np.nan
         frames = sum(after - first for first, after in shrunken)
@@ -54,3 +59,10 @@ def without_shrunken(
                 f"{frames} frames: mixtures of exchanged markers, left out; label the capture anew"
             )
     return replace(markers, positions_m=positions), tuple(notes)
+
+
+def _least_size(size: Array) -> float:
+    """Size (m) below which a cluster holds mixtures; sd of the (T,) sizes by their median absolute deviation."""
+    usual = float(np.nanmedian(size))
+    sd = 1.4826 * float(np.nanmedian(np.abs(size - usual)))
+    return min(SMALLER * usual, usual - BEYOND_SDS * sd)

@@ -30,3 +30,12 @@ def test_a_mixture_is_left_out_with_the_frames_beside():
     gone[30 - beside : 36 + beside, foot] = True
     assert np.array_equal(kept.present, markers.present & ~gone)
     assert note.startswith("the markers of the right foot") and "in 6 frames" in note
+
+
+def test_key_points_of_20_mm_noise_stay():
+    made = walker()
+    markers = subject_markers(made.trial.markers, made.subject)
+    noise = np.random.default_rng(3).normal(0.0, 0.02, markers.positions_m.shape)
+    noisy = replace(markers, positions_m=markers.positions_m + noise)
+    kept, notes = without_shrunken(noisy, made.subject)
+    assert notes == () and np.array_equal(kept.positions_m, noisy.positions_m, equal_nan=True)
