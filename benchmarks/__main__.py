@@ -100,7 +100,7 @@ def _parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="PART",
-        help="misuse, strangers: this part alone; repeatable",
+        help="bridges, misuse, strangers: this part alone; repeatable",
     )
     parser.add_argument(
         "--gate",

@@ -108,6 +108,9 @@ NEEDS: Mapping[str, Needs] = {
     ),
     "app": Needs(("axe_playwright_python", "playwright")),
     "batch": Needs(("distributed",)),
+    "bridges": Needs(
+        captures=("biomechzoo_walk_turn", "flywheel_squat", "rajagopal_walk_run"), some_rows=("opensim",)
+    ),
     "contact": Needs(captures=_MARKED),
     "double_pendulum": Needs(("matplotlib",)),
     "dynamic": Needs(captures=_GAIT),

@@ -1,4 +1,4 @@
-"""Write a subject as URDF or MJCF, a result as C3D, BVH, GLB or film.
+"""Write a subject as URDF, MJCF or OSIM, a result as C3D, BVH, GLB, film or a folder for OpenSim.
 
 A subject:
   urdf  has no spherical joint: each becomes three hinges, named after the clinical angles (hip_flexion_r, …), whose
@@ -6,6 +6,8 @@ A subject:
         joint. Masses, inertias and markers are the subject's; boxes, cylinders and spheres draw the body.
         FILE.urdf.toml beside it holds roles, soles, landmarks and angles: 'mbkf scale --body FILE.urdf' reads both.
   mjcf  keeps ball joints and a free joint; otherwise the same.
+  osim  a model of OpenSim 4 (y up) whose coordinates are the clinical angles, with its markers; its surfaces (VTP)
+        stand beside it.
 
 A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
   c3d   markers; under Plug-in Gait's names angles (deg), moments (Nm), powers (W), joint centres, reactions (N), the
@@ -13,15 +15,19 @@ A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
         analog channels (EMG) are the trial's, and loads that no plate reads are plates beside them.
   bvh   rotations of the segments, cm, y up, z forward; for animation programs.
   glb   the moving body as 'mbkf view' draws it; m, y up; for animation programs and browsers.
+  opensim  a folder: the model, its motion, the loads as ExternalLoads, set-ups for inverse dynamics and analyses:
+        cd DIR; opensim-cmd run-tool setup_id.xml
   mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and the extra 'film'.
 
 Examples:
   mbkf export subject.toml --to urdf --out subject.urdf
   mbkf export subject.toml --to mjcf --out subject.xml     python -m mujoco.viewer --mjcf=subject.xml shows it
+  mbkf export subject.toml --to osim --out subject.osim
   mbkf export result --to c3d --out walk_model.c3d
   mbkf export result --to c3d --trial walk.c3d --out walk_model.c3d
   mbkf export result --to bvh --out walk.bvh
   mbkf export result --to glb --out walk.glb
+  mbkf export result --to opensim --out walk_opensim
   mbkf export result --to mp4 --out walk.mp4
   mbkf export result --to gif --out walk.gif
 """
@@ -33,7 +39,8 @@ from pathlib import Path
 
 from mbkf.cli.options import add_out
 
-_OF_SUBJECT, _OF_RESULT, _FILMS = ("urdf", "mjcf"), ("c3d", "bvh", "glb", "mp4", "gif"), ("mp4", "gif")
+_OF_SUBJECT, _FILMS = ("urdf", "mjcf", "osim"), ("mp4", "gif")
+_OF_RESULT = ("c3d", "bvh", "glb", "opensim", *_FILMS)
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +51,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", required=True, choices=(*_OF_SUBJECT, *_OF_RESULT), help="format")
     parser.add_argument("--trial", metavar="FILE", help="c3d: the capture that the result was made from")
     parser.add_argument("--forces", metavar="FILE", help="c3d: ground reactions that it was made with")
-    add_out(parser, "FILE", "file to write", required=True)
+    add_out(parser, "FILE|DIR", "file to write; for opensim the folder", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -49,7 +49,7 @@ def check_outputs(args: argparse.Namespace) -> None:
     """
     for one in outputs_of(args):
         path = getattr(args, one.dest)
-        if path is not None and not one.folder:
+        if path is not None and not one.folder and not (one.either and Path(path).is_dir()):
             check_file(path, edits=edits_own_file(args, one), form=FORM_OF_SUFFIX.get(one.suffix))
 
 

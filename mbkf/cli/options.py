@@ -34,12 +34,14 @@ class Output(NamedTuple):
         folder: It names a folder.
         edits: Name of the option whose file it may replace, since the command edits that; empty for none.
         suffix: Of the one format that it is written in; empty where the name decides.
+        either: It names a file or a folder, as the format has it.
     """
 
     dest: str
     folder: bool
     edits: str
     suffix: str
+    either: bool = False
 
 
 class AxesOptions(TypedDict):
@@ -100,7 +102,8 @@ def add_out(
 
     Args:
         parser: The command's parser, or a group of it.
-        metavar: "DIR" for a folder; the name of a file otherwise, with the suffix of its format.
+        metavar: "DIR" for a folder, "FILE|DIR" where the format decides; the name of a file otherwise, with the suffix
+            of its format.
         text: Its help.
         required: It must be given.
         default: Value where it is not given.
@@ -110,7 +113,8 @@ def add_out(
     before: tuple[Output, ...] = parser.get_default(OUTPUTS) or ()
     suffix = "" if "|" in metavar else PurePath(metavar).suffix
     action = parser.add_argument(option, metavar=metavar, help=text, required=required, default=default)
-    parser.set_defaults(**{OUTPUTS: (*before, Output(action.dest, metavar == "DIR", edits, suffix))})
+    output = Output(action.dest, metavar == "DIR", edits, suffix, metavar.endswith("|DIR"))
+    parser.set_defaults(**{OUTPUTS: (*before, output)})
     if not before:
         add_overwrite(parser)
 

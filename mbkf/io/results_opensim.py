@@ -1,7 +1,7 @@
 """A reconstruction as the files OpenSim opens: angles.mot, angles_lab.mot, torques.sto, reactions.mot, markers.trc.
 
 OpenSim's axes: x forward, y up, z right. In angles.mot the pelvis's angles are in the frame of progression;
-together with reactions.mot or markers.trc OpenSim needs them in the laboratory's axes, as in angles_lab.mot.
+beside reactions.mot or markers.trc they belong in the laboratory's axes, as in angles_lab.mot.
 
 Only the range from the first to the last tracked frame is written. OpenSim's reader of tables refuses NaN, so frames
 inside that range with a value missing are left out of the tables (the times show it; OpenSim interpolates), and
@@ -191,16 +191,28 @@ def _load_columns(r: Reconstruction) -> dict[str, Array]:
     point, so that force, point and moment together are the wrench exactly. The header names the parts in the order of
     the columns, and those that are estimated at any time.
     """
-    R, loads, suffixes = rotation_to_world("y"), r.loads, [*SIDES, *r.support_names]
-    columns = {}
-    for k in _shown(r):
+    R, loads, columns = rotation_to_world("y"), r.loads, {}
+    for k, begins in zip(_shown(r), load_columns(r).values(), strict=True):
         force, moment = loads.wrench[:, k, :3], loads.wrench[:, k, 3:]
         point = _filled(loads.point_m[:, k])
         about_point = moment - np.cross(point, force)
-        for prefix, vectors in (("force_{}_v", force), ("force_{}_p", point), ("torque_{}_", about_point)):
+        for begin, vectors in zip(begins, (force, point, about_point), strict=True):
             for axis, values in zip("xyz", (vectors @ R).T, strict=True):
-                columns[f"ground_{prefix.format(suffixes[k])}{axis}"] = values
+                columns[f"{begin}{axis}"] = values
     return columns
+
+
+def load_columns(r: Reconstruction) -> dict[str, tuple[str, str, str]]:
+    """Beginnings of the columns of force, point and moment in reactions.mot, by the part that bears the load."""
+    suffixes = [*SIDES, *r.support_names]
+    return {
+        r.loads.names[k]: (
+            f"ground_force_{suffixes[k]}_v",
+            f"ground_force_{suffixes[k]}_p",
+            f"ground_torque_{suffixes[k]}_",
+        )
+        for k in _shown(r)
+    }
 
 
 def _shown(r: Reconstruction) -> list[int]:

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from mbkf.conventions import TomlTable
+import numpy as np
+
+from mbkf.conventions import Array, TomlTable
 from mbkf.model.sides import mirrored
 
 LARGEST_ZERO_DEG = 45.0
@@ -36,6 +38,11 @@ class Angle:
     title: str = ""
     zero_sd_deg: float = 0.0
     opensim_zero_deg: float = 0.0
+
+    @property
+    def direction(self) -> Array:
+        """(3,) unit vector about (or along) which the coordinate is positive."""
+        return self.sign * np.eye(3)["xyz".index(self.axis)] + 0.0
 
 
 @dataclass(frozen=True)

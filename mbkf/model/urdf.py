@@ -29,7 +29,7 @@ from mbkf.model.body_shapes import (
     segment_shapes,
     side_of,
 )
-from mbkf.model.clinical import AXES, ClinicalAngles
+from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.clinical_table import Angle
 from mbkf.model.primitive_shapes import Primitive, primitives
 from mbkf.model.skeleton import joint_origin
@@ -167,7 +167,7 @@ def _hinges(
                 name=angle.name, type="revolute", limit=limit,
                 parent=names[i - 1] if i else proximal, child=names[i] if i < len(names) else distal,
                 origin=_translation(origin_m if i == 0 else np.zeros(3)),
-                axis=angle.sign * np.eye(3)[AXES[angle.axis]] + 0.0,
+                axis=angle.direction,
             )
         )  # fmt: skip
     return [_between(name) for name in names], joints

@@ -12,25 +12,45 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.model.mjcf import to_mjcf
+from mbkf.model.osim import osim_files
 from mbkf.model.urdf import to_urdf
 from mbkf.model.urdf_body import side_path
 from mbkf.model.urdf_side import urdf_side_text
 from mbkf.trial.exchange.result_bvh import write_result_bvh
 from mbkf.trial.exchange.result_c3d import write_result_c3d
 from mbkf.trial.exchange.result_glb import write_result_glb
+from mbkf.trial.exchange.result_opensim import write_result_opensim
 from mbkf.trial.exchange.result_plates import trial_of
 
-FORMATS = {"urdf": to_urdf, "mjcf": to_mjcf}
-"""Formats of a subject, by name."""
+
+def _urdf(subject: Subject, model: HumanModel, name: str) -> dict[str, str]:
+    beside = urdf_side_text(model, _height_m(subject, model))
+    return {name: to_urdf(model, subject.markers), side_path(Path(name)).name: beside}
+
+
+def _mjcf(subject: Subject, model: HumanModel, name: str) -> dict[str, str]:
+    return {name: to_mjcf(model, subject.markers)}
+
+
+def _osim(subject: Subject, model: HumanModel, name: str) -> dict[str, str]:
+    return osim_files(model, subject.markers, name)
+
+
+FORMATS = {"urdf": _urdf, "mjcf": _mjcf, "osim": _osim}
+"""Formats of a subject, by name: texts by the names of the files that stand beside each other."""
 
 RESULT_FORMATS = {"c3d": write_result_c3d, "bvh": write_result_bvh, "glb": write_result_glb}
-"""Formats of a result, by name."""
+"""Formats of a result that are one file, by name."""
+
+RESULT_FOLDERS = {"opensim": write_result_opensim}
+"""Formats of a result that are a folder, by name."""
 
 
 def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
     """Writes a subject's body with its markers, whole or not at all.
 
-    Beside a URDF file stands its side file, so that :func:`mbkf.load_body` reads the body back.
+    Beside a URDF file stands its side file, so that :func:`mbkf.load_body` reads the body back; beside an OpenSim model
+    the surfaces of its segments (VTP).
 
     Args:
         subject: The scaled person.
@@ -43,16 +63,11 @@ def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
         OSError: The file cannot be written.
     """
     _check(kind, FORMATS, path)
-    model = HumanModel.of(subject)
-    text = FORMATS[kind](model, subject.markers)
-    if kind != "urdf":
-        write_text(path, text)
-        return
-    beside = urdf_side_text(model, _height_m(subject, model))
     path = Path(path)
+    texts = FORMATS[kind](subject, HumanModel.of(subject), path.name)
     with replacing_beside(path) as partial:
-        write_text(partial / path.name, text)
-        write_text(partial / side_path(path).name, beside)
+        for name, text in texts.items():
+            write_text(partial / name, text)
 
 
 def _height_m(subject: Subject, model: HumanModel) -> float:
@@ -73,18 +88,23 @@ def export_result(
     Args:
         reconstruction: The result, e.g. of :func:`mbkf.reconstruct` or :func:`mbkf.read_reconstruction`.
         kind: "c3d" (Mokka, Visual3D, Nexus: markers, angles, moments, powers, joint centres, reactions, events), "bvh"
-            (animation: the segments' rotations, cm, y up) or "glb" (glTF 2.0: the moving body, m, y up).
-        path: The file to write; the name of a C3D file ends in ``.c3d``.
+            (animation: the segments' rotations, cm, y up), "glb" (glTF 2.0: the moving body, m, y up) or "opensim" (a
+            folder with model, motion, external loads and set-ups of OpenSim's tools).
+        path: The file to write, or the folder; the name of a C3D file ends in ``.c3d``.
         trial: File of the capture that the result was made from: a C3D file then has its plates and analog channels.
         forces: File of ground reactions, where the result was made with one beside the capture.
 
     Raises:
         UnknownName: The format or the subject's body is unknown.
         FileFormatError: The path is a folder.
-        InvalidInput: The result holds no motion, the name of a C3D file ends otherwise, or ``trial`` is another one.
+        InvalidInput: The result holds no motion (for OpenSim, no loads), the name of a C3D file ends otherwise, or
+            ``trial`` is another one.
         OSError: The file cannot be written.
     """
-    _check(kind, RESULT_FORMATS, path)
+    if kind in RESULT_FOLDERS:
+        RESULT_FOLDERS[kind](reconstruction, path)
+        return
+    _check(kind, (*RESULT_FORMATS, *RESULT_FOLDERS), path)
     if kind == "c3d":
         capture = None if trial is None else trial_of(reconstruction, trial, forces)
         write_result_c3d(reconstruction, path, capture)

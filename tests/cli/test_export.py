@@ -59,10 +59,21 @@ def test_a_result_becomes_a_file_from_its_folder_and_from_its_motion(result, tmp
     assert written[0].startswith(begins) and written[0] == written[1] == written[2]
 
 
-@pytest.mark.parametrize("kind", ["urdf", "mjcf", "c3d", "bvh", "glb"])
+def test_a_result_becomes_a_folder_and_again(result, tmp_path, capsys):
+    out = tmp_path / "for opensim"
+    for _ in range(2):
+        assert main(["export", str(result), "--to", "opensim", "--out", str(out)]) == 0
+        assert capsys.readouterr().out.strip() == str(out)
+    assert {"model.osim", "motion.mot", "setup_id.xml"} < {path.name for path in out.iterdir()}
+    (tmp_path / "taken").write_text("mine")
+    assert main(["export", str(result), "--to", "opensim", "--out", str(tmp_path / "taken")]) == 2
+    assert (tmp_path / "taken").read_text() == "mine"
+
+
+@pytest.mark.parametrize("kind", ["urdf", "mjcf", "osim", "c3d", "bvh", "glb", "opensim"])
 def test_formats_of_the_other_kind_are_refused_with_what_is_needed(result, tmp_path, capsys, kind):
     write_subject(Subject("human18", 70.0, FACTORS, (), "reference36"), tmp_path / "s.toml")
-    of_result = kind in RESULT_FORMATS
+    of_result = kind not in FORMATS
     source = tmp_path / "s.toml" if of_result else result
     assert main(["export", str(source), "--to", kind, "--out", str(tmp_path / "x")]) == 2
     told = capsys.readouterr().err

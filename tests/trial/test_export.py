@@ -11,7 +11,7 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.io.written import form_of
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
-from mbkf.trial.export import FORMATS, RESULT_FORMATS, export_result, export_subject
+from mbkf.trial.export import FORMATS, RESULT_FOLDERS, RESULT_FORMATS, export_result, export_subject
 from tests.recordings import walk
 
 SUBJECT = Subject(
@@ -23,7 +23,10 @@ SUBJECT = Subject(
 )
 
 
-@pytest.mark.parametrize(("kind", "tag", "name"), [("urdf", "robot", "marker_C7"), ("mjcf", "mujoco", "C7")])
+@pytest.mark.parametrize(
+    ("kind", "tag", "name"),
+    [("urdf", "robot", "marker_C7"), ("mjcf", "mujoco", "C7"), ("osim", "OpenSimDocument", "C7")],
+)
 def test_a_subject_is_written_with_its_markers(tmp_path, kind, tag, name):
     path = tmp_path / "deeper" / f"body.{kind}"
     export_subject(SUBJECT, kind, path)
@@ -31,8 +34,10 @@ def test_a_subject_is_written_with_its_markers(tmp_path, kind, tag, name):
     assert root.tag == tag
     assert any(element.get("name") == name for element in root.iter())
     assert form_of(path) is not None
-    beside = ["body.urdf.toml"] if kind == "urdf" else []
+    surfaces = sorted(f"body_{segment}.vtp" for segment in HumanModel.of(SUBJECT).joints)
+    beside = {"urdf": ["body.urdf.toml"], "mjcf": [], "osim": surfaces}[kind]
     assert sorted(p.name for p in path.parent.iterdir()) == [path.name, *beside]
+    assert all(form_of(path.parent / name) is not None for name in beside)
 
 
 def test_a_urdf_file_is_read_back_as_a_body(tmp_path):
@@ -47,7 +52,7 @@ def test_a_urdf_file_is_read_back_as_a_body(tmp_path):
 
 
 def test_wrong_formats_and_places_are_refused(tmp_path):
-    assert set(FORMATS) == {"urdf", "mjcf"}
+    assert set(FORMATS) == {"urdf", "mjcf", "osim"}
     with pytest.raises(UnknownName, match="urdf"):
         export_subject(SUBJECT, "urfd", tmp_path / "x")
     with pytest.raises(FileFormatError, match="folder"):
@@ -64,8 +69,10 @@ def test_a_result_is_written_whole(tmp_path, kind):
 
 
 def test_wrong_formats_and_places_of_results_are_refused(tmp_path):
-    assert set(RESULT_FORMATS) == {"c3d", "bvh", "glb"}
+    assert set(RESULT_FORMATS) == {"c3d", "bvh", "glb"} and set(RESULT_FOLDERS) == {"opensim"}
     with pytest.raises(UnknownName, match="bvh"):
         export_result(walk(), "bhv", tmp_path / "x")
+    with pytest.raises(UnknownName, match="opensim"):
+        export_result(walk(), "opensin", tmp_path / "x")
     with pytest.raises(FileFormatError, match="folder"):
         export_result(walk(), "glb", tmp_path)

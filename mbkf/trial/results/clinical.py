@@ -11,6 +11,7 @@ from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles, configuration_names, dof_names
 from mbkf.model.clinical_table import opensim_zeros_rad
+from mbkf.model.osim import osim_origin_m
 from mbkf.trial.results.progression import LABORATORY, Progression, laboratory
 from mbkf.trial.results.readings import AXES, STATIC
 
@@ -101,10 +102,9 @@ def clinical_motion(
 
 def _opensim_origin(model: Body) -> tuple[float, ...]:
     """OpenSim's origin of the root in the root's frame, of the person's size, m; empty where it is the root's own."""
-    place = model.description.clinical_joints[0].opensim_origin_m
-    if place is None:
+    if model.description.clinical_joints[0].opensim_origin_m is None:
         return ()
-    return tuple(float(one) for one in model.axis_scale(model.description.segments[0]) * np.array(place))
+    return tuple(float(one) for one in osim_origin_m(model))
 
 
 def _moments(own: ClinicalAngles, track: Track, torques: Torques, known: BoolArray, angles: Array) -> Moments:
