@@ -38,7 +38,7 @@ ANGLE_BOUND_DEG, TORQUE_BOUND_NM_KG = 5.0, 0.25
 SETTLING_S = 0.3
 """Start of a trial that is not judged."""
 
-EXACT = CaptureSettings(markers_sd_m=0.0, skin_sd_m=0.0, occlusion=0.0, ghosts=0)
+EXACT = CaptureSettings(markers_sd_m=0.0, skin_sd_m=0.0, occlusion=0.0, ghosts=0, offset_n=(0.0, 0.0))
 
 
 @dataclass(frozen=True)
