@@ -26,6 +26,9 @@ class Axis(NamedTuple):
     labels: tuple[str, ...] = ()
 
 
+WORLD = "x forward, y left, z up"
+"""Directions of the world's axes, right-handed, as the capture's file has them after reading."""
+
 AXES: Mapping[str, Axis] = {
     "time": Axis("T", "frames", "times_s"),
     "configuration": Axis("n_q", "numbers of the configuration", "configuration_names"),
@@ -37,9 +40,12 @@ AXES: Mapping[str, Axis] = {
     "read_plate": Axis("K_r", "force plates that the filter reads", "read_plate_names"),
     "foot": Axis("2", "feet", "foot", ("right", "left")),
     "wrench": Axis(
-        "6", "force and moment", "wrench", tuple(f"{a}_{b}" for a in ("force", "moment") for b in "xyz")
+        "6",
+        f"force and moment on the body, world axes: {WORLD}",
+        "wrench",
+        tuple(f"{a}_{b}" for a in ("force", "moment") for b in "xyz"),
     ),
-    "xyz": Axis("3", "world axes", "xyz", tuple("xyz")),
+    "xyz": Axis("3", f"world axes: {WORLD}", "xyz", tuple("xyz")),
     "corner": Axis("4", "corners of a plate", "corner", tuple("1234")),
     "kind": Axis("4", "kinds of readings", "reading_kind", READING_KINDS),
     "state": Axis("2n_v", "configuration and velocity in the tangent space"),
@@ -103,6 +109,17 @@ def labels_of(axes: Sequence[str], names: Mapping[str, Sequence[str]]) -> Iterat
     """
     for labels in product(*(AXES[axis].labels or names[axis] for axis in axes)):
         yield dict(zip(axes, labels, strict=True))
+
+
+def axes_text(axes: Sequence[str]) -> str:
+    """An array's axes in their order, by the datasets that label them, with the labels that every trial has.
+
+    E.g. ``times_s; foot: right, left; xyz: x, y, z``.
+    """
+    return "; ".join(
+        f"{AXES[name].names or name}{': ' if AXES[name].labels else ''}{', '.join(AXES[name].labels)}"
+        for name in axes
+    )
 
 
 def numbered(count: int) -> tuple[str, ...]:

@@ -197,7 +197,7 @@ def spread(of: str, default: T = _REQUIRED, *, axes: str = "", unit: Unit | None
     declared = Quantity(
         tuple(axes.split()),
         unit or Unit(""),
-        f"standard deviations of {of}, NaN where not known",
+        f"standard deviations (1 sd) of the whole error of {of}, NaN where not known",
         required=default is MISSING,
         spread_of=of,
     )

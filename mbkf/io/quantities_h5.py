@@ -18,7 +18,7 @@ import numpy as np
 from h5py import h5a, h5s, h5t
 
 from mbkf.conventions import Array
-from mbkf.io.dimensions import AXES
+from mbkf.io.dimensions import AXES, axes_text
 from mbkf.io.hdf5 import array
 from mbkf.io.quantities import Quantity, attributes, quantities
 from mbkf.io.utf8 import storable
@@ -100,7 +100,7 @@ def write_array(file: h5py.File, one: Quantity, value: Array) -> None:
         packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     dataset = file.create_dataset(one.key, data=value, **packed)
     unit = one.unit.text
-    _describe(dataset, unit=unit, units=unit, long_name=one.meaning)
+    _describe(dataset, unit=unit, units=unit, long_name=one.meaning, axes=axes_text(one.axes))
     if one.codes:
         dataset.attrs["flag_values"] = np.array(list(one.codes), dtype=value.dtype)
         _describe(dataset, flag_meanings=" ".join(one.codes.values()))

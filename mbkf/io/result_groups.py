@@ -115,6 +115,11 @@ class Motion:
         read=json.loads,
         factory=dict,
     )
+    positive_senses: dict[str, str] = attribute(
+        "movement that a positive value of a coordinate means, by name; _r stands for the right side, _l for the left",
+        read=json.loads,
+        factory=dict,
+    )
     angles_zero: str = attribute(
         "zero of the joints' angles: axes, or static for the static trial's posture", "axes"
     )
@@ -146,7 +151,8 @@ class Moments:
     moments: Array = quantity(
         "time coordinate",
         FORCE,
-        "moments conjugate to the coordinates, about the body's own axes; the pelvis's are the residual",
+        "internal moments of the joints, conjugate to the coordinates: positive turns towards positive angles; about "
+        "the body's own axes; the pelvis's are the residual",
         column=Column("torques.sto", "{coordinate}_{load}"),
     )
     moments_sd: Array = spread("moments")
@@ -280,7 +286,11 @@ class Provenance:
     filter: str = attribute("kinematic, torque or dynamic")
     version: str = attribute("version of mbkf")
     rate_hz: float = attribute("frame rate, Hz", read=float)
-    times_s: Array = quantity("time", SECOND, "times of the frames")
+    times_s: Array = quantity(
+        "time",
+        SECOND,
+        "times of the frames by the clock of the capture: the first frame of a C3D file is at 0",
+    )
     smoothed: bool = attribute("all later frames that matter correct a frame", read=bool)
     uncorrected: int = attribute(
         "number of frames that smoothing or a lag left as the filter had them", 0, read=int

@@ -16,7 +16,7 @@ from mbkf.errors import FileFormatError, MbkfError
 from mbkf.io.atomic import replacing
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
-from mbkf.io.dimensions import AXES, Unit, numbered
+from mbkf.io.dimensions import AXES, WORLD, Unit, numbered
 from mbkf.io.files_read import check_input
 from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
 from mbkf.io.quantities import Quantity
@@ -50,8 +50,10 @@ def write_h5(reconstruction: Reconstruction, path: str | Path, run_id: str = "")
     with h5py.File(made, "w", userblock_size=USER_BLOCK) as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
+        file.attrs["missing"] = "NaN where not known"
         file.attrs["axes"] = (
-            "x forward, y left, z up; forces act on the body; moments in the conventions of mbkf"
+            f"{WORLD}; forces are those of the ground on the body; moments of joints are internal: "
+            "positive turns the joint towards positive angles"
         )
         write_record(file, reconstruction)
         file.attrs["later_frames"] = reconstruction.later_frames  # for readers; it follows from the rest

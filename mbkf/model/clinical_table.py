@@ -110,6 +110,11 @@ def opensim_zeros_rad(joints: Iterable[ClinicalJoint]) -> dict[str, float]:
     }
 
 
+def positive_senses(joints: Iterable[ClinicalJoint]) -> dict[str, str]:
+    """What a positive value of each coordinate means, by name; those that a body file explains."""
+    return {angle.name: angle.positive for joint in joints for angle in joint.coordinates if angle.positive}
+
+
 def _check(joint: ClinicalJoint) -> None:
     if "".join(angle.axis for angle in joint.angles) != joint.order:
         raise ValueError(f"joint {joint.name}: the angles' axes must follow its order {joint.order}")

@@ -43,6 +43,10 @@ def test_every_dataset_states_its_meaning_and_codes(path):
     with h5py.File(path) as file:
         for dataset in file.values():
             assert dataset.attrs["long_name"]
+            assert dataset.is_scale or dataset.attrs["axes"]
+        assert file["foot_cop_m"].attrs["axes"] == "times_s; foot: right, left; xyz: x, y, z"
+        assert file["angles"].attrs["axes"] == "times_s; coordinate_names"
+        assert "x forward, y left, z up" in file["xyz"].attrs["long_name"]
         footing = file["footing"].attrs
         assert footing["flag_values"].tolist() == [-1, 0, 1, 2]
         assert footing["flag_meanings"].split() == ["unmeasured", "air", "own_plate", "shared_plate"]

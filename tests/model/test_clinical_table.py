@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.model.body_file import load_body
-from mbkf.model.clinical_table import clinical_joints, opensim_zeros_rad
+from mbkf.model.clinical_table import clinical_joints, opensim_zeros_rad, positive_senses
 
 KNEE = {
     "name": "knee_r",
@@ -91,3 +91,9 @@ def test_opensim_counts_pronation_from_the_supinated_forearm():
     """A palm that faces in is half way from supination (0°) to a palm down (180°)."""
     zeros = opensim_zeros_rad(load_body().clinical_joints)
     assert zeros == {"pro_sup_r": pytest.approx(np.pi / 2), "pro_sup_l": pytest.approx(np.pi / 2)}
+
+
+def test_the_positive_sense_of_every_coordinate_that_the_body_file_explains():
+    senses = positive_senses(load_body().clinical_joints)
+    assert senses["hip_flexion_l"] == "thigh forward" and senses["pelvis_ty"] == "up"
+    assert set(senses) == {a.name for joint in load_body().clinical_joints for a in joint.coordinates}

@@ -10,7 +10,7 @@ from mbkf.io.result_groups import Moments, Motion, Torques
 from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles, configuration_names, dof_names
-from mbkf.model.clinical_table import opensim_zeros_rad
+from mbkf.model.clinical_table import opensim_zeros_rad, positive_senses
 from mbkf.model.osim import osim_origin_m
 from mbkf.trial.results.progression import LABORATORY, Progression, laboratory
 from mbkf.trial.results.readings import AXES, STATIC
@@ -95,6 +95,7 @@ def clinical_motion(
         angles_read=clinical.reading.name,
         opensim_origin_m=_opensim_origin(model),
         opensim_zeros_rad=opensim_zeros_rad(model.description.clinical_joints),
+        positive_senses=positive_senses(model.description.clinical_joints),
         angles_zero=AXES if zero_q is None else STATIC,
     )
     return motion, _moments(own, track, torques, known, own_angles)
