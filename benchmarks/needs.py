@@ -17,14 +17,17 @@ EXTRAS: Mapping[str, str] = {
     "axe_playwright_python": "test",
     "biorbd": "peers",
     "distributed": "cluster",
+    "ezc3d": "test",
     "matplotlib": "figures",
     "mujoco": "test",
     "opensim": "peers",
     "playwright": "test",
+    "pybullet": "bullet",
     "pylsl": "lsl",
     "pytest": "test",
     "sphinx": "docs",
     "vqf": "peers",
+    "xarray": "test",
 }
 """Extra of ``pyproject.toml`` that installs a module."""
 
@@ -109,7 +112,9 @@ NEEDS: Mapping[str, Needs] = {
     "app": Needs(("axe_playwright_python", "playwright")),
     "batch": Needs(("distributed",)),
     "bridges": Needs(
-        captures=("biomechzoo_walk_turn", "flywheel_squat", "rajagopal_walk_run"), some_rows=("opensim",)
+        libraries=("xarray",),
+        captures=("biomechzoo_walk_turn", "flywheel_squat", "gaitalytics_walk", "rajagopal_walk_run"),
+        some_rows=("ezc3d", "mujoco", "opensim", "pybullet"),
     ),
     "contact": Needs(captures=_MARKED),
     "double_pendulum": Needs(("matplotlib",)),

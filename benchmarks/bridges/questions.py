@@ -9,18 +9,21 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-import xarray
 
 import mbkf
 from benchmarks.checks import Check
+
+if TYPE_CHECKING:
+    import xarray
 
 MOTION = "motion.h5"
 
 RATE_HZ, SECONDS = 100.0, 2.0
 
-Answer = Callable[[xarray.Dataset], bool]
+Answer: TypeAlias = "Callable[[xarray.Dataset], bool]"
 
 
 def questions_rows(out: Path) -> Iterator[Check]:
@@ -29,6 +32,8 @@ def questions_rows(out: Path) -> Iterator[Check]:
     Args:
         out: Folder for the result.
     """
+    import xarray
+
     subject, recorded = mbkf.synthesise("walk", seconds=SECONDS)
     result = mbkf.reconstruct(recorded.trial, subject)
     mbkf.write_reconstruction(result, mbkf.summarise(result), out / "result")
