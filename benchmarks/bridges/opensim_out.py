@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from scipy.interpolate import make_interp_spline
 
 import mbkf
@@ -30,7 +31,16 @@ from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.model.osim import osim_coordinates, osim_forces, osim_origin_m, to_osim_axes
-from mbkf.trial.exchange.result_opensim import MODEL, MOTION, SETUP_ID, TORQUES_OUT, load_segment
+from mbkf.trial.exchange.result_opensim import (
+    ANALYSES_OUT,
+    MODEL,
+    MOTION,
+    NAME,
+    SETUP_ANALYZE,
+    SETUP_ID,
+    TORQUES_OUT,
+    load_segment,
+)
 from mbkf.trial.export import export_result, export_subject
 
 POSTURES, MASS, PLACE_M, MARKER_M = 50, 1e-9, 1e-6, 1e-4
@@ -125,6 +135,24 @@ def result_rows(name: str, result: Reconstruction, folder: Path) -> Iterator[Che
     )
     yield information(f"{label}, the filter's accelerations, legs' least r", r)
     yield information(f"{label}, the filter's accelerations, legs' largest RMS of peak", share)
+    with quiet(), chdir(folder):
+        opensim().AnalyzeTool(SETUP_ANALYZE).run()
+    off, largest = _mass_centre_off(result, model, folder)
+    yield Check(
+        f"{name}: centre of mass accelerated by our torques in OpenSim, share off", off / largest, SHARE, "<="
+    )
+
+
+def _mass_centre_off(result: Reconstruction, model: HumanModel, folder: Path) -> tuple[float, float]:
+    """Largest difference of the centre of mass's acceleration from the filter's, and its largest component, m/s²."""
+    table = read_storage(folder / ANALYSES_OUT / f"{NAME}_BodyKinematics_acc_global.sto")
+    theirs = np.column_stack([table.column(f"center_of_mass_{axis}") for axis in "XYZ"])
+    rows = np.searchsorted(result.times_s, table.times_s - 0.5 / result.rate_hz)
+    data, ours = model.pin_model.createData(), []
+    for t in rows:
+        pin.centerOfMass(model.pin_model, data, result.q[t], result.v[t], result.a[t])
+        ours.append(to_osim_axes(data.acom[0]))
+    return float(np.abs(theirs - ours).max()), float(np.abs(ours).max())
 
 
 def _agreement(

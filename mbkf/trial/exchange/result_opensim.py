@@ -3,7 +3,9 @@
 The motion holds the values of the model's own coordinates (:func:`mbkf.model.osim.osim_coordinates`) in degrees and m,
 so that each frame's posture is the result's. Loads act on the segment that bears them, at their centre of pressure,
 with the moment about it; they are those of reactions.mot. OpenSim's inverse dynamics differentiates the coordinates by
-a natural quintic spline, without a low-pass (-1): the result is smooth already.
+a natural quintic spline, without a low-pass (-1): the result is smooth already. Its analyses get accelerations from
+forward dynamics: a motor on every coordinate drives the model by the result's torques and residual, so that
+accelerations and joint reactions are the result's.
 """
 
 from __future__ import annotations
@@ -24,10 +26,11 @@ from mbkf.io.written import MARK
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.model.osim import VERSION, osim_coordinates, osim_files, osim_name
+from mbkf.model.osim import VERSION, osim_coordinates, osim_files, osim_forces, osim_name
 
 MODEL, MOTION = "model.osim", "motion.mot"
 LOADS_DATA, LOADS = "external_loads.mot", "ExternalLoads.xml"
+ACTUATORS, TORQUES = "actuators.xml", "torques.sto"
 SETUP_ID, SETUP_ANALYZE = "setup_id.xml", "setup_analyze.xml"
 TORQUES_OUT, ANALYSES_OUT = "inverse_dynamics.sto", "analyses"
 """Files and folders that OpenSim's tools write, in the folder."""
@@ -57,7 +60,9 @@ def write_result_opensim(r: Reconstruction, folder: str | Path) -> None:
             (partial / name).write_text(text, encoding="utf-8")
         write_storage(motion, partial / MOTION)
         write_storage(loads, partial / LOADS_DATA)
+        write_storage(torque_table(r, model), partial / TORQUES)
         for name, element in (
+            (ACTUATORS, _actuators(motion.names)),
             (LOADS, _external_loads(r, model, loads)),
             (SETUP_ID, _inverse_dynamics(span)),
             (SETUP_ANALYZE, _analysis(span)),
@@ -78,6 +83,18 @@ def motion_table(r: Reconstruction, model: Body) -> Table:
     header = {"Trial": r.trial, "Software": f"mbkf {r.version}"}
     names = tuple(osim_name(name) for name in clinical.names)
     return Table(names, r.times_s[rows], values, True, "Coordinates", header)
+
+
+def torque_table(r: Reconstruction, model: Body) -> Table:
+    """The generalised forces conjugate to these coordinates, N m and N, in frames in which they are known.
+
+    Args:
+        r: The result.
+        model: Its body.
+    """
+    rows = r.tracked & np.isfinite(r.q).all(axis=1) & np.isfinite(r.tau).all(axis=1)
+    names = tuple(osim_name(name) for name in ClinicalAngles(model).names)
+    return Table(names, r.times_s[rows], osim_forces(model, r.q[rows], r.tau[rows]), title="Torques")
 
 
 def _loads_table(r: Reconstruction) -> Table:
@@ -164,11 +181,23 @@ def _inverse_dynamics(span: tuple[float, float]) -> ET.Element:
     return root
 
 
+def _actuators(coordinates: tuple[str, ...]) -> ET.Element:
+    """A motor of strength 1 on every coordinate, called after it: its control is its torque or force."""
+    root = ET.Element("ForceSet", name=NAME)
+    objects = ET.SubElement(root, "objects")
+    for name in coordinates:
+        motor = ET.SubElement(objects, "CoordinateActuator", name=name)
+        _texts(motor, coordinate=name, optimal_force="1", min_control="-inf", max_control="inf")
+    return root
+
+
 def _analysis(span: tuple[float, float]) -> ET.Element:
     root = ET.Element("AnalyzeTool", name=NAME)
     _texts(
         root,
         model_file=MODEL,
+        replace_force_set="false",
+        force_set_files=ACTUATORS,
         results_directory=ANALYSES_OUT,
         initial_time=repr(span[0]),
         final_time=repr(span[1]),
@@ -179,6 +208,14 @@ def _analysis(span: tuple[float, float]) -> ET.Element:
     )
     analyses = ET.SubElement(ET.SubElement(root, "AnalysisSet", name="Analyses"), "objects")
     _texts(ET.SubElement(analyses, "BodyKinematics", name="BodyKinematics"), on="true", in_degrees="false")
+    reactions = ET.SubElement(analyses, "JointReaction", name="JointReaction")
+    _texts(reactions, on="true", joint_names="ALL", apply_on_bodies="child", express_in_frame="ground")
+    controls = ET.SubElement(root, "ControllerSet", name="Controllers")
+    _texts(
+        ET.SubElement(ET.SubElement(controls, "objects"), "ControlSetController", name="torques"),
+        actuator_list="ALL",
+        controls_file=TORQUES,
+    )
     return root
 
 

@@ -67,8 +67,29 @@ def test_the_loads_are_the_results_wrenches_each_on_the_segment_that_bears_it(re
     assert forces["right_hand"].findtext("applied_to_body") == "right_hand"
 
 
+def test_a_motor_on_every_coordinate_has_the_results_force(result, folder):
+    table, model = read_storage(folder / "torques.sto"), walker()[1]
+    motors = list(ET.parse(folder / "actuators.xml").getroot().iter("CoordinateActuator"))
+    assert (
+        [one.findtext("coordinate") for one in motors]
+        == list(table.names)
+        == [one.get("name") for one in motors]
+    )
+    assert {one.findtext("optimal_force") for one in motors} == {"1"}
+    hip = table.column("hip_flexion_l")
+    wanted = result.moments[result.tracked, result.coordinate_names.index("hip_flexion_l")]
+    np.testing.assert_allclose(hip, wanted, atol=1e-9)
+    force = table.columns[:, [table.names.index(f"pelvis_t{axis}") for axis in "xyz"]]
+    R = np.array([model.placements(q)[0][model.root.joint_id] for q in result.q[result.tracked]])
+    residual = np.einsum("tij,tj->ti", R, result.tau[result.tracked, :3])
+    np.testing.assert_allclose(force, to_osim_axes(residual), atol=1e-9)
+
+
 def test_set_ups_name_files_of_the_folder_and_times_of_the_motion(folder):
     times = read_storage(folder / "motion.mot").times_s
+    analyses = ET.parse(folder / "setup_analyze.xml").getroot()[0]
+    assert (folder / analyses.findtext("force_set_files")).is_file()
+    assert (folder / analyses.find(".//ControlSetController").findtext("controls_file")).is_file()
     for name in ("setup_id.xml", "setup_analyze.xml"):
         tool = ET.parse(folder / name).getroot()[0]
         for entry in ("model_file", "coordinates_file", "external_loads_file"):
@@ -111,3 +132,16 @@ def test_opensims_inverse_dynamics_gives_our_torques(tmp_path):
     }
     assert np.abs(ours["knee_angle_r"]).max() > 10.0
     assert max(off.values()) < 0.2, "of 700 N on the feet"
+    moved = read_storage(tmp_path / "x" / "analyses" / "mbkf_BodyKinematics_acc_global.sto")
+    found = np.column_stack([moved.column(f"head_{axis}") for axis in "XYZ"])
+    com_m = model.pin_model.inertias[model.joint("head").joint_id].lever
+    wanted = to_osim_axes(_accelerations(model, r, "head", com_m))
+    np.testing.assert_allclose(found[inner], wanted[inner], atol=0.02 * np.abs(wanted).max())
+
+
+def _accelerations(model, r, segment, local_m):
+    """(T, 3) second differences of a point's places on a segment."""
+    places = [model.placements(q) for q in r.q]
+    k = model.joint(segment).joint_id
+    points = np.array([p[k] + R[k] @ local_m for R, p in places])
+    return np.gradient(np.gradient(points, r.times_s, axis=0), r.times_s, axis=0)
