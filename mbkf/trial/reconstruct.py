@@ -27,6 +27,7 @@ from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.loads.partners import others_of, with_contacts
 from mbkf.trial.preparation.coverage import use_by_subject
+from mbkf.trial.preparation.entering import without_entering
 from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, renamed_by_filter
 from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
@@ -79,7 +80,7 @@ def reconstruct(
     zero_posture(settings.angles_zero, subject)
     with single_threaded():
         capture = checked_for_subject(capture, subject, settings.without_plates)
-        measured, exchanged, put_right = _put_right(capture, subject)
+        measured, exchanged, put_right = _put_right(capture, subject, settings)
         use = use_by_subject(capture.markers, subject)
         notes = [*capture.notes, *put_right, *([use.warning] if use.warning else [])]
         hidden = hidden_samples(measured, settings.hide)
@@ -125,12 +126,14 @@ def reconstruct(
 
 
 def _put_right(
-    capture: Capture, subject: Subject
+    capture: Capture, subject: Subject, settings: ReconstructSettings
 ) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...], list[str]]:
-    """The subject's markers under their right names without mixtures, the exchanges, and notes."""
+    """The subject's markers under their right names, without mixtures and entering frames; the exchanges, and notes."""
     named, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
-    measured, shrunken = without_shrunken(named, subject)
-    return measured, exchanged, [*exchange_notes(exchanged), *shrunken]
+    own, shrunken = without_shrunken(named, subject)
+    start = settings.kinematic
+    measured, entering = without_entering(own, start.min_markers, start.restart_after_s)
+    return measured, exchanged, [*exchange_notes(exchanged), *shrunken, *entering]
 
 
 def _check_names(settings: ReconstructSettings, sensors: bool) -> None:
