@@ -1,4 +1,4 @@
-"""Write a subject as URDF, MJCF or OSIM, a result as C3D, BVH, GLB, film or a folder for OpenSim.
+"""Write a subject as URDF, MJCF or OSIM, a result as C3D, tables, BVH, GLB, film or a folder for OpenSim.
 
 A subject:
   urdf  has no spherical joint: each becomes three hinges, named after the clinical angles (hip_flexion_r, …), whose
@@ -13,6 +13,13 @@ A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
   c3d   markers; under Plug-in Gait's names angles (deg), moments (Nm), powers (W), joint centres, reactions (N), the
         centre of mass, foot strikes and offs; plates of type 2; for Mokka, Visual3D, Nexus. With --trial, plates and
         analog channels (EMG) are the trial's, and loads that no plate reads are plates beside them.
+  csv   a table, a row a frame: angles (deg), rates, moments, powers, standard deviations, loads, markers; the unit ends
+        the name of each column; for pandas, R, spreadsheets.
+  summary  key numbers for spreadsheets: a row of 52 columns, and all others in FILE_more.csv.
+  v3d   Visual3D's text table of the same signals as the C3D file (m, deg, N m), which it adds to FILE.c3d.
+  mjcf  the body, and its motion as key frames with positions and velocities.
+  bids  a folder, Motion-BIDS: markers as measured, joint angles and foot events. Of a folder of results, all of them;
+        --person states the label.
   bvh   rotations of the segments, cm, y up, z forward; for animation programs.
   glb   the moving body as 'mbkf view' draws it; m, y up; for animation programs and browsers.
   opensim  a folder: the model, its motion, the loads as ExternalLoads, set-ups for inverse dynamics and analyses:
@@ -25,6 +32,11 @@ Examples:
   mbkf export subject.toml --to osim --out subject.osim
   mbkf export result --to c3d --out walk_model.c3d
   mbkf export result --to c3d --trial walk.c3d --out walk_model.c3d
+  mbkf export result --to csv --out walk.csv
+  mbkf export result --to summary --out walk_summary.csv
+  mbkf export result --to v3d --out walk_model.txt
+  mbkf export result --to mjcf --out walk.xml
+  mbkf export results --to bids --person 07 --out dataset
   mbkf export result --to bvh --out walk.bvh
   mbkf export result --to glb --out walk.glb
   mbkf export result --to opensim --out walk_opensim
@@ -40,7 +52,8 @@ from pathlib import Path
 from mbkf.cli.options import add_out
 
 _OF_SUBJECT, _FILMS = ("urdf", "mjcf", "osim"), ("mp4", "gif")
-_OF_RESULT = ("c3d", "bvh", "glb", "opensim", *_FILMS)
+_OF_RESULT = ("c3d", "csv", "v3d", "summary", "mjcf", "bvh", "glb", "opensim", "bids", *_FILMS)
+_FORMATS = tuple(dict.fromkeys((*_OF_SUBJECT, *_OF_RESULT)))
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -48,29 +61,56 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "source", metavar="SUBJECT.toml|DIR", help="written by 'mbkf scale', or by 'mbkf reconstruct'"
     )
-    parser.add_argument("--to", required=True, choices=(*_OF_SUBJECT, *_OF_RESULT), help="format")
+    parser.add_argument("--to", required=True, choices=_FORMATS, help="format")
     parser.add_argument("--trial", metavar="FILE", help="c3d: the capture that the result was made from")
     parser.add_argument("--forces", metavar="FILE", help="c3d: ground reactions that it was made with")
-    add_out(parser, "FILE|DIR", "file to write; for opensim the folder", required=True)
+    parser.add_argument(
+        "--person", metavar="LABEL", help="bids: label of the person, letters and digits (01)"
+    )
+    add_out(parser, "FILE|DIR", "file to write; for opensim and bids the folder", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
     """Writes the file.
 
     Raises:
-        InvalidInput: The format is for subjects and the source a result, or the other way round.
+        InvalidInput: The format is for subjects and the source a result, or the other way round; or an option belongs
+            to another format.
     """
-    from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_file
     from mbkf.io.results_folder import read_reconstruction
     from mbkf.io.subject import read_subject
-    from mbkf.model.urdf_body import side_path
+    from mbkf.trial.exchange.result_bids import write_results_bids
     from mbkf.trial.export import export_result, export_subject
 
-    source = Path(args.source)
-    if args.to == "urdf":
-        check_file(side_path(Path(args.out)))
+    source, out = Path(args.source), Path(args.out)
+    beside = _beside(args.to, out)
+    for path in beside:
+        check_file(path)
     is_result = source.is_dir() or source.suffix.lower() in {".h5", ".hdf5"}
+    _check(args, source, is_result)
+    if args.to in _FILMS:
+        from mbkf.cli.progress import stages
+        from mbkf.viz.film.film import write_film
+
+        result = read_reconstruction(source)
+        with stages() as report:
+            write_film(result, args.to, out, progress=report)
+    elif args.to == "bids":
+        write_results_bids([read_reconstruction(one) for one in _results(source)], out, args.person or "01")
+    elif is_result:
+        export_result(read_reconstruction(source), args.to, out, trial=args.trial, forces=args.forces)
+    else:
+        export_subject(read_subject(source), args.to, out)
+    for path in (out, *beside):
+        print(path)
+    return 0
+
+
+def _check(args: argparse.Namespace, source: Path, is_result: bool) -> None:
+    """Refuses a format for sources of the other kind, and options of other formats."""
+    from mbkf.errors import InvalidInput
+
     formats = _OF_RESULT if is_result else _OF_SUBJECT
     if args.to not in formats:
         found, other = ("a result", "subjects") if is_result else ("the file of a subject", "results")
@@ -83,18 +123,22 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidInput(f"--trial and --forces are of --to c3d; leave them out for {args.to}")
     if args.forces and not args.trial:
         raise InvalidInput("--forces belongs to a trial; name its file with --trial")
-    if args.to in _FILMS:
-        from mbkf.cli.progress import stages
-        from mbkf.viz.film.film import write_film
+    if args.person and args.to != "bids":
+        raise InvalidInput(f"--person is of --to bids; leave it out for {args.to}")
 
-        result = read_reconstruction(source)
-        with stages() as report:
-            write_film(result, args.to, args.out, progress=report)
-    elif is_result:
-        export_result(read_reconstruction(source), args.to, args.out, trial=args.trial, forces=args.forces)
-    else:
-        export_subject(read_subject(source), args.to, args.out)
-    print(args.out)
-    if args.to == "urdf":
-        print(side_path(Path(args.out)))
-    return 0
+
+def _beside(kind: str, out: Path) -> tuple[Path, ...]:
+    """The file that a format writes beside that of ``--out``."""
+    from mbkf.model.urdf_body import side_path
+    from mbkf.trial.exchange.summary_table import more_path
+
+    return {"urdf": (side_path(out),), "summary": (more_path(out),)}.get(kind, ())
+
+
+def _results(source: Path) -> list[Path]:
+    """The result, or those in a folder of results, in the order of their names."""
+    from mbkf.io.results_folder import MOTION_FILE
+
+    if not source.is_dir() or (source / MOTION_FILE).exists():
+        return [source]
+    return sorted(path.parent for path in source.glob(f"*/{MOTION_FILE}")) or [source]

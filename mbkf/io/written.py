@@ -42,6 +42,9 @@ _FORMS: Mapping[str, tuple[bytes, ...]] = {
     TABLE: (
         _HEADED,
         rb"# orientation: sensor -> ",
+        rb"time_s,tracked,valid,measured,",
+        rb"trial,protocol,filter,version,mass_kg,frames,",
+        rb"trial,key,value\n[^\n]*,",
         rb"foot,(?:stride,start_s,end_s|time_s,x_m,y_m),",
         rb'"session","kind","trial","side","start_s","duration_s","toe_off_percent",',
         rb'"subject","session","trial","(?:capture","status","reason|side","cycle)"',

@@ -16,11 +16,16 @@ from mbkf.model.osim import osim_files
 from mbkf.model.urdf import to_urdf
 from mbkf.model.urdf_body import side_path
 from mbkf.model.urdf_side import urdf_side_text
+from mbkf.trial.exchange.result_bids import write_results_bids
 from mbkf.trial.exchange.result_bvh import write_result_bvh
 from mbkf.trial.exchange.result_c3d import write_result_c3d
+from mbkf.trial.exchange.result_csv import write_result_csv
 from mbkf.trial.exchange.result_glb import write_result_glb
+from mbkf.trial.exchange.result_mjcf import write_result_mjcf
 from mbkf.trial.exchange.result_opensim import write_result_opensim
 from mbkf.trial.exchange.result_plates import trial_of
+from mbkf.trial.exchange.result_v3d import write_result_v3d
+from mbkf.trial.exchange.summary_table import write_summary_csv
 
 
 def _urdf(subject: Subject, model: HumanModel, name: str) -> dict[str, str]:
@@ -39,10 +44,23 @@ def _osim(subject: Subject, model: HumanModel, name: str) -> dict[str, str]:
 FORMATS = {"urdf": _urdf, "mjcf": _mjcf, "osim": _osim}
 """Formats of a subject, by name: texts by the names of the files that stand beside each other."""
 
-RESULT_FORMATS = {"c3d": write_result_c3d, "bvh": write_result_bvh, "glb": write_result_glb}
+
+def _bids(reconstruction: Reconstruction, folder: str | Path) -> None:
+    write_results_bids([reconstruction], folder)
+
+
+RESULT_FORMATS = {
+    "c3d": write_result_c3d,
+    "csv": write_result_csv,
+    "v3d": write_result_v3d,
+    "summary": write_summary_csv,
+    "mjcf": write_result_mjcf,
+    "bvh": write_result_bvh,
+    "glb": write_result_glb,
+}
 """Formats of a result that are one file, by name."""
 
-RESULT_FOLDERS = {"opensim": write_result_opensim}
+RESULT_FOLDERS = {"opensim": write_result_opensim, "bids": _bids}
 """Formats of a result that are a folder, by name."""
 
 
@@ -88,8 +106,10 @@ def export_result(
     Args:
         reconstruction: The result, e.g. of :func:`mbkf.reconstruct` or :func:`mbkf.read_reconstruction`.
         kind: "c3d" (Mokka, Visual3D, Nexus: markers, angles, moments, powers, joint centres, reactions, events), "bvh"
-            (animation: the segments' rotations, cm, y up), "glb" (glTF 2.0: the moving body, m, y up) or "opensim" (a
-            folder with model, motion, external loads and set-ups of OpenSim's tools).
+            (animation: the segments' rotations, cm, y up), "glb" (glTF 2.0: the moving body, m, y up), "csv" (a row a
+            frame), "v3d" (Visual3D's text table), "summary" (key numbers for spreadsheets), "mjcf" (the body with the
+            motion as key frames), "bids" (a folder, Motion-BIDS) or "opensim" (a folder with model, motion, external
+            loads and set-ups of OpenSim's tools).
         path: The file to write, or the folder; the name of a C3D file ends in ``.c3d``.
         trial: File of the capture that the result was made from: a C3D file then has its plates and analog channels.
         forces: File of ground reactions, where the result was made with one beside the capture.

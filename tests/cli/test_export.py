@@ -70,7 +70,7 @@ def test_a_result_becomes_a_folder_and_again(result, tmp_path, capsys):
     assert (tmp_path / "taken").read_text() == "mine"
 
 
-@pytest.mark.parametrize("kind", ["urdf", "mjcf", "osim", "c3d", "bvh", "glb", "opensim"])
+@pytest.mark.parametrize("kind", ["urdf", "osim", "c3d", "csv", "v3d", "bvh", "glb", "opensim", "bids"])
 def test_formats_of_the_other_kind_are_refused_with_what_is_needed(result, tmp_path, capsys, kind):
     write_subject(Subject("human18", 70.0, FACTORS, (), "reference36"), tmp_path / "s.toml")
     of_result = kind not in FORMATS
@@ -105,11 +105,26 @@ def test_a_trial_gives_its_plates_to_c3d_alone(result, tmp_path, capsys):
     assert main([*words, "--to", "c3d", "--trial", str(tmp_path / "t.c3d")]) == 0
     capsys.readouterr()
     for more, said in (
+        (["--to", "csv", "--person", "07"], "of --to bids"),
         (["--to", "bvh", "--trial", "t.c3d"], "of --to c3d"),
         (["--to", "c3d", "--forces", "t.mot"], "--trial"),
     ):
         assert main([*words, *more]) == 2
         assert said in capsys.readouterr().err
+
+
+def test_a_folder_of_results_becomes_one_data_set(result, tmp_path, capsys):
+    words = ["--to", "bids", "--person", "07", "--out", str(tmp_path / "set")]
+    assert main(["export", str(result.parent), *words]) == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "set")
+    names = [path.name for path in (tmp_path / "set" / "sub-07" / "motion").iterdir()]
+    assert "sub-07_task-walk1_tracksys-optical_motion.tsv" in names
+
+
+def test_key_numbers_are_a_row_and_a_list(result, tmp_path, capsys):
+    out = tmp_path / "walk.csv"
+    assert main(["export", str(result), "--to", "summary", "--out", str(out)]) == 0
+    assert capsys.readouterr().out.split() == [str(out), str(tmp_path / "walk_more.csv")]
 
 
 def test_a_urdf_file_and_its_side_file_are_written_together_or_not_at_all(tmp_path, capsys):

@@ -69,7 +69,8 @@ def test_a_result_is_written_whole(tmp_path, kind):
 
 
 def test_wrong_formats_and_places_of_results_are_refused(tmp_path):
-    assert set(RESULT_FORMATS) == {"c3d", "bvh", "glb"} and set(RESULT_FOLDERS) == {"opensim"}
+    assert set(RESULT_FORMATS) == {"c3d", "csv", "v3d", "summary", "mjcf", "bvh", "glb"}
+    assert set(RESULT_FOLDERS) == {"opensim", "bids"}
     with pytest.raises(UnknownName, match="bvh"):
         export_result(walk(), "bhv", tmp_path / "x")
     with pytest.raises(UnknownName, match="opensim"):

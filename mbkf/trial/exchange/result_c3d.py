@@ -134,10 +134,15 @@ def _start_s(r: Reconstruction) -> float:
 def _events(r: Reconstruction, start_s: float) -> tuple[CaptureEvent, ...]:
     """Strikes and offs of both feet, in order of time, where the first frame is at another time."""
     later_s = start_s - float(r.times_s[0]) if r.frames else 0.0
+    return tuple(CaptureEvent(label, side, time_s + later_s) for time_s, label, side in foot_instants(r))
+
+
+def foot_instants(r: Reconstruction) -> list[tuple[float, str, str]]:
+    """Time in s, label and side of the strikes and offs of both feet, in order of time."""
     found = [
-        CaptureEvent(label, side, float(time_s) + later_s)
+        (float(time_s), label, side)
         for (_, side), foot in zip(SIDE_WORDS, foot_events(r), strict=True)
         for label, times_s in (("Foot Strike", foot.strikes_s), ("Foot Off", foot.offs_s))
         for time_s in times_s
     ]
-    return tuple(sorted(found, key=lambda event: event.time_s))
+    return sorted(found, key=lambda one: one[0])

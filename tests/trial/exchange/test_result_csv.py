@@ -1,0 +1,97 @@
+"""The wide table of a result: a row a frame, names with units, numbers as the result holds them."""
+
+import csv
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.io.contacts import Source
+from mbkf.io.written import TABLE, form_of
+from mbkf.trial.exchange.result_csv import leaves, plain, write_result_csv
+from tests.recordings import broken_walk, leaning_walk
+
+
+def read(path):
+    with path.open(newline="") as file:
+        names, *rows = csv.reader(file)
+    return {name: list(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
+
+
+def numbers(column):
+    return np.array([float(one) if one else np.nan for one in column])
+
+
+@pytest.fixture(scope="module")
+def columns(tmp_path_factory):
+    path = tmp_path_factory.mktemp("csv") / "walk.csv"
+    write_result_csv(leaning_walk(), path)
+    assert form_of(path) == TABLE
+    return read(path)
+
+
+def test_coordinates_are_in_degrees_and_metres_with_their_loads(columns):
+    r = leaning_walk()
+    for name, unit, factor in (("knee_angle_r", "deg", 180 / np.pi), ("pelvis_tx", "m", 1.0)):
+        np.testing.assert_allclose(
+            numbers(columns[f"{name}_{unit}"]), factor * r.angle(name), rtol=1e-9, atol=1e-12
+        )
+        np.testing.assert_allclose(
+            numbers(columns[f"{name}_sd_{unit}"]), factor * r.angle_sd(name), rtol=1e-9
+        )
+    np.testing.assert_allclose(
+        numbers(columns["knee_angle_r_moment_nm"]), r.moment("knee_angle_r"), rtol=1e-9
+    )
+    np.testing.assert_allclose(numbers(columns["pelvis_tx_force_n"]), r.moment("pelvis_tx"), rtol=1e-9)
+    np.testing.assert_allclose(numbers(columns["knee_angle_r_power_w"]), r.power("knee_angle_r"), atol=1e-9)
+
+
+def test_loads_stand_by_the_part_with_their_source_in_words(columns):
+    r = leaning_walk()
+    for k, part in enumerate(r.loads.names):
+        for axis in range(3):
+            found = numbers(columns[f"{part}_force_{'xyz'[axis]}_n"])
+            np.testing.assert_allclose(found, r.loads.wrench[:, k, axis], rtol=1e-9, atol=1e-9)
+            found = numbers(columns[f"{part}_point_{'xyz'[axis]}_m"])
+            np.testing.assert_allclose(found, r.loads.point_m[:, k, axis], rtol=1e-9, atol=1e-9)
+        assert columns[f"{part}_source"] == [Source(one).name.lower() for one in r.loads.source[:, k]]
+    assert set(columns["left_foot_source"]) == {"none", "measured", "estimated"}
+
+
+def test_unknown_numbers_are_empty_and_names_are_plain(tmp_path):
+    r = broken_walk()
+    write_result_csv(r, tmp_path / "w.csv")
+    found = read(tmp_path / "w.csv")
+    first = plain(r.marker_names[0])
+    np.testing.assert_allclose(numbers(found[f"{first}_y_m"]), r.measured_m[:, 0, 1], rtol=1e-9)
+    assert found[f"{first}_x_m"][20:50] == [""] * 30
+    assert found["tracked"] == [str(int(one)) for one in r.tracked]
+    assert all(name == plain(name) for name in found)
+
+
+DATA = st.recursive(
+    st.none() | st.integers() | st.text(max_size=3),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.text("ab", min_size=1, max_size=2), inner, max_size=3)
+    ),
+    max_leaves=8,
+)
+
+
+@given(DATA)
+def test_every_value_of_plain_data_is_found_once_under_its_path(data):
+    def at(path):
+        value = data
+        for word in path.split(".") if path else ():
+            value = value[word] if isinstance(value, dict) else value[int(word) - 1]
+        return value
+
+    def count(value):
+        inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
+        return 1 if inner is None else sum(map(count, inner))
+
+    found = list(leaves(data))
+    assert len(found) == count(data) == len(dict(found))
+    assert all(at(path) == value for path, value in found)
