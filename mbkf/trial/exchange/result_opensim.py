@@ -30,7 +30,7 @@ from mbkf.model.osim import VERSION, osim_coordinates, osim_files, osim_forces, 
 
 MODEL, MOTION = "model.osim", "motion.mot"
 LOADS_DATA, LOADS = "external_loads.mot", "ExternalLoads.xml"
-ACTUATORS, TORQUES = "actuators.xml", "torques.sto"
+ACTUATORS, CONTROLS = "actuators.xml", "controls.sto"
 SETUP_ID, SETUP_ANALYZE = "setup_id.xml", "setup_analyze.xml"
 TORQUES_OUT, ANALYSES_OUT = "inverse_dynamics.sto", "analyses"
 """Files and folders that OpenSim's tools write, in the folder."""
@@ -60,7 +60,7 @@ def write_result_opensim(r: Reconstruction, folder: str | Path) -> None:
             (partial / name).write_text(text, encoding="utf-8")
         write_storage(motion, partial / MOTION)
         write_storage(loads, partial / LOADS_DATA)
-        write_storage(torque_table(r, model), partial / TORQUES)
+        write_storage(torque_table(r, model), partial / CONTROLS)
         for name, element in (
             (ACTUATORS, _actuators(motion.names)),
             (LOADS, _external_loads(r, model, loads)),
@@ -214,7 +214,7 @@ def _analysis(span: tuple[float, float]) -> ET.Element:
     _texts(
         ET.SubElement(ET.SubElement(controls, "objects"), "ControlSetController", name="torques"),
         actuator_list="ALL",
-        controls_file=TORQUES,
+        controls_file=CONTROLS,
     )
     return root
 

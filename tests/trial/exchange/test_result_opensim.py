@@ -68,7 +68,7 @@ def test_the_loads_are_the_results_wrenches_each_on_the_segment_that_bears_it(re
 
 
 def test_a_motor_on_every_coordinate_has_the_results_force(result, folder):
-    table, model = read_storage(folder / "torques.sto"), walker()[1]
+    table, model = read_storage(folder / "controls.sto"), walker()[1]
     motors = list(ET.parse(folder / "actuators.xml").getroot().iter("CoordinateActuator"))
     assert (
         [one.findtext("coordinate") for one in motors]
