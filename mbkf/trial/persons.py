@@ -1,16 +1,19 @@
 """Several persons in one capture, for commands that follow one: who they are, and the refusal to guess.
 
 Names tell persons apart by themselves (:mod:`mbkf.io.persons`). Bodies that only distances show are persons where a
-marker set can be inferred for each: a box or a chair with markers is no body.
+marker set can be inferred for each: a box or a chair with markers is no body. Inferring takes seconds, so that points
+fixed to the room and rigid objects, which movement shows at once, are left out before.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.persons import PersonMarkers, named_persons, persons_by_shape, several_persons
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -21,6 +24,13 @@ from mbkf.trial.protocol.inferred import infer_marker_set
 MANY, BENDS_M, FRAMES = 20, 0.05, 60
 """Points from which on a body needs no marker set if it bends, least change of the distances of a tenth of their pairs,
 and frames that are looked at."""
+
+STILL_M, STILL_S = 0.0015, 1.0
+"""Points that move by less for at least so long are fixed to the room: persons who stand for 1 s and longer move by 2.3
+mm and more (25 public captures), points on the floor by the cameras' noise."""
+
+FAR_M, RIGID_M = 0.3, 0.01
+"""Points that move so far, and whose distances change by less, are those of a rigid object."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +58,12 @@ def persons_in(capture: Capture) -> tuple[PersonMarkers, ...]:
     """
     if found := named_persons(capture.markers):
         return found
-    found = tuple(one for one in persons_by_shape(capture.markers) if _is_body(capture, one))
+    bodies = [(one, _Movement.of(capture.markers, one)) for one in persons_by_shape(capture.markers)]
+    farthest_m = float(np.nanmax([0.0, *(movement.moved_m for _, movement in bodies)]))
+    bodies = [(one, movement) for one, movement in bodies if not movement.is_object(farthest_m)]
+    if len(bodies) < 2:
+        return ()
+    found = tuple(one for one, movement in bodies if movement.is_body or _has_marker_set(capture, one))
     return found if len(found) > 1 else ()
 
 
@@ -81,11 +96,61 @@ def _summary(name: str, markers: MarkerTrajectories) -> PersonSummary:
     return PersonSummary(name, len(markers.names), float(np.median(heights)), (float(x), float(y)))
 
 
-def _is_body(capture: Capture, person: PersonMarkers) -> bool:
-    """True for points that move among each other as a body's, or for which a marker set can be inferred."""
+class _Movement(NamedTuple):
+    """Movement of the points of a body.
+
+    Attributes:
+        points: Number of points.
+        duration_s: Time that they are looked at.
+        moved_m, bent_m: Width of the middle nine tenths of places along an axis, and of distances from each other,
+            which a tenth of the points and pairs exceeds; NaN where they are seen in less than half of the frames.
+    """
+
+    points: int
+    duration_s: float
+    moved_m: float
+    bent_m: float
+
+    @classmethod
+    def of(cls, markers: MarkerTrajectories, person: PersonMarkers) -> _Movement:
+        """The movement of one body of a capture."""
+        own = markers.select(tuple(person.own))
+        shown = own.positions_m[spread_indices(own.frames, FRAMES)]
+        apart = np.linalg.norm(shown[:, :, None] - shown[:, None], axis=3)
+        moved = _width(shown).max(axis=1)
+        return cls(
+            len(own.names),
+            own.frames / own.rate_hz,
+            _tenth(moved, shown[:, :, 0]),
+            _tenth(_width(apart), apart),
+        )
+
+    @property
+    def is_body(self) -> bool:
+        """True for many points whose distances change."""
+        return self.points >= MANY and self.bent_m >= BENDS_M
+
+    def is_object(self, farthest_m: float) -> bool:
+        """True for points that are fixed to the room or to each other; ``farthest_m``: how far any body moves."""
+        fixed = self.moved_m < STILL_M and self.duration_s >= STILL_S and farthest_m >= FAR_M
+        return fixed or (self.moved_m >= FAR_M and self.bent_m < RIGID_M)
+
+
+def _width(values: Array) -> Array:
+    """Width of the middle nine tenths over frames (T, ...)."""
+    low, high = known_percentiles(values, (5.0, 95.0))
+    return np.asarray(high - low)
+
+
+def _tenth(widths: Array, values: Array) -> float:
+    """Width that a tenth exceeds of those whose values (T, ...) are known in half of the frames, NaN without any."""
+    known = np.isfinite(values).sum(axis=0) >= 0.5 * len(values)
+    return float(np.percentile(widths[known], 90.0)) if known.any() else np.nan
+
+
+def _has_marker_set(capture: Capture, person: PersonMarkers) -> bool:
+    """True for points for which a marker set can be inferred."""
     markers = capture.markers.select(tuple(person.own))
-    if len(markers.names) >= MANY and _bends(markers):
-        return True
     named = tuple(
         name if not name.startswith("*") else f"point {k}"
         for k, name in enumerate(person.own.values(), start=1)
@@ -96,12 +161,3 @@ def _is_body(capture: Capture, person: PersonMarkers) -> bool:
     except MbkfError:
         return False
     return True
-
-
-def _bends(markers: MarkerTrajectories) -> bool:
-    """True where distances between the points change."""
-    shown = markers.positions_m[spread_indices(markers.frames, FRAMES)]
-    apart = np.linalg.norm(shown[:, :, None] - shown[:, None], axis=3)
-    both = np.isfinite(apart).sum(axis=0) >= 0.5 * len(shown)
-    low, high = known_percentiles(apart, (5.0, 95.0))
-    return bool(np.percentile((high - low)[both], 90.0) >= BENDS_M) if both.any() else False

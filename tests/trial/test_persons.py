@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, NotObservable
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.trial.info import describe
@@ -30,13 +30,69 @@ def test_a_person_who_is_never_seen_has_no_place(tmp_path):
     assert found.protocol is None and "choose one with --person" in found.refusal
 
 
-def test_a_box_beside_a_person_is_no_person():
-    """Neither are scattered points, as the figures of these tests are."""
-    box = np.random.default_rng(3).uniform(0.0, 1.0, (1, 12, 3)) + np.array([0.0, 2.0, 0.0])
-    places = np.concatenate([figure(1, [0, 0, 0]), np.repeat(box, 40, axis=0)], axis=1)
-    names = (*NAMES, *(f"box{k}" for k in range(12)))
-    capture = Capture("a", MarkerTrajectories(names, places, 100.0))
-    assert persons_in(capture) == ()
+def walking(places):
+    """The points of a person, 1 m forward over all frames, every other one swinging."""
+    forward = np.linspace(0.0, 1.0, len(places))[:, None, None] * np.array([1.0, 0.0, 0.0])
+    swing = 0.1 * np.sin(np.arange(len(places)))[:, None, None] * np.array([1.0, 0.0, 0.0])
+    return places + forward + swing * (np.arange(places.shape[1]) % 2)[:, None]
+
+
+def beside(others, rate_hz=25.0):
+    """A walking person of 12 markers, and other points (T, N, 3) 2 m beside."""
+    places = np.concatenate([walking(figure(1, [0, 0, 0])), others + np.array([0.0, 2.0, 0.0])], axis=1)
+    names = (*NAMES, *(f"box{k}" for k in range(others.shape[1])))
+    return Capture("a", MarkerTrajectories(names, places, rate_hz))
+
+
+def box(noise_m=0.0):
+    """(40, 12, 3) a box that stands, with noise of the cameras."""
+    rng = np.random.default_rng(3)
+    return rng.uniform(0.0, 1.0, (1, 12, 3)) + rng.normal(0.0, noise_m, (40, 12, 3))
+
+
+def pushed(m, bent_m=0.0):
+    """A box that is pushed so far, with a lid that opens by so much."""
+    along = np.linspace(0.0, 1.0, 40)[:, None, None] * np.array([1.0, 0.0, 0.0])
+    return box() + m * along + bent_m * along * (np.arange(12) < 4)[:, None]
+
+
+def unmoved(capture):
+    """A capture whose first frame lasts."""
+    first = np.repeat(capture.markers.positions_m[:1], 40, axis=0)
+    return replace(capture, markers=replace(capture.markers, positions_m=first))
+
+
+def half_seen(capture):
+    """A capture that shows the second body in two of five frames."""
+    places = capture.markers.positions_m.copy()
+    places[np.arange(40) % 5 > 1, 12:] = np.nan
+    return replace(capture, markers=replace(capture.markers, positions_m=places))
+
+
+@pytest.mark.parametrize(
+    ("capture", "asked"),
+    [
+        (beside(box(0.0003)), 0),
+        (beside(pushed(0.4, bent_m=0.008)), 0),
+        (beside(box(0.0006)), 2),
+        (beside(box(), rate_hz=50.0), 2),
+        (beside(pushed(0.2)), 2),
+        (beside(pushed(0.4, bent_m=0.02)), 2),
+        (unmoved(beside(box())), 2),
+        (half_seen(beside(box())), 2),
+    ],
+    ids=["stands", "pushed", "sways", "for a moment", "not far", "bends", "both stand", "seldom seen"],
+)
+def test_movement_shows_objects_before_a_body_is_sought(monkeypatch, capture, asked):
+    """A search costs seconds: it is asked only of two bodies and more that may be persons."""
+    sought = []
+
+    def search(static, trials):
+        sought.append(trials[0].markers.names)
+        raise NotObservable("no body")
+
+    monkeypatch.setattr("mbkf.trial.persons.infer_marker_set", search)
+    assert persons_in(capture) == () and len(sought) == asked
     check_one_person(capture)
 
 
