@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
     from mbkf.sensors.contact.plates import plate_wrenches
     from mbkf.study.batch.run import batch
+    from mbkf.trial.exchange.onto.result_onto import export_onto
     from mbkf.trial.export import export_result
     from mbkf.trial.inertia.estimate import InertiaEstimate, estimate_inertia
     from mbkf.trial.inertial.orient import orient
@@ -73,6 +74,7 @@ _HOMES = {
     "batch": "mbkf.study.batch.run",
     "casadi_dynamics": "mbkf.model.casadi_dynamics",
     "estimate_inertia": "mbkf.trial.inertia.estimate",
+    "export_onto": "mbkf.trial.exchange.onto.result_onto",
     "export_result": "mbkf.trial.export",
     "label": "mbkf.trial.label",
     "load_body": "mbkf.model.body_file",
@@ -127,6 +129,7 @@ __all__ = [
     "batch",
     "casadi_dynamics",
     "estimate_inertia",
+    "export_onto",
     "export_result",
     "label",
     "load_body",

@@ -31,16 +31,8 @@ from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.model.osim import osim_coordinates, osim_forces, osim_origin_m, to_osim_axes
-from mbkf.trial.exchange.result_opensim import (
-    ANALYSES_OUT,
-    MODEL,
-    MOTION,
-    NAME,
-    SETUP_ANALYZE,
-    SETUP_ID,
-    TORQUES_OUT,
-    load_segment,
-)
+from mbkf.trial.exchange.opensim_setups import MODEL, MOTION, NAME, SETUP_ID, TORQUES_OUT
+from mbkf.trial.exchange.result_opensim import ANALYSES_OUT, SETUP_ANALYZE, load_segment
 from mbkf.trial.export import export_result, export_subject
 
 POSTURES, MASS, PLACE_M, MARKER_M = 50, 1e-9, 1e-6, 1e-4

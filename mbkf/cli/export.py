@@ -24,6 +24,8 @@ A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
   glb   the moving body as 'mbkf view' draws it; m, y up; for animation programs and browsers.
   opensim  a folder: the model, its motion, the loads as ExternalLoads, set-ups for inverse dynamics and analyses:
         cd DIR; opensim-cmd run-tool setup_id.xml
+  --onto MODEL.osim  a folder as well, for an OpenSim model of the person's size from elsewhere: the motion in its
+        coordinates, fitted frame by frame, and set-ups for inverse dynamics, static optimisation and joint reactions
   mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and the extra 'film'.
 
 Examples:
@@ -40,6 +42,7 @@ Examples:
   mbkf export result --to bvh --out walk.bvh
   mbkf export result --to glb --out walk.glb
   mbkf export result --to opensim --out walk_opensim
+  mbkf export result --onto scaled_rajagopal.osim --out walk_rajagopal
   mbkf export result --to mp4 --out walk.mp4
   mbkf export result --to gif --out walk.gif
 """
@@ -61,13 +64,14 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "source", metavar="SUBJECT.toml|DIR", help="written by 'mbkf scale', or by 'mbkf reconstruct'"
     )
-    parser.add_argument("--to", required=True, choices=_FORMATS, help="format")
+    parser.add_argument("--to", choices=_FORMATS, help="format")
+    parser.add_argument("--onto", metavar="MODEL.osim", help="in place of --to: scaled model of OpenSim")
     parser.add_argument("--trial", metavar="FILE", help="c3d: the capture that the result was made from")
     parser.add_argument("--forces", metavar="FILE", help="c3d: ground reactions that it was made with")
     parser.add_argument(
         "--person", metavar="LABEL", help="bids: label of the person, letters and digits (01)"
     )
-    add_out(parser, "FILE|DIR", "file to write; for opensim and bids the folder", required=True)
+    add_out(parser, "FILE|DIR", "file to write; for opensim, --onto and bids the folder", required=True)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -89,6 +93,8 @@ def run(args: argparse.Namespace) -> int:
         check_file(path)
     is_result = source.is_dir() or source.suffix.lower() in {".h5", ".hdf5"}
     _check(args, source, is_result)
+    if args.onto:
+        return _onto(args, source)
     if args.to in _FILMS:
         from mbkf.cli.progress import stages
         from mbkf.viz.film.film import write_film
@@ -111,8 +117,14 @@ def _check(args: argparse.Namespace, source: Path, is_result: bool) -> None:
     """Refuses a format for sources of the other kind, and options of other formats."""
     from mbkf.errors import InvalidInput
 
+    if bool(args.to) == bool(args.onto):
+        raise InvalidInput("give a format by --to, or a model of OpenSim by --onto MODEL.osim: one of them")
+    if args.onto and not is_result:
+        raise InvalidInput(
+            f"{source} is no result: name the folder of 'mbkf reconstruct', whose motion --onto takes"
+        )
     formats = _OF_RESULT if is_result else _OF_SUBJECT
-    if args.to not in formats:
+    if args.to and args.to not in formats:
         found, other = ("a result", "subjects") if is_result else ("the file of a subject", "results")
         hint = "the subject file of 'mbkf scale'" if is_result else "the folder of 'mbkf reconstruct'"
         raise InvalidInput(
@@ -120,11 +132,35 @@ def _check(args: argparse.Namespace, source: Path, is_result: bool) -> None:
             f"--to {' or '.join(formats)}"
         )
     if (args.trial or args.forces) and args.to != "c3d":
-        raise InvalidInput(f"--trial and --forces are of --to c3d; leave them out for {args.to}")
+        raise InvalidInput(f"--trial and --forces are of --to c3d; leave them out for {args.to or '--onto'}")
     if args.forces and not args.trial:
         raise InvalidInput("--forces belongs to a trial; name its file with --trial")
     if args.person and args.to != "bids":
-        raise InvalidInput(f"--person is of --to bids; leave it out for {args.to}")
+        raise InvalidInput(f"--person is of --to bids; leave it out for {args.to or '--onto'}")
+
+
+def _onto(args: argparse.Namespace, source: Path) -> int:
+    """Writes the folder for a model of OpenSim, and shows the distances that remain."""
+    from mbkf.cli.tables import table, terminal
+    from mbkf.io.results_folder import read_reconstruction
+    from mbkf.trial.exchange.onto.result_onto import export_onto
+
+    found = export_onto(read_reconstruction(source), args.onto, args.out)
+    shown = table("", "segment", "body", "placed by", "place mm", "turn °", words=3)
+    for one in found.residuals:
+        count = len(one.pair.markers)
+        by = f"{count} markers" if count else "joints"
+        shown.add_row(one.pair.segment, one.pair.body, by, f"{one.place_mm:.1f}", f"{one.turn_deg:.1f}")
+    terminal().print(shown)
+    if found.markers:
+        print(
+            f"{len(found.markers)} markers in common: {found.to_measured_mm:.1f} mm RMS from the measured ones, "
+            f"{found.to_ours_mm:.1f} mm from those of the reconstructed body"
+        )
+    for name, share in found.limited.items():
+        print(f"note: {name} is at a limit of the model in {100.0 * share:.0f} % of the frames")
+    print(args.out)
+    return 0
 
 
 def _beside(kind: str, out: Path) -> tuple[Path, ...]:

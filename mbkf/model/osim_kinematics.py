@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
@@ -31,7 +32,7 @@ class OsimPoses:
     turning: Array
     moving: Array
 
-    def points(self, bodies: Array, places_m: Array) -> tuple[Array, Array]:
+    def points(self, bodies: NDArray[np.intp], places_m: Array) -> tuple[Array, Array]:
         """(T, P, 3) points fixed to bodies, and (T, P, 3, C) their derivatives by the coordinates.
 
         Args:

@@ -1,6 +1,7 @@
 """`mbkf export` on the command line."""
 
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results_folder import MOTION_FILE, write_reconstruction
 from mbkf.io.subject import Subject, SubjectMarker, write_subject
 from mbkf.model.body_file import load_body
-from mbkf.trial.export import FORMATS, RESULT_FORMATS
+from mbkf.trial.export import FORMATS, RESULT_FORMATS, export_subject
 from tests.recordings import walk
 
 FACTORS = dict.fromkeys(load_body().scale_factors, 1.0)
@@ -138,3 +139,21 @@ def test_a_urdf_file_and_its_side_file_are_written_together_or_not_at_all(tmp_pa
     assert main([*words, "--overwrite"]) == 0
     assert capsys.readouterr().out.split() == [str(out), str(side)]
     assert load_body(out).reference_mass_kg == pytest.approx(70.0)
+
+
+def test_a_result_goes_onto_a_model_of_opensim(result, tmp_path, capsys):
+    write_reconstruction(replace(walk(), tracked=np.arange(walk().frames) % 80 == 0), {}, tmp_path / "few")
+    export_subject(walk().subject, "osim", tmp_path / "theirs.osim")
+    words = ["export", str(tmp_path / "few"), "--out", str(tmp_path / "out")]
+    assert main([*words, "--onto", str(tmp_path / "theirs.osim")]) == 0
+    shown = capsys.readouterr().out
+    assert "right_thigh" in shown and "0.0 mm from those of the reconstructed body" in shown
+    assert shown.strip().endswith(str(tmp_path / "out"))
+    assert (tmp_path / "out" / "setup_static_optimization.xml").is_file()
+    for more in ([], ["--to", "bvh", "--onto", str(tmp_path / "theirs.osim")]):
+        assert main([*words, *more]) == 2
+        assert "--to" in capsys.readouterr().err
+    write_subject(walk().subject, tmp_path / "s.toml")
+    onto = ["--onto", str(tmp_path / "theirs.osim"), "--out", str(tmp_path / "other")]
+    assert main(["export", str(tmp_path / "s.toml"), *onto]) == 2
+    assert "is no result" in capsys.readouterr().err

@@ -10,33 +10,44 @@ accelerations and joint reactions are the result's.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from mbkf.errors import InvalidInput
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.contacts import FEET
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_opensim import REACTIONS_FILE, load_columns, opensim_table
 from mbkf.io.storage import Table, write_storage
-from mbkf.io.written import MARK
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.model.osim import VERSION, osim_coordinates, osim_files, osim_forces, osim_name
+from mbkf.model.osim import osim_coordinates, osim_files, osim_forces, osim_name
+from mbkf.trial.exchange.opensim_setups import (
+    ACTUATORS,
+    LOADS,
+    LOADS_DATA,
+    MODEL,
+    MOTION,
+    SETUP_ID,
+    actuators,
+    analysis,
+    common_span,
+    document,
+    external_loads,
+    inverse_dynamics,
+    loads_table,
+)
 
-MODEL, MOTION = "model.osim", "motion.mot"
-LOADS_DATA, LOADS = "external_loads.mot", "ExternalLoads.xml"
-ACTUATORS, CONTROLS = "actuators.xml", "controls.sto"
-SETUP_ID, SETUP_ANALYZE = "setup_id.xml", "setup_analyze.xml"
-TORQUES_OUT, ANALYSES_OUT = "inverse_dynamics.sto", "analyses"
-"""Files and folders that OpenSim's tools write, in the folder."""
+SETUP_ANALYZE, ANALYSES_OUT = "setup_analyze.xml", "analyses"
+CONTROLS = "controls.sto"
+"""File of the analysis, the folder that it writes, and the torques that drive the model."""
 
-NAME = "mbkf"
-"""Name of the tools, with which the files of analyses begin; the trial's may hold characters that OpenSim refuses."""
+
+ANALYSES = {
+    "BodyKinematics": {"in_degrees": "false"},
+    "JointReaction": {"joint_names": "ALL", "apply_on_bodies": "child", "express_in_frame": "ground"},
+}
+"""Settings of the analyses by their class."""
 
 
 def write_result_opensim(r: Reconstruction, folder: str | Path) -> None:
@@ -53,8 +64,9 @@ def write_result_opensim(r: Reconstruction, folder: str | Path) -> None:
         OSError: A file cannot be written.
     """
     model = HumanModel.of(r.subject)
-    motion, loads = motion_table(r, model), _loads_table(r)
-    span = _common(motion, loads)
+    motion, loads = motion_table(r, model), loads_table(r)
+    bodies = {part: osim_name(load_segment(model, part)) for part in r.loads.names}
+    span = common_span(motion, loads)
     with replacing_folder(folder) as partial:
         for name, text in osim_files(model, r.subject.markers, MODEL).items():
             (partial / name).write_text(text, encoding="utf-8")
@@ -62,12 +74,12 @@ def write_result_opensim(r: Reconstruction, folder: str | Path) -> None:
         write_storage(loads, partial / LOADS_DATA)
         write_storage(torque_table(r, model), partial / CONTROLS)
         for name, element in (
-            (ACTUATORS, _actuators(motion.names)),
-            (LOADS, _external_loads(r, model, loads)),
-            (SETUP_ID, _inverse_dynamics(span)),
-            (SETUP_ANALYZE, _analysis(span)),
+            (ACTUATORS, actuators({name: (name, 1.0) for name in motion.names})),
+            (LOADS, external_loads(r, loads, bodies)),
+            (SETUP_ID, inverse_dynamics(span)),
+            (SETUP_ANALYZE, analysis(span, ANALYSES_OUT, ANALYSES, CONTROLS)),
         ):
-            (partial / name).write_text(_document(element), encoding="utf-8")
+            (partial / name).write_text(document(element), encoding="utf-8")
 
 
 def motion_table(r: Reconstruction, model: Body) -> Table:
@@ -97,140 +109,6 @@ def torque_table(r: Reconstruction, model: Body) -> Table:
     return Table(names, r.times_s[rows], osim_forces(model, r.q[rows], r.tau[rows]), title="Torques")
 
 
-def _loads_table(r: Reconstruction) -> Table:
-    table = opensim_table(r, REACTIONS_FILE)
-    names = tuple(name for part in _known_parts(r, table).values() for name in _columns(part))
-    columns = table.columns[:, [table.names.index(name) for name in names]]
-    return replace(table, names=names, columns=columns, title="External loads")
-
-
-def _known_parts(r: Reconstruction, table: Table) -> dict[str, tuple[str, str, str]]:
-    """Beginnings of the columns of each part whose load is known at any time."""
-    return {
-        part: begins for part, begins in load_columns(r).items() if set(_columns(begins)) <= set(table.names)
-    }
-
-
-def _columns(begins: tuple[str, str, str]) -> tuple[str, ...]:
-    return tuple(f"{begin}{axis}" for begin in begins for axis in "xyz")
-
-
-def _common(motion: Table, loads: Table) -> tuple[float, float]:
-    """First and last time of the motion at which the loads are known, too."""
-    known = motion.times_s
-    if len(loads.times_s):
-        known = known[(known >= loads.times_s[0]) & (known <= loads.times_s[-1])]
-    if len(known) < 2 or not len(loads.names):
-        raise InvalidInput(
-            f"the body is followed in {len(motion.times_s)} frames and the loads on it are known in "
-            f"{len(loads.times_s) if loads.names else 0}; OpenSim's tools need two frames with both: give force "
-            "plates, or reconstruct by the dynamic filter"
-        )
-    return float(known[0]), float(known[-1])
-
-
-def _external_loads(r: Reconstruction, model: Body, loads: Table) -> ET.Element:
-    root = ET.Element("ExternalLoads", name=NAME)
-    root.append(ET.Comment(_sources(r)))
-    objects = ET.SubElement(root, "objects")
-    for part, begins in _known_parts(r, loads).items():
-        one = ET.SubElement(objects, "ExternalForce", name=part)
-        _texts(
-            one,
-            applied_to_body=osim_name(load_segment(model, part)),
-            force_expressed_in_body="ground",
-            point_expressed_in_body="ground",
-            force_identifier=begins[0],
-            point_identifier=begins[1],
-            torque_identifier=begins[2],
-        )
-    _texts(root, datafile=LOADS_DATA)
-    return root
-
-
 def load_segment(model: Body, part: str) -> str:
     """The segment of a part that bears load."""
     return model.roles.feet[FEET.index(part)] if part in FEET else model.description.bearings[part].segment
-
-
-def _sources(r: Reconstruction) -> str:
-    """How each load is known, and the forces that have no place here, as a comment."""
-    lines = [f"{c.part}: {c.how} from {c.from_s:.3f} to {c.to_s:.3f} s" for c in r.contacts]
-    lines += [
-        f"unexplained, not applied: {one.force_n:.0f} N {one.direction} from {one.from_s:.3f} to {one.to_s:.3f} s"
-        for one in r.unexplained
-    ]
-    return "\n".join(
-        ["", *lines, "Forces without a place act on no body here: pelvis_t*_force bears them.", ""]
-    )
-
-
-def _inverse_dynamics(span: tuple[float, float]) -> ET.Element:
-    root = ET.Element("InverseDynamicsTool", name=NAME)
-    _texts(
-        root,
-        results_directory=".",
-        model_file=MODEL,
-        time_range=_times(span),
-        forces_to_exclude="Muscles",
-        external_loads_file=LOADS,
-        coordinates_file=MOTION,
-        lowpass_cutoff_frequency_for_coordinates="-1",
-        output_gen_force_file=TORQUES_OUT,
-    )
-    return root
-
-
-def _actuators(coordinates: tuple[str, ...]) -> ET.Element:
-    """A motor of strength 1 on every coordinate, called after it: its control is its torque or force."""
-    root = ET.Element("ForceSet", name=NAME)
-    objects = ET.SubElement(root, "objects")
-    for name in coordinates:
-        motor = ET.SubElement(objects, "CoordinateActuator", name=name)
-        _texts(motor, coordinate=name, optimal_force="1", min_control="-inf", max_control="inf")
-    return root
-
-
-def _analysis(span: tuple[float, float]) -> ET.Element:
-    root = ET.Element("AnalyzeTool", name=NAME)
-    _texts(
-        root,
-        model_file=MODEL,
-        replace_force_set="false",
-        force_set_files=ACTUATORS,
-        results_directory=ANALYSES_OUT,
-        initial_time=repr(span[0]),
-        final_time=repr(span[1]),
-        solve_for_equilibrium_for_auxiliary_states="false",
-        external_loads_file=LOADS,
-        coordinates_file=MOTION,
-        lowpass_cutoff_frequency_for_coordinates="-1",
-    )
-    analyses = ET.SubElement(ET.SubElement(root, "AnalysisSet", name="Analyses"), "objects")
-    _texts(ET.SubElement(analyses, "BodyKinematics", name="BodyKinematics"), on="true", in_degrees="false")
-    reactions = ET.SubElement(analyses, "JointReaction", name="JointReaction")
-    _texts(reactions, on="true", joint_names="ALL", apply_on_bodies="child", express_in_frame="ground")
-    controls = ET.SubElement(root, "ControllerSet", name="Controllers")
-    _texts(
-        ET.SubElement(ET.SubElement(controls, "objects"), "ControlSetController", name="torques"),
-        actuator_list="ALL",
-        controls_file=CONTROLS,
-    )
-    return root
-
-
-def _times(span: tuple[float, float]) -> str:
-    return f"{span[0]!r} {span[1]!r}"
-
-
-def _texts(parent: ET.Element, **texts: str) -> None:
-    for tag, text in texts.items():
-        ET.SubElement(parent, tag).text = text
-
-
-def _document(element: ET.Element) -> str:
-    root = ET.Element("OpenSimDocument", Version=VERSION)
-    root.append(element)
-    ET.indent(root)
-    head = f'<?xml version="1.0" encoding="UTF-8"?>\n<!-- {MARK} -->\n'
-    return head + ET.tostring(root, encoding="unicode") + "\n"
