@@ -58,6 +58,7 @@ _FORMS: Mapping[str, tuple[bytes, ...]] = {
         rb"[^\n]*\nversion=1\nnRows=\d+\n(?:[^\n=]*=[^\n]*\n){0,40}?(?:Run=[0-9a-f]{32}|Source="
         + _MARK
         + rb")\n",
+        rb"Source=" + _MARK + rb"\nDataRate=",
     ),
     DATA: (
         rb"\{?\s*\}?\s*\Z",  # the room reserved for live.json, or cut short at once

@@ -37,10 +37,11 @@ from mbkf.trial.exchange.opensim_setups import (
     inverse_dynamics,
     loads_table,
 )
+from mbkf.trial.exchange.result_orientations import orientations_text
 
 SETUP_ANALYZE, ANALYSES_OUT = "setup_analyze.xml", "analyses"
-CONTROLS = "controls.sto"
-"""File of the analysis, the folder that it writes, and the torques that drive the model."""
+CONTROLS, ORIENTATIONS = "controls.sto", "orientations.sto"
+"""File of the analysis, the folder that it writes, the torques that drive the model, and the segments' orientations."""
 
 
 ANALYSES = {
@@ -73,6 +74,7 @@ def write_result_opensim(r: Reconstruction, folder: str | Path) -> None:
         write_storage(motion, partial / MOTION)
         write_storage(loads, partial / LOADS_DATA)
         write_storage(torque_table(r, model), partial / CONTROLS)
+        (partial / ORIENTATIONS).write_text(orientations_text(r, model), encoding="utf-8")
         for name, element in (
             (ACTUATORS, actuators({name: (name, 1.0) for name in motion.names})),
             (LOADS, external_loads(r, loads, bodies)),
