@@ -135,6 +135,7 @@ class BodyErrors:
         root: Array,
         skin: FlexedSkin | None = None,
         held_rad: Array | None = None,
+        posture_sd_rad: Array | None = None,
     ) -> None:
         """Makes it.
 
@@ -146,10 +147,11 @@ class BodyErrors:
             skin: Shares of these displacements; None where no skin is known (D = 0).
             held_rad: (nv,) standard deviation of the rotation from neutral in which a person holds a joint, rad; 0 by
                 default.
+            posture_sd_rad: (nv,) spread of the prior that draws joints to neutral; by default the body's table.
         """
         model = sensor.model
         self.sensor, self._model, self._balance = sensor, model, NewtonEuler(model)
-        self._poses = PoseErrors(sensor, noise_m, root, skin, held_rad)
+        self._poses = PoseErrors(sensor, noise_m, root, skin, held_rad, posture_sd_rad)
         self._poses.onto(self._directions())
         directions = principal_directions(self._poses.sizes.T, KEPT_OF_SIZES)
         self._along = directions.T @ self._poses.sizes

@@ -13,7 +13,8 @@ errors of sizes displace by δo adds M [Aᵀ δo, 0].
 
 The prior draws every joint to neutral, while a person may hold it otherwise, by h in the whole trial. A filter that
 takes the prior for a new reading in every frame does not count this: δq = −(Hᵀ R⁻¹ H + Π)⁻¹ Π h, which is small where
-markers show the joint.
+markers show the joint. It is large where a narrower prior decides, beside segments without markers
+(:mod:`mbkf.sensors.holes`): Π is that prior's, while people hold such joints as differently as any other.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ class PoseErrors:
         root: Array,
         skin: FlexedSkin | None,
         held_rad: Array | None = None,
+        posture_sd_rad: Array | None = None,
     ) -> None:
         """Sums over the markers.
 
@@ -52,11 +54,12 @@ class PoseErrors:
                 displacements by flexion.
             skin: Shares of these displacements; None where no skin is known (D = 0).
             held_rad: (nv,) standard deviation of h, rad; 0 by default. Its dofs follow L in the roots' columns.
+            posture_sd_rad: (nv,) spread of the prior that draws to neutral, 0 without; by default the body's table.
         """
         model = sensor.model
         self._model, self._origins = model, OriginLevers(model)
         self._levers = np.concatenate([self._origins.levers, self._origins.centre_levers], axis=2)
-        posture = np.asarray(model.posture_sd)
+        posture = np.asarray(model.posture_sd if posture_sd_rad is None else posture_sd_rad)
         self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
         held = np.zeros(model.nv) if held_rad is None else held_rad
         dofs = np.flatnonzero(held > 0.0)

@@ -48,14 +48,13 @@ class PostureSettings:
     """Weight of the posture prior.
 
     Attributes:
-        posture_scale: Factor k on the body's table of spreads, per frame.
-        hole_posture_scale: Factor k for joints beside a segment without markers (:mod:`mbkf.sensors.holes`).
+        posture_scale: Factor k on the body's table of spreads, per frame; 0.35 in its place for joints beside a segment
+            without markers (:mod:`mbkf.sensors.holes`).
         unseen_posture: Factor on the prior's weight for unobserved joints: repeated in every frame, the full weight
             would soon outweigh earlier readings.
     """
 
     posture_scale: float = 1.0
-    hole_posture_scale: float = 0.4
     unseen_posture: float = 1.0
 
 

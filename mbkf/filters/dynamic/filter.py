@@ -22,7 +22,7 @@ from mbkf.sensors.block import AnyBlock, Frame
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.coordination.prior import CoordinationPrior
 from mbkf.sensors.foot_contact import FootContact
-from mbkf.sensors.holes import beside_holes
+from mbkf.sensors.holes import posture_scales
 from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
@@ -70,8 +70,8 @@ def dynamic_blocks(
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
     weight_n = GRAVITY_M_S2 * model.mass_kg
-    beside = beside_holes(sensor, unobservable)
-    dilution = np.where(beside, s.posture.hole_posture_scale / s.posture.posture_scale, 1.0)
+    usual = s.posture.posture_scale
+    dilution = posture_scales(sensor, unobservable, usual) / usual
     if spread_m is not None:
         dilution = dilution * prior_dilution(sensor, noise_m, spread_m)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)

@@ -11,7 +11,7 @@ from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.sensors.block import AnyBlock
-from mbkf.sensors.holes import beside_holes
+from mbkf.sensors.holes import beside_holes, posture_scales
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
@@ -57,7 +57,7 @@ def kinematic_blocks(
             posture,
             unobservable,
             PostureSettings(s.posture_scale),
-            np.where(holes, s.hole_posture_scale / s.posture_scale, 1.0),
+            posture_scales(sensor, unobservable, s.posture_scale) / s.posture_scale,
         ),
         *([JointLimits(posture, ~holes)] if holes.any() else []),
     ]

@@ -19,8 +19,8 @@ class KinematicSettings:
         marker_noise_m: One noise for all markers in place of their own, m, as in the thesis; None: their own.
         gate: Squared Mahalanobis distance (3 readings) above which a marker is refused.
         gate_radius_m: Distance below which no marker is refused, m.
-        posture_scale: The posture prior's spread is the body's table times this, per reading.
-        hole_posture_scale: Factor in place of `posture_scale` for joints beside a segment without markers.
+        posture_scale: The posture prior's spread is the body's table times this, per reading; times 0.35 for joints
+            beside a segment without markers (:mod:`mbkf.sensors.holes`).
         velocity_sd: Spread of a velocity about rest, rad/s or m/s, per reading; holds back the joints of segments
             none of whose markers is seen.
         restart_rms_m: A pose fit better than this is accepted to start or restart the filter, m.
@@ -34,7 +34,6 @@ class KinematicSettings:
     gate: float = 60.0
     gate_radius_m: float = 0.03
     posture_scale: float = 10.0
-    hole_posture_scale: float = 0.3
     velocity_sd: float = 20.0
     restart_rms_m: float = 0.05
     restart_after_s: float = 0.2

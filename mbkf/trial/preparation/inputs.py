@@ -21,6 +21,7 @@ from mbkf.model.subject_covariance import covariance_of
 from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.flexed_skin import FlexedSkin, slide_covariance
+from mbkf.sensors.holes import posture_scales
 from mbkf.sensors.lasting_noise import MOVEMENT_HZ, white_noise_m
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.subject_sensor import subject_sensor
@@ -119,8 +120,11 @@ def _body_errors(
     never_learnt += [NEVER_LEARNT * np.linalg.cholesky(one) for one in unseen]
     root = np.hstack([root, block_diag(*never_learnt)])
     skin = FlexedSkin(sensor.model, segments) if len(unseen) else None
-    held_rad = np.where(unobservable, 0.0, sensor.model.posture_sd)
-    return BodyErrors(sensor, noise_m, root, skin, held_rad)
+    people_rad = sensor.model.posture_sd
+    held_rad = np.where(unobservable, 0.0, people_rad)
+    return BodyErrors(
+        sensor, noise_m, root, skin, held_rad, posture_scales(sensor, unobservable) * people_rad
+    )
 
 
 def _noise(markers: Sequence[SubjectMarker], dt_s: float, share: float) -> tuple[Array, Array | None]:

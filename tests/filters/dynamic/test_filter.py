@@ -14,6 +14,7 @@ from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.soles import sole_points
+from mbkf.sensors.holes import HOLE_POSTURE_SCALE
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture import PosturePrior
@@ -365,6 +366,6 @@ def test_joints_beside_an_unmarked_segment_are_nearer_to_the_usual_posture(scale
     (prior,) = [block for block in bare.blocks if isinstance(block, PosturePrior)]
     known = prior.prepare(at_rest(MODEL, STANDING, HALF), None).information.matrix
     usual = prior.sensor.weights(1.0, np.zeros(NV, dtype=bool)) ** 2
-    for side, factor in (("right", SETTINGS.posture.hole_posture_scale), ("left", scale)):
+    for side, factor in (("right", HOLE_POSTURE_SCALE), ("left", scale)):
         knee = MODEL.joint(f"{side}_shank").v.start + 1
         assert known[knee, knee] == pytest.approx(usual[knee] / factor**2)

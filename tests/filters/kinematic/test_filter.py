@@ -10,6 +10,7 @@ from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep, kinemat
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.numerics.kalman import correct, information
+from mbkf.sensors.holes import HOLE_POSTURE_SCALE
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import (
     assert_near,
@@ -314,7 +315,7 @@ def test_joints_beside_an_unmarked_segment_are_known_by_posture_and_limits_too()
     usual = whole[-1].prepare(state, None).information.matrix
     known = prior.prepare(state, None).information.matrix
     assert known[right, right] == pytest.approx(
-        usual[right, right] * (settings.posture_scale / settings.hole_posture_scale) ** 2
+        usual[right, right] * (settings.posture_scale / HOLE_POSTURE_SCALE) ** 2
     )
     assert known[left, left] == pytest.approx(usual[left, left])
     held = limits.prepare(state, None).matrix

@@ -104,3 +104,18 @@ def test_a_joint_that_few_markers_show_may_be_held_otherwise_than_the_prior_has_
     spread = np.linalg.norm(inputs.body.pose_root(walker().truth.q[50]), axis=1)
     turn = dof_names(inputs.sensor.model).index("right_hand_z")
     assert 0.7 < spread[turn] / inputs.sensor.model.posture_sd[turn] < 1.0
+
+
+def test_errors_by_the_body_beside_a_hole_are_those_under_the_narrower_prior_there():
+    """Without markers on the pelvis, skin turns the thighs about their length by more than people's postures differ."""
+    person = walker().subject
+    segments = {marker.name: marker.segment for marker in person.markers}
+    names = [name for name in walker().trial.markers.names if segments.get(name, "pelvis") != "pelvis"]
+    markers, plates, _ = shown(names)
+    factors, known = tuple(person.scale_factors), tuple(segments)
+    size = len(factors) + 9 * len(known)
+    person = replace(person, covariance=BodyCovariance(factors, known, np.zeros((size, size)), 2))
+    inputs, _ = trial_inputs(markers, plates, person, ReconstructSettings())
+    spread = np.linalg.norm(inputs.body.pose_root(walker().truth.q[50]), axis=1)
+    turn = dof_names(inputs.sensor.model).index("right_thigh_z")
+    assert 0.35 < spread[turn] / inputs.sensor.model.posture_sd[turn] < 0.9
