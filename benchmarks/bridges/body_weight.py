@@ -55,7 +55,7 @@ def body_weight_rows(out: Path) -> Iterator[Check]:
         yield row("MuJoCo, URDF", spec.compile().body_mass.sum())
         yield row("MuJoCo, MJCF", mujoco.MjModel.from_xml_path(str(mjcf)).body_mass.sum())
     if not installed("pybullet"):
-        yield left_out("mass in PyBullet", "needs pybullet: pip install '.[bullet]'")
+        yield left_out("mass in PyBullet", "needs pybullet: pip install '.[bridges]'")
         return
     words = [sys.executable, "-c", _PYBULLET, str(urdf)]
     done = subprocess.run(words, capture_output=True, text=True, check=False).stdout.splitlines()
