@@ -1,8 +1,9 @@
-"""The directive ``public-surface``: every name of ``mbkf.__all__`` with its docstring, in alphabetical order."""
+"""The directive ``public-surface``: every name of ``mbkf.__all__`` with its docstring, by topic."""
 
 from __future__ import annotations
 
 import inspect
+from collections.abc import Mapping
 from typing import Any
 
 from docutils import nodes
@@ -11,18 +12,44 @@ from sphinx.util.docutils import SphinxDirective
 
 import mbkf
 
+TOPICS: Mapping[str, tuple[str, ...]] = {
+    "From a capture to a result": (
+        "read_capture", "scale", "label", "reconstruct", "ReconstructSettings", "Hidden", "summarise", "batch",
+        "orient", "synthesise",
+    ),
+    "Files": (
+        "read_subject", "write_subject", "read_reconstruction", "write_reconstruction", "read_imu", "Capture",
+        "MarkerTrajectories", "PlateReadings", "CaptureOptions", "ImuReadings", "overwriting",
+    ),
+    "Other programs and pictures": (
+        "export_result", "export_onto", "casadi_dynamics", "CasadiDynamics", "show", "play",
+    ),
+    "Bodies and marker sets": (
+        "load_body", "load_protocol", "HumanModel", "ClinicalAngles", "estimate_inertia", "InertiaEstimate",
+    ),
+    "Frame by frame": ("Tracker", "Estimate", "Filter", "standard_blocks", "plate_wrenches"),
+    "Sensors, plants and readers of your own": (
+        "Block", "Frame", "OperatingPoint", "Rows", "Notes", "Information", "Layout", "ExtraState", "Plant",
+        "register_reader", "register_force_reader", "register_imu_reader",
+    ),
+    "Errors": ("MbkfError",),
+}  # fmt: skip
+"""Public names by the topic under which they stand."""
+
 
 class PublicSurface(SphinxDirective):
-    """Writes one section per public name."""
+    """Writes a section for each topic, and one inside it for each of its names."""
 
     def run(self) -> list[nodes.Node]:
         """The sections."""
-        found: list[nodes.Node] = []
-        for name in sorted(mbkf.__all__, key=str.lower):
-            if name.startswith("__"):
-                continue
-            found += self.parse_text_to_nodes(_section(name), allow_section_headings=True)
-        return found
+        lines = [
+            line for topic, names in TOPICS.items() for line in (*_heading(topic, "-"), *map(_section, names))
+        ]
+        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
+
+
+def _heading(title: str, mark: str) -> tuple[str, ...]:
+    return (title, mark * len(title), "")
 
 
 def _section(name: str) -> str:
@@ -34,7 +61,7 @@ def _section(name: str) -> str:
         directive, options = "autofunction", ""
     else:
         directive, options = "autodata", "   :no-value:\n"
-    return f"{name}\n{'-' * len(name)}\n\n.. {directive}:: mbkf.{name}\n{options}"
+    return "\n".join([*_heading(name, "~"), f".. {directive}:: mbkf.{name}", options, ""])
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

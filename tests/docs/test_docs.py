@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import mbkf
-from docs._extensions import edited_files, result_quantities
+from docs._extensions import edited_files, public_surface, result_quantities
 from mbkf.cli.main import build_parser
 from mbkf.model.protocol import protocol_names
 
@@ -117,6 +117,11 @@ def test_every_key_of_the_summary_stands_in_the_page_on_files():
     subject, recorded = mbkf.synthesise("squat", seconds=1.0)
     summary = mbkf.summarise(mbkf.reconstruct(recorded.trial, subject), recorded.truth)
     assert {*summary, *summary["truth"]} - set(re.findall(r"`(\w+)`", text)) == set()
+
+
+def test_every_public_name_stands_under_one_topic_of_the_reference():
+    listed = [name for names in public_surface.TOPICS.values() for name in names]
+    assert sorted(listed) == sorted(name for name in mbkf.__all__ if not name.startswith("__"))
 
 
 CITED = re.compile(r"\(((?:[A-Z][\w-]+ )?[A-Z][\w-]+)(?: (?:&|and) [A-Z][\w-]+| et al\.)? ((?:19|20)\d\d)\b")
