@@ -79,7 +79,7 @@ def run_state(state: RunState | None) -> Plain | None:
     if state is None:
         return None
     names = ("state", "stage", "done", "total", "share", "seconds", "remaining_s", "reason")
-    return {name: getattr(state, name) for name in names}
+    return {**{name: getattr(state, name) for name in names}, "persons": list(state.persons)}
 
 
 def live_state(live: LiveRun) -> Plain:

@@ -22,6 +22,7 @@ from mbkf.app.notes import change_notes
 from mbkf.app.pages import live_frame_page, start_page, trial_report
 from mbkf.app.replies import Query, action, change, data, download, page
 from mbkf.app.runs import Runs
+from mbkf.app.several_persons import separate
 from mbkf.app.trial_viewer import viewer_data, viewer_page
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput, MbkfError
@@ -58,6 +59,13 @@ def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         (runs.cancel if query["do"] == "cancel" else runs.start)(name)
         return {"run": answers.run_state(runs.state(name))}
 
+    def apart(query: Query, _body: bytes) -> object:
+        folder, state = workspace.folder(query["session"]), runs.state(query["session"])
+        if state is None or not state.persons:
+            raise InvalidInput("run the session first: that shows whose captures its folder holds")
+        separate(workspace.root, folder, state.persons)
+        return {"sessions": list(state.persons)}
+
     async def put(request: Request) -> Response:
         name = request.query_params.get("file", "")
         try:
@@ -71,6 +79,7 @@ def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         data("/session", lambda query: answers.session(workspace, runs, query["session"])),
         change("/session", noted),
         action("/run", run),
+        action("/separate", apart),
         Route("/put", put, methods=["POST"]),
     ]
 

@@ -19,7 +19,8 @@ from dataclasses import asdict, dataclass, field
 from os import cpu_count
 from pathlib import Path
 
-from mbkf.app.workspace import Workspace, of_one_person
+from mbkf.app.several_persons import SeveralPersons, of_one_person
+from mbkf.app.workspace import Workspace
 from mbkf.io.atomic import write_text
 from mbkf.io.files_read import read_state
 from mbkf.study.batch.outcome import Outcome, Status, Task, failed
@@ -53,6 +54,7 @@ class RunState:
         seconds: Time since the run began.
         scaled_s: Time until the person was scaled.
         reason: Cause of a failure of the whole run; empty without.
+        persons: Files of each person, by place, where the failure is that there are several; empty otherwise.
         trials: Status of each trial by name ("done", "unchanged" or "failed"), and its reason.
         under_way: Progress of each trial under way by name; of the scaling under "".
     """
@@ -64,6 +66,7 @@ class RunState:
     seconds: float = 0.0
     scaled_s: float = 0.0
     reason: str = ""
+    persons: dict[str, list[str]] = field(default_factory=dict)
     trials: dict[str, tuple[str, str]] = field(default_factory=dict)
     under_way: dict[str, Progress] = field(default_factory=dict)
 
@@ -166,6 +169,8 @@ class Runs:
                 self._run_one(*taken)
             except _Stopped:
                 continue
+            except SeveralPersons as error:
+                self._fail(_reason(error), error.files)
             except BaseException as error:  # the thread must live: no memory, full disk, a bug
                 self._fail(_reason(error))
 
@@ -205,12 +210,13 @@ class Runs:
                 state.state, state.under_way = FINISHED, {}
             self._save()
 
-    def _fail(self, reason: str) -> None:
+    def _fail(self, reason: str, persons: Mapping[str, list[str]] | None = None) -> None:
         """Ends the run under way as failed."""
         with self._changed:
             for state in self._states.values():
                 if state.state == RUNNING:
                     state.state, state.reason, state.under_way = FAILED, reason, {}
+                    state.persons = dict(persons or {})
             self._save()
 
     def _save(self) -> None:

@@ -12,6 +12,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
+from mbkf.app.several_persons import of_one_person
 from mbkf.app.uploads import RESULTS, putting
 from mbkf.errors import InvalidInput
 from mbkf.io.results_folder import SUMMARY_FILE
@@ -31,27 +32,6 @@ from mbkf.study.survey.trial import SurveyedTrial, survey_trial
 
 Stamp = tuple[tuple[int, int], ...]
 """Sizes and times of a capture's files."""
-
-
-def of_one_person(plan: Plan) -> Plan:
-    """The plan of a session, which is that of one person with markers put on once.
-
-    Args:
-        plan: The plan.
-
-    Raises:
-        InvalidInput: Names, statements or movements show several persons, or markers that were put on anew.
-    """
-    trials: dict[Path, list[str]] = {}
-    for trial in plan.trials:
-        trials.setdefault(trial.person.place, []).append(trial.path.stem)
-    if len(trials) > 1:
-        listed = "; ".join(f"{place.as_posix()}: {', '.join(names)}" for place, names in trials.items())
-        raise InvalidInput(
-            f"the session's folder holds captures of several persons or sessions ({listed}): put each into a folder of "
-            "its own, or leave the others' trials out"
-        )
-    return plan
 
 
 class Workspace:
@@ -96,7 +76,8 @@ class Workspace:
         """The work for a session, as ``mbkf batch`` plans it.
 
         Raises:
-            InvalidInput: The session has no moving trial, or its folder holds captures of several persons.
+            InvalidInput: The session has no moving trial.
+            SeveralPersons: Its folder holds captures of several persons.
         """
         trials = self._trials(self.folder(session))
         if not trials:

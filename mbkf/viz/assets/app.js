@@ -67,6 +67,12 @@ const act = {
     await ask("run?" + query({ session: chosen, do: what }), { method: "POST" });
     await refresh();
   },
+  // Copies the captures of each person into a session of their own, and shows the first of these.
+  async separate() {
+    const said = await ask("separate?" + query({ session: chosen }), { method: "POST" });
+    await go(said.sessions[0]);
+    tell(word("separated", said.sessions.length));
+  },
   // Opens a view of the session, and puts it into the address.
   open(view, trial = null) {
     history.pushState(null, "", address({ session: chosen, view, trial }));

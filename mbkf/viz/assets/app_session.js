@@ -69,6 +69,7 @@ function run(data, act) {
   } else {
     const said = { finished: () => word("finished", duration(state.seconds)), cancelled: () => word("cancelled"), failed: () => word("failed_run", state.reason) };
     row.append(element("span", {}, said[state.state]()));
+    if (state.persons.length) row.append(element("button", { type: "button", className: "separate", onclick: act.separate }, word("separate", state.persons.join(", "))));
   }
   if (!busy && data.scaled_from.length) row.append(element("span", { className: "scaled-from", title: data.scaled_why.join("\n") }, `${word("scaled_by")}: ${data.scaled_from.join(", ")}`));
   return element("section", {}, row);
