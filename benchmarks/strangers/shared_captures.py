@@ -1,4 +1,8 @@
-"""Eleven captures of strangers as they come: scale and reconstruct by default settings, against right answers."""
+"""Eleven captures of strangers as they come: scale and reconstruct by default settings, against right answers.
+
+Some of these persons extend a knee further than the bound on it. The length of the leg, which no marker of the knee
+enters, shows whether that is an error of our zero (:mod:`benchmarks.strangers.straight_knee`).
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ import numpy as np
 from benchmarks.any_capture.out_of_box import KNEE_DEG, Stranger, stranger_rows
 from benchmarks.checks import Check, within
 from benchmarks.strangers.right_answers import ANSWERS
+from benchmarks.strangers.straight_knee import straight_knee_rows
 from benchmarks.strangers.trial import Trial
 from mbkf.io.subject import read_subject
 from mbkf.model.clinical import ClinicalAngles
@@ -87,6 +92,7 @@ def capture_rows(one: Shared, data: Path, out: Path) -> Iterator[Check]:
     yield Check(f"{name}: knees move by", high - low, LEAST_MOVED_DEG, ">=", "°")
     yield Check(f"{name}: least knee flexion", low, one.knee_deg[0], ">=", "°")
     yield Check(f"{name}: greatest knee flexion", high, one.knee_deg[1], "<=", "°")
+    yield from straight_knee_rows(name, trial.result)
     for row in ANSWERS[one.capture.folder](trial):
         yield Check(f"{name}: {row.name}", row.value, row.bound, row.relation, row.unit)
 
