@@ -19,6 +19,7 @@ from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 import benchmarks
@@ -194,7 +195,7 @@ def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:
         if not check.bounded:
             verdict, bound = "", "for information"
         if check.left_out:
-            value, bound, verdict = "–", "", f"left out: {check.note}"
+            value, bound, verdict = "–", "", f"left out: {escape(check.note)}"
         table.add_row(check.name, value, bound, check.unit, verdict)
     return table
 

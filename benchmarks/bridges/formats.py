@@ -34,6 +34,9 @@ found["glb end"] = max(action.frame_range[1] for action in bpy.data.actions)
 print("found", json.dumps(found))
 """
 
+_NOTHING = 'found {"bvh rate": NaN, "bvh end": NaN, "glb end": NaN}'
+"""Answer of a Blender that ended before its own."""
+
 
 def formats_rows(out: Path) -> Iterator[Check]:
     """Rows of all programs.
@@ -105,7 +108,9 @@ def _blender(result: Reconstruction, folder: Path) -> Iterator[Check]:
         return
     words = [sys.executable, "-c", _BLENDER, str(result.rate_hz), str(result.frames)]
     done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=folder).stdout.splitlines()
-    found = json.loads(next(line for line in done if line.startswith("found")).removeprefix("found"))
+    found = json.loads(
+        next((line for line in done if line.startswith("found")), _NOTHING).removeprefix("found")
+    )
     rate, last, keys = found["bvh rate"], found["bvh end"], found["glb end"]
     yield Check("BVH in Blender: rate of the scene", abs(rate - result.rate_hz), 1e-3, "<=", "Hz")
     yield Check("BVH in Blender: frames that the scene lacks", float(result.frames - last), 0.0, "<=")

@@ -97,15 +97,15 @@ def test_a_band_has_two_checks():
 
 
 def test_a_row_that_is_left_out_neither_passes_nor_fails(fake, tmp_path, capsys):
-    fake.run = lambda context: [left_out("torque", "needs captures"), Check("error", 0.5, 1.0, "<=")]
+    fake.run = lambda context: [left_out("torque", ".[extra] lacks"), Check("error", 0.5, 1.0, "<=")]
     assert runner.main(["--out", str(tmp_path)]) == 0
     told = capsys.readouterr().out
-    assert "left out: needs captures" in told and told.count("pass") == 1
+    assert "left out: .[extra] lacks" in told and told.count("pass") == 1
     first, second = json.loads((tmp_path / "checks.json").read_text())["checks"]
     assert (first["passed"], first["value"], first["note"], second["passed"]) == (
         None,
         None,
-        "needs captures",
+        ".[extra] lacks",
         True,
     )
 
