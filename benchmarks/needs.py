@@ -116,7 +116,13 @@ NEEDS: Mapping[str, Needs] = {
     "batch": Needs(("distributed",)),
     "bridges": Needs(
         libraries=("xarray",),
-        captures=("biomechzoo_walk_turn", "flywheel_squat", "gaitalytics_walk", "rajagopal_walk_run"),
+        captures=(
+            "biomechzoo_walk_turn",
+            "flywheel_squat",
+            "gait2354_walk",
+            "gaitalytics_walk",
+            "rajagopal_walk_run",
+        ),
         some_rows=("bids_validator_deno", "bpy", "ezc3d", "mujoco", "opensim", "pandas", "pybullet"),
     ),
     "contact": Needs(captures=_MARKED),

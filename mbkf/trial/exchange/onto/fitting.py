@@ -102,7 +102,8 @@ def onto(r: Reconstruction, model: OsimModel) -> OntoMotion:
         np.ones(len(names)),
     )
     q = fit(kinematics, _with_frames(kinematics, points, found), r.rate_hz)
-    found = [one.replaced(kinematics, kinematics.poses(q)) for one in found]
+    poses = kinematics.poses(q)
+    found = [one.replaced(kinematics, poses) for one in found]
     q = fit(kinematics, _with_frames(kinematics, points, found), r.rate_hz, q[0])
     poses = kinematics.poses(q)
     markers_m = poses.points(points.bodies, points.places_m)[0]

@@ -67,8 +67,8 @@ def test_markers_that_lie_otherwise_are_reported(result, text, tmp_path):
             x, y, z = map(float, higher[begin:end].split())
             higher = f"{higher[:begin]}{x} {y + 0.03} {z}{higher[end:]}"
     found = {one.pair.segment: one.place_mm for one in onto(result, model(tmp_path, higher)).residuals}
-    assert max(found[f"right_{part}"] for part in ("thigh", "shank", "foot")) > 3.0
-    assert found["left_hand"] < 1.0
+    assert max(found[f"right_{part}"] for part in ("thigh", "shank", "foot")) > 2.0
+    assert found["left_hand"] < 0.5
 
 
 def test_locked_and_clamped_coordinates_are_kept(result, text, tmp_path):
