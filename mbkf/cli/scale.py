@@ -15,6 +15,7 @@ Examples:
   mbkf scale static.c3d --trial walk.c3d --mass 60 --inertia --out subject.toml  (masses of segments by the plates)
   mbkf scale static.c3d --body legs.toml --mass 60 --out subject.toml  (a body of your own)
   mbkf scale static.c3d --body robot.urdf --mass 60 --out subject.toml  (from URDF, with robot.urdf.toml)
+  mbkf scale static.c3d --body leg.osim --protocol leg.osim --out subject.toml    (from OpenSim, with leg.osim.toml)
 """
 
 from __future__ import annotations

@@ -33,6 +33,7 @@ from mbkf.model.description import (
     SegmentShape,
     Sole,
 )
+from mbkf.model.osim_body import osim_body_text
 from mbkf.model.sides import mirrored
 from mbkf.model.spread_tables import joint_centres, segment_skin, shoulder_girdle
 from mbkf.model.trunk_levels import trunk_levels
@@ -43,13 +44,13 @@ AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 
 
 def load_body(body: str | Path = "human18") -> BodyDescription:
-    """Reads a reference body by its name, or a user's own from a TOML or a URDF file.
+    """Reads a reference body by its name, or a user's own from a TOML or URDF file or an OpenSim model.
 
-    A URDF file states segments, joints and inertias; roles, soles and all other entries stand in a side file of the
-    same name with ``.toml`` at its end (``robot.urdf.toml``).
+    A URDF file or an OpenSim model states segments, joints and inertias; soles and all other entries stand in a side
+    file of the same name with ``.toml`` at its end (``robot.urdf.toml``, ``leg.osim.toml``).
 
     Args:
-        body: Name of a body that comes with mbkf, or path of a file (ending in ``.toml`` or ``.urdf``).
+        body: Name of a body that comes with mbkf, or path of a file (ending in ``.toml``, ``.urdf`` or ``.osim``).
 
     Raises:
         UnknownName: The body does not exist, or the file names a segment, a landmark, a scale factor or a kind of joint
@@ -57,6 +58,8 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
         FileFormatError: The file or its side file is missing or not a valid body description.
     """
     path = Path(body)
+    if path.suffix.lower() == ".osim":
+        return parse_body(osim_body_text(path), f"{path} with {side_path(path).name}")
     if path.suffix.lower() == ".urdf":
         return parse_body(urdf_body_text(path), f"{path} with {side_path(path).name}")
     if path.suffix.lower() == ".toml":
@@ -75,7 +78,9 @@ def _shipped(name: str) -> BodyDescription:
     path = data_folder("models") / f"{name}.toml"
     if not path.is_file():
         names = [p.stem for p in data_folder("models").glob("*.toml")]
-        raise UnknownName("body", name, names, "give your own body by its file, ending in .toml or .urdf")
+        raise UnknownName(
+            "body", name, names, "give your own body by its file, ending in .toml, .urdf or .osim"
+        )
     return _parse(path.read_text(encoding="utf-8"), path, "")
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.known_keys import refuse_unknown
+from mbkf.io.osim import read_osim
 from mbkf.io.plain_data import number_between, parse_toml, plain_text
 from mbkf.io.subject import match_names
 from mbkf.model.body_file import load_body
@@ -112,7 +113,10 @@ def protocol_names() -> tuple[str, ...]:
 
 
 def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Protocol:
-    """Reads a protocol by its name, or from a TOML file of the same form.
+    """Reads a protocol by its name, from a TOML file of the same form, or an OpenSim model that is the body itself.
+
+    Markers of such a model (``.osim``) are where it has them: those that are fixed within 10 mm, the others within
+    60 mm (standard deviations).
 
     Args:
         name: The protocol's name, or its file.
@@ -126,7 +130,26 @@ def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Prot
     path = Path(name)
     if path.suffix.lower() == ".toml":
         return _parse(path, body)
+    if path.suffix.lower() == ".osim":
+        return _of_model(path, load_body(path) if body is None else body)
     return _shipped(str(name)) if body is None else _parse(_shipped_file(str(name)), body)
+
+
+def _of_model(path: Path, body: BodyDescription) -> Protocol:
+    """The markers of an OpenSim model, which are landmarks of the body that it is."""
+    model = read_osim(path)
+    markers = []
+    for one in (one for one in model.markers if one.name in body.landmarks):
+        place = body.landmarks[one.name]
+        kind = "technical" if one.fixed is False else "anatomical"
+        spread, noise = DEFAULT_PLACEMENT_SD_M[kind], DEFAULT_NOISE_M[kind]
+        markers.append(ProtocolMarker(one.name, place.segment, place.position_m, kind, spread, noise))
+    if not markers:
+        raise FileFormatError(
+            path, f"its markers are no landmarks of the body '{body.name}'; give --body {path.name}"
+        )
+    name = "_".join(path.stem.lower().split())
+    return Protocol(name, f"Markers of {path.name}", body, tuple(markers))
 
 
 @cache

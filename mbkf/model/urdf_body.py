@@ -56,7 +56,7 @@ REQUIRED = ("reference_height_m", "roles", "sole")
 
 
 def side_path(path: Path) -> Path:
-    """The side file of a URDF file."""
+    """The side file of a URDF file or OpenSim model."""
     return path.with_name(path.name + ".toml")
 
 
@@ -69,7 +69,7 @@ def urdf_body_text(path: Path) -> str:
     """
     try:
         tree = read_urdf_tree(path)
-        side = _side(path)
+        side = read_side(path)
         found = urdf_segments(tree, side.pop("names", {}))
     except MbkfError:
         raise
@@ -81,11 +81,22 @@ def urdf_body_text(path: Path) -> str:
         raise FileFormatError(path, str(error)) from error
     name = side.pop("name", tree.name)
     return toml_text(
-        f"{path.name} with {side_path(path).name}", _table(str(name), found, side, side_path(path))
+        f"{path.name} with {side_path(path).name}", body_table(str(name), found, side, side_path(path))
     )
 
 
-def _side(path: Path) -> TomlTable:
+def read_side(path: Path, required: tuple[str, ...] = REQUIRED, kind: str = "URDF") -> TomlTable:
+    """The entries of a side file.
+
+    Args:
+        path: The file beside which it stands.
+        required: Entries that it must have.
+        kind: Format of that file, for messages.
+
+    Raises:
+        FileFormatError: It is missing or not TOML, or lacks an entry.
+        UnknownName: It has an entry that does not exist.
+    """
     side = side_path(path)
     try:
         text = plain_text(side)
@@ -93,23 +104,33 @@ def _side(path: Path) -> TomlTable:
     except FileNotFoundError as error:
         raise FileFormatError(
             path,
-            f"it needs a side file {side.name} in its folder, with {', '.join(REQUIRED)} (docs: Your own body, URDF)",
+            f"it needs a side file {side.name} in its folder, with {', '.join(required)} (docs: Your own body, {kind})",
         ) from error
     except OSError as error:
         raise FileFormatError(side, f"cannot be read ({error.strerror or error})") from error
     except ValueError as error:
         raise FileFormatError(side, str(error)) from error
     refuse_unknown(table, SIDE_KNOWN, side, text, REMARKS)
-    missing = [key for key in REQUIRED if key not in table]
+    missing = [key for key in required if key not in table]
     if missing:
         raise FileFormatError(side, f"lacks {', '.join(missing)}")
-    if not isinstance(table["roles"], dict) or not isinstance(table.get("names", {}), dict):
+    if not isinstance(table.get("roles", {}), dict) or not isinstance(table.get("names", {}), dict):
         raise FileFormatError(side, "roles and names are tables: [roles], [names]")
     return table
 
 
-def _table(name: str, found: UrdfSegments, side: TomlTable, path: Path) -> TomlTable:
-    """The whole table of the body's file."""
+def body_table(name: str, found: UrdfSegments, side: TomlTable, path: Path) -> TomlTable:
+    """The whole table of the body's file.
+
+    Args:
+        name: The body's name.
+        found: Segments, landmarks and angles of the file.
+        side: Entries of the side file.
+        path: The side file.
+
+    Raises:
+        UnknownName: The side file names a segment that does not exist.
+    """
     factors = side.get("scale_factors", [SIZE])
     own = _by_name(side.pop("segment", []), [one["name"] for one in found.segments], path)
     segments = [
