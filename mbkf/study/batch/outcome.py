@@ -12,12 +12,16 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from mbkf.errors import MbkfError
+from mbkf.errors import InvalidInput, MbkfError
 from mbkf.study.batch.progress import ignored
 
 if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
     from mbkf.study.batch.plan import Sorted
+
+
+class AnotherPerson(InvalidInput):
+    """A trial does not show the person that it was planned for."""
 
 
 class Status(StrEnum):
@@ -40,6 +44,7 @@ class Outcome:
         subject: The scaled person's file; None: a trial, or a failed scaling.
         doubts: Doubts about the scaled person, or about the trial's, in one line; empty without any.
         captures: Captures sorted into persons; None: another task.
+        another_person: True for a trial that does not show its person.
     """
 
     status: Status
@@ -49,6 +54,7 @@ class Outcome:
     subject: Path | None = None
     doubts: str = ""
     captures: Sorted | None = None
+    another_person: bool = False
 
 
 class Task(Protocol):
@@ -69,7 +75,7 @@ def failed(error: BaseException) -> Outcome:
         text = f"{error.strerror}: {error.filename}" if error.filename else error.strerror
     elif not isinstance(error, MbkfError):
         text = f"unforeseen {type(error).__name__}: {text} (a bug in mbkf; please report it)"
-    return Outcome(Status.FAILED, text)
+    return Outcome(Status.FAILED, text, another_person=isinstance(error, AnotherPerson))
 
 
 def peak_memory_mb() -> float | None:

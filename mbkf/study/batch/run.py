@@ -19,6 +19,7 @@ from mbkf.io.leftovers import sweep_folder
 from mbkf.study.batch.cluster import ClusterWorkers
 from mbkf.study.batch.folder import plan_of_folder
 from mbkf.study.batch.lists import plan_of_csv, plan_of_toml
+from mbkf.study.batch.other_person import plan_of_others
 from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.plan import Person, Plan, Trial
 from mbkf.study.batch.tables import TABLES, write_tables
@@ -109,8 +110,41 @@ def follow(
     """
     out.mkdir(parents=True, exist_ok=True)
     outcomes = outcomes_of(plan, out, settings, executor, progress)
+    if not suffix:  # a part of the trials may not hold all of another person
+        plan, outcomes = with_others(plan, outcomes, out, settings, executor, progress)
     with own_files_read(), opened(write_tables(plan, outcomes, out, suffix)) as file:
         return pq.read_table(file)
+
+
+def with_others(
+    plan: Plan,
+    outcomes: list[Outcome],
+    out: Path,
+    settings: ReconstructSettings,
+    executor: Executor,
+    progress: StageCallback | None = None,
+) -> tuple[Plan, list[Outcome]]:
+    """Plan and outcomes in which trials that do not show their person are done as another's, where they can be.
+
+    Args:
+        plan: The persons and trials.
+        outcomes: Outcome of each trial.
+        out: The batch's folder.
+        settings: The filter and its settings.
+        executor: Who does it.
+        progress: Called with the stage, items done and items in all.
+    """
+    strange = [k for k, one in enumerate(outcomes) if one.another_person]
+    if not strange:
+        return plan, outcomes
+    others = sorted_plan(plan_of_others([plan.trials[k] for k in strange]), executor, progress)
+    trials, found = list(plan.trials), list(outcomes)
+    for k, trial, one in zip(
+        strange, others.trials, outcomes_of(others, out, settings, executor, progress), strict=True
+    ):
+        if one.status != Status.FAILED:
+            trials[k], found[k] = trial, one
+    return Plan(tuple(trials), plan.notes), found
 
 
 def plan_of(source: Path) -> Plan:

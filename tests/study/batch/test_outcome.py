@@ -6,7 +6,7 @@ import os
 import pytest
 
 from mbkf.errors import FileFormatError
-from mbkf.study.batch.outcome import Outcome, Status, failed, peak_memory_mb
+from mbkf.study.batch.outcome import AnotherPerson, Outcome, Status, failed, peak_memory_mb
 
 
 @pytest.mark.parametrize(
@@ -24,6 +24,12 @@ from mbkf.study.batch.outcome import Outcome, Status, failed, peak_memory_mb
 )
 def test_errors_are_told_in_one_line(error, told):
     assert failed(error) == Outcome(Status.FAILED, told)
+
+
+def test_a_trial_of_another_person_is_marked():
+    assert failed(AnotherPerson("walk.c3d: longer")) == Outcome(
+        Status.FAILED, "walk.c3d: longer", another_person=True
+    )
 
 
 def test_memory_is_told_where_the_system_tells_it():

@@ -1,6 +1,7 @@
 """A batch from end to end: bad files cost only themselves, what is done is not done again, workers change nothing."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
 from mbkf.study.batch import run as module
-from mbkf.study.batch.run import batch, plan_of
+from mbkf.study.batch.outcome import Outcome, Status
+from mbkf.study.batch.plan import Person, Plan, Sorted, Trial
+from mbkf.study.batch.run import batch, outcomes_of, plan_of, with_others
+from mbkf.study.batch.tasks import ScalePerson, SortCaptures
 from tests.captures import snapshot
 from tests.studies import QUICK, ThisProcess, batch_here, study, walk_folder
 
@@ -156,3 +160,41 @@ def test_two_persons_in_one_folder_get_bodies_and_masses_of_their_own(tmp_path):
     ratios = [bodies["B02"].scale_factors[k] / f for k, f in bodies["A01"].scale_factors.items()]
     assert np.median(ratios) == pytest.approx(0.8, abs=0.02)
     assert max(table["marker_rms_mm"].to_pylist()) < 12.0
+
+
+class Strange:
+    """An executor in whose trials ``walk2`` and ``walk1`` are another's, of whom ``walk1`` cannot be scaled."""
+
+    def run(self, tasks, watch=None):
+        for number, task in enumerate(tasks):
+            if isinstance(task, SortCaptures):
+                owners = {
+                    files.path: replace(
+                        task.person, name=f"{task.person.name}-{files.path.stem}", unsorted=()
+                    )
+                    for files in task.person.unsorted
+                }
+                yield number, Outcome(Status.DONE, captures=Sorted(owners, {}))
+            elif isinstance(task, ScalePerson):
+                failed = task.person.name == "P-other-walk1"
+                yield (
+                    number,
+                    Outcome(Status.FAILED, "no mass") if failed else Outcome(Status.DONE, subject=Path("s")),
+                )
+            elif task.trial.person.name == "P" and task.trial.path.stem != "walk3":
+                yield number, Outcome(Status.FAILED, "longer", another_person=True)
+            else:
+                yield number, Outcome(Status.DONE)
+
+
+def test_trials_of_another_person_beside_one_standing_trial_are_done_with_a_body_of_their_own(tmp_path):
+    person = Person("P", statics=(Path("static"),))
+    plan = Plan(tuple(Trial(person, Path(f"walk{k}")) for k in (1, 2, 3)))
+    asked = (plan, outcomes_of(plan, tmp_path, QUICK, Strange()), tmp_path, QUICK, Strange())
+    after, outcomes = with_others(*asked)
+    assert [trial.place.as_posix() for trial in after.trials] == ["P/walk1", "P-other-walk2/walk2", "P/walk3"]
+    assert [(one.status.value, one.reason) for one in outcomes] == [
+        ("failed", "longer"),
+        ("done", ""),
+        ("done", ""),
+    ]
