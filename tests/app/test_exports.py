@@ -31,7 +31,9 @@ def own_folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize(("kind", "begins"), [("c3d", b"\x02\x50"), ("bvh", b"HIERARCHY"), ("glb", b"glTF")])
+@pytest.mark.parametrize(
+    ("kind", "begins"), [("c3d", b"\x02\x50"), ("csv", b"time_s,"), ("bvh", b"HIERARCHY"), ("glb", b"glTF")]
+)
 def test_a_result_is_downloaded(server, cookie, recording, own_folder, kind, begins):
     answer, content = asked(server, f"/trial/export?session=P1&trial=live-%C3%A9&to={kind}", Cookie=cookie)
     assert answer.status == 200 and content.startswith(begins)

@@ -1,7 +1,7 @@
 // A trial's result as a file of other programs: a choice of formats, each a download.
 "use strict";
 
-const EXPORTS = ["c3d", "bvh", "glb", "mp4", "gif"];
+const EXPORTS = ["c3d", "csv", "bvh", "glb", "mp4", "gif"];
 
 function exportSelect(data, one) {
   const idle = element("option", { value: "" }, word("export"));

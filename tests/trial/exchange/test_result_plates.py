@@ -109,6 +109,14 @@ def test_the_trial_s_plates_and_channels_are_kept_and_unread_loads_stand_beside_
     assert unread.any() and not unread.all()
 
 
+def test_a_plate_that_the_filter_did_not_read_is_left_out(tmp_path, trial):
+    r = replace(leaning_walk(), read_plate_names=("2",))
+    _, found = exported(r, tmp_path, trial=trial[0])
+    described = told(found, "FORCE_PLATFORM", "DESCRIPTIONS")
+    assert described[:2] == [f"estimated by mbkf: load on {side}_foot" for side in ("right", "left")]
+    assert told(found, "ANALOG", "LABELS")[-1] == "EMG tibialis"
+
+
 def test_another_trial_is_refused(tmp_path, trial):
     r = leaning_walk()
     with pytest.raises(InvalidInput, match="is not the trial"):
