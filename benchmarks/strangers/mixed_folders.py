@@ -23,7 +23,7 @@ from mbkf.io.records import Capture
 from mbkf.study.batch.outcome import Status
 from mbkf.study.batch.person import record_of
 from mbkf.study.batch.plan import Plan, Trial, trial_names
-from mbkf.study.batch.run import follow, plan_of, sorted_plan
+from mbkf.study.batch.run import outcomes_of, plan_of, sorted_plan, with_others
 from mbkf.study.batch.workers import LocalWorkers
 from mbkf.study.scaling.report import used_trials
 from mbkf.synthesis.person import synthesise_subject
@@ -231,13 +231,14 @@ def _judged(folder: Folder, data: Path, place: Path, workers: LocalWorkers) -> J
     plan = sorted_plan(plan_of(place / "study"), workers)
     trials = [replace(t, person=replace(t.person, mass_kg=t.person.mass_kg or MASS_KG)) for t in plan.trials]
     plan = Plan(tuple(trials), plan.notes)
-    table = follow(plan, place / "out", QUICK, workers)
+    asked = place / "out", QUICK, workers
+    plan, outcomes = with_others(plan, outcomes_of(plan, *asked), *asked)
     done, failed = {}, {}
-    for trial, row in zip(plan.trials, table.select(["status", "reason"]).to_pylist(), strict=True):
-        if row["status"] == Status.DONE:
+    for trial, outcome in zip(plan.trials, outcomes, strict=True):
+        if outcome.status == Status.DONE:
             done[trial.path] = (trial.person.name, _body_of(trial, place / "out", owners))
         else:
-            failed[trial.path] = row["reason"]
+            failed[trial.path] = outcome.reason
     return compared(folder, owners, done, failed, _may_be_done(folder, data))
 
 
