@@ -122,6 +122,7 @@ NEEDS: Mapping[str, Needs] = {
             "gait2354_walk",
             "gaitalytics_walk",
             "rajagopal_walk_run",
+            "synthetic_exact_truth",
         ),
         some_rows=("bids_validator_deno", "bpy", "ezc3d", "mujoco", "opensim", "pandas", "pybullet"),
     ),
