@@ -4,6 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
@@ -198,3 +200,19 @@ def test_trials_of_another_person_beside_one_standing_trial_are_done_with_a_body
         ("done", ""),
         ("done", ""),
     ]
+
+
+def test_a_shard_leaves_trials_of_another_person_to_the_whole(monkeypatch, tmp_path):
+    """It may hold some of that person's trials only, and bodies would depend on the shards."""
+    asked, table = [], tmp_path / "t.parquet"
+    pq.write_table(pa.table({"trial": ["a"]}), table)
+    monkeypatch.setattr(module, "outcomes_of", lambda *_: [])
+    monkeypatch.setattr(
+        module, "with_others", lambda plan, outcomes, *_: asked.append(plan) or (plan, outcomes)
+    )
+    monkeypatch.setattr(module, "write_tables", lambda *_: table)
+    plan = Plan(())
+    module.follow(plan, tmp_path, QUICK, Strange(), suffix="-1-of-2")
+    assert not asked
+    module.follow(plan, tmp_path, QUICK, Strange())
+    assert asked == [plan]
