@@ -1,9 +1,8 @@
-"""The directive ``public-surface``: every name of ``mbkf.__all__`` with its docstring, by topic."""
+"""The directive ``public-surface``: names of one topic of ``mbkf.__all__`` with their docstrings, in reading order."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
 from typing import Any
 
 from docutils import nodes
@@ -12,44 +11,41 @@ from sphinx.util.docutils import SphinxDirective
 
 import mbkf
 
-TOPICS: Mapping[str, tuple[str, ...]] = {
-    "From a capture to a result": (
-        "read_capture", "scale", "label", "reconstruct", "ReconstructSettings", "Hidden", "summarise", "batch",
-        "orient", "synthesise",
+TOPICS: dict[str, tuple[str, ...]] = {
+    "captures": (
+        "read_capture", "Capture", "MarkerTrajectories", "PlateReadings", "plate_wrenches", "overwriting",
+        "register_reader", "register_force_reader", "CaptureOptions",
     ),
-    "Files": (
-        "read_subject", "write_subject", "read_reconstruction", "write_reconstruction", "read_imu", "Capture",
-        "MarkerTrajectories", "PlateReadings", "CaptureOptions", "ImuReadings", "overwriting",
+    "scaling": ("scale", "read_subject", "write_subject", "estimate_inertia", "InertiaEstimate"),
+    "reconstruction": (
+        "reconstruct", "ReconstructSettings", "Hidden", "summarise", "read_reconstruction", "write_reconstruction",
+        "export_result", "export_onto",
     ),
-    "Other programs and pictures": (
-        "export_result", "export_onto", "casadi_dynamics", "CasadiDynamics", "show", "play",
+    "filters": (
+        "Tracker", "Estimate", "standard_blocks", "Filter", "Plant", "Block", "Rows", "Frame", "OperatingPoint",
+        "Notes", "Layout", "ExtraState", "Information",
     ),
-    "Bodies and marker sets": (
-        "load_body", "load_protocol", "HumanModel", "ClinicalAngles", "estimate_inertia", "InertiaEstimate",
-    ),
-    "Frame by frame": ("Tracker", "Estimate", "Filter", "standard_blocks", "plate_wrenches"),
-    "Sensors, plants and readers of your own": (
-        "Block", "Frame", "OperatingPoint", "Rows", "Notes", "Information", "Layout", "ExtraState", "Plant",
-        "register_reader", "register_force_reader", "register_imu_reader",
-    ),
-    "Errors": ("MbkfError",),
+    "labelling": ("label", "load_protocol"),
+    "inertial": ("read_imu", "ImuReadings", "orient", "register_imu_reader"),
+    "body": ("HumanModel", "load_body", "ClinicalAngles", "casadi_dynamics", "CasadiDynamics"),
+    "studies": ("batch", "synthesise"),
+    "viewing": ("show", "play"),
+    "errors": ("MbkfError",),
 }  # fmt: skip
-"""Public names by the topic under which they stand."""
+"""Public names by the page of ``docs/api`` that explains them."""
 
 
 class PublicSurface(SphinxDirective):
-    """Writes a section for each topic, and one inside it for each of its names."""
+    """Writes one section per public name of a topic."""
+
+    required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """The sections."""
-        lines = [
-            line for topic, names in TOPICS.items() for line in (*_heading(topic, "-"), *map(_section, names))
-        ]
-        return self.parse_text_to_nodes("\n".join(lines), allow_section_headings=True)
-
-
-def _heading(title: str, mark: str) -> tuple[str, ...]:
-    return (title, mark * len(title), "")
+        found: list[nodes.Node] = []
+        for name in TOPICS[self.arguments[0]]:
+            found += self.parse_text_to_nodes(_section(name), allow_section_headings=True)
+        return found
 
 
 def _section(name: str) -> str:
@@ -61,7 +57,7 @@ def _section(name: str) -> str:
         directive, options = "autofunction", ""
     else:
         directive, options = "autodata", "   :no-value:\n"
-    return "\n".join([*_heading(name, "~"), f".. {directive}:: mbkf.{name}", options, ""])
+    return f"{name}\n{'-' * len(name)}\n\n.. {directive}:: mbkf.{name}\n{options}"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
