@@ -18,6 +18,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "edited_files",
+    "gallery",
     "mathml",
     "public_surface",
     "result_quantities",
