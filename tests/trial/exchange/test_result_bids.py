@@ -45,7 +45,10 @@ def test_the_columns_are_those_that_stand_beside_them(folder, system, kind):
     assert np.isnan(found[LOST if system == "mbkf" else slice(20, 50)]).all()
 
 
-def test_foot_events_are_there(folder):
+def test_foot_events_count_from_the_first_frame(folder, tmp_path):
+    later = replace(broken_walk(), times_s=broken_walk().times_s + 5.0)
+    write_results_bids([later], tmp_path, "07")
+    assert rows(tmp_path / "sub-07" / "motion" / f"{STEM}_events.tsv") == rows(folder / f"{STEM}_events.tsv")
     head, *events = rows(folder / f"{STEM}_events.tsv")
     assert head == ["onset", "duration", "trial_type"]
     assert {one[2] for one in events} <= {

@@ -1,6 +1,8 @@
 """The wide table of a result: a row a frame, names with units, numbers as the result holds them."""
 
 import csv
+from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -23,16 +25,26 @@ def numbers(column):
     return np.array([float(one) if one else np.nan for one in column])
 
 
+@cache
+def result():
+    """The leaning walk with rates and standard deviations of their own."""
+    r, rng = leaning_walk(), np.random.default_rng(1)
+    rates, sd = rng.normal(size=r.angle_rates.shape), rng.uniform(1.0, 2.0, r.moments.shape)
+    return replace(
+        r, angle_rates=rates, moments_sd=sd, foot_wrench_sd=rng.uniform(1.0, 2.0, r.foot_wrench.shape)
+    )
+
+
 @pytest.fixture(scope="module")
 def columns(tmp_path_factory):
     path = tmp_path_factory.mktemp("csv") / "walk.csv"
-    write_result_csv(leaning_walk(), path)
+    write_result_csv(result(), path)
     assert form_of(path) == TABLE
     return read(path)
 
 
 def test_coordinates_are_in_degrees_and_metres_with_their_loads(columns):
-    r = leaning_walk()
+    r = result()
     for name, unit, factor in (("knee_angle_r", "deg", 180 / np.pi), ("pelvis_tx", "m", 1.0)):
         np.testing.assert_allclose(
             numbers(columns[f"{name}_{unit}"]), factor * r.angle(name), rtol=1e-9, atol=1e-12
@@ -48,11 +60,15 @@ def test_coordinates_are_in_degrees_and_metres_with_their_loads(columns):
 
 
 def test_loads_stand_by_the_part_with_their_source_in_words(columns):
-    r = leaning_walk()
+    r = result()
     for k, part in enumerate(r.loads.names):
         for axis in range(3):
             found = numbers(columns[f"{part}_force_{'xyz'[axis]}_n"])
             np.testing.assert_allclose(found, r.loads.wrench[:, k, axis], rtol=1e-9, atol=1e-9)
+            found = numbers(columns[f"{part}_moment_{'xyz'[axis]}_nm"])
+            np.testing.assert_allclose(found, r.loads.wrench[:, k, 3 + axis], rtol=1e-9, atol=1e-9)
+            found = numbers(columns[f"{part}_force_sd_{'xyz'[axis]}_n"])
+            np.testing.assert_allclose(found, r.loads.wrench_sd[:, k, axis], rtol=1e-9, atol=1e-9)
             found = numbers(columns[f"{part}_point_{'xyz'[axis]}_m"])
             np.testing.assert_allclose(found, r.loads.point_m[:, k, axis], rtol=1e-9, atol=1e-9)
         assert columns[f"{part}_source"] == [Source(one).name.lower() for one in r.loads.source[:, k]]

@@ -10,7 +10,14 @@ import mbkf
 from mbkf.errors import InvalidInput
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.contacts import Source
-from mbkf.io.records import AnalogChannel, Capture, MarkerTrajectories, PlateReadings, SampleScaling
+from mbkf.io.records import (
+    AnalogChannel,
+    AxesSource,
+    Capture,
+    MarkerTrajectories,
+    PlateReadings,
+    SampleScaling,
+)
 from tests.recordings import LOST, PLATE, broken_walk, leaning_walk
 
 PER_FRAME = 10
@@ -85,6 +92,18 @@ def test_moments_are_those_of_the_loads(tmp_path):
         np.testing.assert_allclose(force, wrench[:, :3], atol=1e-3)
 
 
+def test_plates_of_loads_face_up_and_are_as_large_as_their_places(tmp_path):
+    r = leaning_walk()
+    exported(r, tmp_path)
+    capture = mbkf.read_capture(tmp_path / "out.c3d")
+    assert (capture.up_axis, capture.axes_source) == ("z", AxesSource.PLATES)
+    for k, plate in enumerate(capture.plates[:2]):
+        places = r.loads.point_m[r.loads.source[:, k] != 0, k, :2]
+        places = places[np.isfinite(places).all(axis=1)]
+        np.testing.assert_allclose(plate.corners_m[:, :2].min(axis=0), places.min(axis=0) - 0.2, atol=1e-4)
+        np.testing.assert_allclose(plate.corners_m[:, :2].max(axis=0), places.max(axis=0) + 0.2, atol=1e-4)
+
+
 def test_the_trial_s_plates_and_channels_are_kept_and_unread_loads_stand_beside_them(tmp_path, trial):
     path, measured, counts = trial
     r = replace(leaning_walk(), read_plate_names=("1",))
@@ -123,3 +142,7 @@ def test_another_trial_is_refused(tmp_path, trial):
         exported(replace(r, measured_m=r.measured_m + 0.01), tmp_path, trial=trial[0])
     with pytest.raises(InvalidInput, match="is not the trial"):
         exported(replace(r, times_s=r.times_s + 1.0), tmp_path, trial=trial[0])
+    markers = MarkerTrajectories(r.marker_names, r.measured_m[: r.frames // 2], r.rate_hz)
+    write_c3d(Capture("", markers), tmp_path / "half.c3d")
+    with pytest.raises(InvalidInput, match="is not the trial"):
+        exported(r, tmp_path, trial=tmp_path / "half.c3d")
