@@ -46,16 +46,15 @@ def columns(tmp_path_factory):
 def test_coordinates_are_in_degrees_and_metres_with_their_loads(columns):
     r = result()
     for name, unit, factor in (("knee_angle_r", "deg", 180 / np.pi), ("pelvis_tx", "m", 1.0)):
-        np.testing.assert_allclose(
-            numbers(columns[f"{name}_{unit}"]), factor * r.angle(name), rtol=1e-9, atol=1e-12
-        )
-        np.testing.assert_allclose(
-            numbers(columns[f"{name}_sd_{unit}"]), factor * r.angle_sd(name), rtol=1e-9
-        )
-    np.testing.assert_allclose(
-        numbers(columns["knee_angle_r_moment_nm"]), r.moment("knee_angle_r"), rtol=1e-9
-    )
-    np.testing.assert_allclose(numbers(columns["pelvis_tx_force_n"]), r.moment("pelvis_tx"), rtol=1e-9)
+        load = ("force", "n") if unit == "m" else ("moment", "nm")
+        for column, wanted in (
+            (f"{name}_{unit}", factor * r.angle(name)),
+            (f"{name}_sd_{unit}", factor * r.angle_sd(name)),
+            (f"{name}_rate_{unit}_s", factor * r.angle_rate(name)),
+            (f"{name}_{load[0]}_{load[1]}", r.moment(name)),
+            (f"{name}_{load[0]}_sd_{load[1]}", r.moment_sd(name)),
+        ):
+            np.testing.assert_allclose(numbers(columns[column]), wanted, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(numbers(columns["knee_angle_r_power_w"]), r.power("knee_angle_r"), atol=1e-9)
 
 
