@@ -1,6 +1,7 @@
 """A result as a wide table: a row a frame, a column a number, its unit at the end of its name; and its key numbers.
 
-Names hold letters, digits and underscores, so that pandas and R keep them. An unknown number is an empty field.
+Names hold letters, digits and underscores, so that pandas and R keep them; markers that would be called alike get a
+number (``R_TOE``, ``R_TOE_2``). An unknown number is an empty field.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from mbkf.conventions import Array
 from mbkf.io.atomic import write_text
 from mbkf.io.contacts import Source
 from mbkf.io.dimensions import ANGLE, AXES
+from mbkf.io.labels import unique_labels
 from mbkf.io.results import Reconstruction
 
 Column = Array | NDArray[np.str_]
@@ -75,9 +77,7 @@ def csv_columns(r: Reconstruction) -> Iterator[tuple[str, Column]]:
         ("residual_moment", r.residual_moment_nm, "nm"),
     ):
         yield from _along(kind, values, unit)
-    for k, name in enumerate(r.marker_names):
-        yield from _along(plain(name), r.measured_m[:, k], "m")
-        yield from _along(f"{plain(name)}_model", r.predicted_m[:, k], "m")
+    yield from _markers(r)
 
 
 def _coordinates(r: Reconstruction) -> Iterator[tuple[str, Column]]:
@@ -105,6 +105,15 @@ def _loads(r: Reconstruction) -> Iterator[tuple[str, Column]]:
         yield from _along(f"{part}_moment", loads.wrench[:, k, 3:], "nm")
         yield from _along(f"{part}_point", loads.point_m[:, k], "m")
         yield f"{part}_source", words[loads.source[:, k].astype(int)]
+
+
+def _markers(r: Reconstruction) -> Iterator[tuple[str, Column]]:
+    """Places of each marker as measured, then on the body, m."""
+    names = unique_labels([plain(name) for name in r.marker_names], [])
+    called = unique_labels([*names, *(f"{name}_model" for name in names)], [])
+    for k, (measured, on_body) in enumerate(zip(called[: len(names)], called[len(names) :], strict=True)):
+        yield from _along(measured, r.measured_m[:, k], "m")
+        yield from _along(on_body, r.predicted_m[:, k], "m")
 
 
 def _along(name: str, values: Array, unit: str) -> Iterator[tuple[str, Column]]:

@@ -6,13 +6,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.io.contacts import Source
 from mbkf.io.written import TABLE, form_of
 from mbkf.trial.exchange.result_csv import leaves, plain, write_result_csv
-from tests.recordings import broken_walk, leaning_walk
+from tests.recordings import broken_walk, leaning_walk, walk
 
 
 def read(path):
@@ -85,6 +85,18 @@ def test_unknown_numbers_are_empty_and_names_are_plain(tmp_path):
     assert all(name == plain(name) for name in found)
 
 
+def test_markers_that_would_be_called_alike_keep_a_column_each(tmp_path):
+    r = walk()
+    names = ("R-TOE", "R TOE", "R_TOE_model", *r.marker_names[3:])
+    write_result_csv(replace(r, marker_names=names), tmp_path / "w.csv")
+    found = read(tmp_path / "w.csv")
+    for k, (measured, on_body) in enumerate(
+        (("R_TOE", "R_TOE_model_2"), ("R_TOE_2", "R_TOE_2_model"), ("R_TOE_model", "R_TOE_model_model"))
+    ):
+        np.testing.assert_allclose(numbers(found[f"{measured}_x_m"]), r.measured_m[:, k, 0], rtol=1e-9)
+        np.testing.assert_allclose(numbers(found[f"{on_body}_x_m"]), r.predicted_m[:, k, 0], rtol=1e-9)
+
+
 DATA = st.recursive(
     st.none() | st.integers() | st.text(max_size=3),
     lambda inner: (
@@ -95,6 +107,7 @@ DATA = st.recursive(
 )
 
 
+@settings(max_examples=40)
 @given(DATA)
 def test_every_value_of_plain_data_is_found_once_under_its_path(data):
     def at(path):
