@@ -19,6 +19,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.atomic import write_text
 from mbkf.io.dimensions import ANGLE, AXES
 from mbkf.io.results import Reconstruction
+from mbkf.io.text import read_text
 from mbkf.trial.exchange.even_frames import at_rows, even_rows
 from mbkf.trial.exchange.result_c3d import foot_instants
 from mbkf.version import __version__
@@ -27,6 +28,9 @@ BIDS_VERSION = "1.10.0"
 
 FRAME = "world"
 """Name of the world's axes among the reference frames."""
+
+PARTICIPANTS, ID = "participants.tsv", "participant_id"
+"""Table of the set's persons, and its column of their labels."""
 
 _CHANNELS = ("name", "component", "type", "tracked_point", "units", "reference_frame")
 
@@ -44,7 +48,7 @@ class Channel(NamedTuple):
 
 
 def write_results_bids(results: Sequence[Reconstruction], folder: str | Path, person: str = "01") -> None:
-    """Writes the data set; files about the whole set that are there already stay.
+    """Writes the data set; files about the whole set that are there already stay, with a row for a further person.
 
     Args:
         results: Results of the person's trials.
@@ -64,6 +68,7 @@ def write_results_bids(results: Sequence[Reconstruction], folder: str | Path, pe
     for name, text in _of_the_set(results[0], person).items():
         if not (folder / name).exists():
             write_text(folder / name, text)
+    _add_person(folder / PARTICIPANTS, _person(results[0], person))
     for result, task in zip(results, _tasks(results), strict=True):
         for name, text in _of_a_trial(result, f"sub-{person}_{task}").items():
             write_text(folder / f"sub-{person}" / "motion" / name, text)
@@ -81,14 +86,32 @@ def _of_the_set(r: Reconstruction, person: str) -> dict[str, str]:
         "body_mass": {"Description": "mass of the body", "Units": "kg"},
         "height": {"Description": "height of the body", "Units": "m"},
     }
-    height = r.subject.height_m
-    row = (f"sub-{person}", f"{r.subject.mass_kg:.6g}", "n/a" if height is None else f"{height:.6g}")
+    row = _person(r, person)
     return {
         "dataset_description.json": _json(description),
         "README": "Markers as measured (tracksys-optical) and joint angles (tracksys-mbkf), written by mbkf.\n",
-        "participants.tsv": _tsv([("participant_id", *columns), row]),
+        PARTICIPANTS: _tsv([tuple(row), tuple(row.values())]),
         "participants.json": _json(columns),
     }
+
+
+def _person(r: Reconstruction, person: str) -> Mapping[str, str]:
+    """A person's row by the columns' names."""
+    height = r.subject.height_m
+    return {
+        ID: f"sub-{person}",
+        "body_mass": f"{r.subject.mass_kg:.6g}",
+        "height": "n/a" if height is None else f"{height:.6g}",
+    }
+
+
+def _add_person(path: Path, row: Mapping[str, str]) -> None:
+    """Adds a row to a table of persons that lacks it, in the columns that the table has."""
+    lines = list(read_text(path, "a table of persons").lines)
+    cells = [line.split("\t") for line in lines]
+    if cells and ID in cells[0] and not any(row[ID] in one for one in cells):
+        added = "\t".join(row.get(name, "n/a") for name in cells[0])
+        write_text(path, "\n".join([*lines, added, ""]), edits=True)
 
 
 def _tasks(results: Sequence[Reconstruction]) -> Iterator[str]:

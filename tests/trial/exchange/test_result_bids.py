@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
+from mbkf.io.written import overwriting
 from mbkf.trial.exchange.result_bids import write_results_bids
 from tests.recordings import LOST, broken_walk, walk
 
@@ -64,6 +65,21 @@ def test_trials_of_one_name_are_numbered_and_the_set_keeps_what_it_has(tmp_path)
     assert names == {f"sub-01_task-walk1_tracksys-optical_run-{k}_motion.tsv" for k in (1, 2)}
     assert (tmp_path / "README").read_text() == "my study"
     assert rows(tmp_path / "participants.tsv")[1][0] == "sub-01"
+
+
+def test_a_further_person_gets_a_row_in_the_columns_of_the_table(tmp_path):
+    table = tmp_path / "participants.tsv"
+    write_results_bids([walk()], tmp_path, "07")
+    table.write_text("participant_id\tage\tbody_mass\nsub-07\t31\t70\n")
+    for _ in range(2):
+        with overwriting():
+            write_results_bids([walk()], tmp_path, "08")
+    mass = f"{walk().subject.mass_kg:.6g}"
+    assert rows(table) == [
+        ["participant_id", "age", "body_mass"],
+        ["sub-07", "31", "70"],
+        ["sub-08", "n/a", mass],
+    ]
 
 
 def test_labels_and_empty_sets_are_refused(tmp_path):
