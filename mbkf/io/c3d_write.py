@@ -35,7 +35,7 @@ EVENT_ICONS = {"Foot Strike": 1, "Foot Off": 2}
 _CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 _OFFSET_LIMIT = 2.0**15
-"""OFFSET is an integer of 16 bits with a sign."""
+"""OFFSET is an integer of 16 bits with a sign; channels with another offset are stored without one."""
 
 
 def write_c3d(capture: Capture, path: str | Path, *, every_channel: bool = False) -> None:
@@ -196,8 +196,8 @@ def _as_stored(
     channel: AnalogChannel, times_s: Array, start_s: float, per_frame: int, general: float
 ) -> _Channel:
     """A channel whose samples are those of its own file where that has as many of them."""
-    scaling = channel.scaling
-    if scaling.general != general or abs(scaling.offset) >= _OFFSET_LIMIT:
+    scaling, offset = channel.scaling, channel.scaling.offset
+    if scaling.general != general or abs(offset) >= _OFFSET_LIMIT or offset % 1.0 != 0.0:
         scaling = SampleScaling(scaling.scale * scaling.general / general, general)
     values = channel.values
     if len(values) != len(times_s):

@@ -179,10 +179,15 @@ def test_corners_that_form_no_rectangle_become_those_of_the_one_with_their_axes(
     np.testing.assert_allclose(corners.mean(axis=0), skewed.mean(axis=0), atol=1e-6)
 
 
-def test_channels_of_different_general_scales_keep_their_values(tmp_path):
-    """The format has one general scale: it is 1 then, and the channels' own scales hold both."""
+def test_channels_keep_their_values_with_scalings_that_the_file_cannot_hold(tmp_path):
+    """The format has one general scale, which is 1 where channels differ; offsets are integers of 16 bits."""
     values = np.arange(500.0)
-    scalings = (SampleScaling(0.5, 0.25, 7.0), SampleScaling(2.0), SampleScaling(0.125, offset=-40000.0))
+    scalings = (
+        SampleScaling(0.5, 0.25, 7.0),
+        SampleScaling(2.0),
+        SampleScaling(0.125, offset=-40000.0),
+        SampleScaling(0.25, offset=0.5),
+    )
     channels = [AnalogChannel(f"C{k}", values, "V", 1000.0, one) for k, one in enumerate(scalings)]
     write_c3d(Capture("", markers_of(np.ones((50, 1, 3))), analog=tuple(channels)), tmp_path / "a.c3d")
     for found in read_c3d(tmp_path / "a.c3d", CaptureOptions(unit="mm")).analog:
