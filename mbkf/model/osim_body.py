@@ -10,9 +10,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from mbkf.conventions import TomlTable
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.osim import read_osim
 from mbkf.io.toml import toml_text
-from mbkf.model.osim_tree import osim_root_angles, osim_zeros_deg, read_osim_tree
+from mbkf.model.osim_tree import osim_root_angles, osim_tree, osim_zeros_deg
 from mbkf.model.urdf_body import body_table, read_side, side_path
 from mbkf.model.urdf_segments import urdf_segments
 
@@ -31,18 +32,20 @@ def osim_body_text(path: Path) -> str:
         FileFormatError: One of the files is missing or cannot be one of a body; names the joint.
         UnknownName: The side file has an entry or names a segment that does not exist.
     """
-    tree, side = read_osim_tree(path), read_side(path, REQUIRED, "OpenSim")
+    model = read_osim(path, markers_needed=False)
     try:
+        tree = osim_tree(model)
+        side = read_side(path, REQUIRED, "OpenSim")
         found = urdf_segments(tree, side.pop("names", {}))
-    except ValueError as error:
+    except (InvalidInput, ValueError) as error:
         raise FileFormatError(path, str(error)) from error
     names = [one["name"] for one in found.segments]
     if "roles" not in side:
         side["roles"] = _roles(names, path)
-    root = osim_root_angles(path, names[0])
+    root = osim_root_angles(model, names[0])
     if root is not None:
         found.clinical_joints[0] = root
-    zeros = osim_zeros_deg(path)
+    zeros = osim_zeros_deg(model)
     for joint in found.clinical_joints:
         for angle in joint["angle"]:
             if angle["name"] in zeros:

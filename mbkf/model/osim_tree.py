@@ -11,16 +11,15 @@ without mass that are fixed to their bodies, so that they become landmarks.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array, TomlTable
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import InvalidInput
 from mbkf.io.axes import rotation_to_world
-from mbkf.io.osim import OsimBody, OsimModel, read_osim
+from mbkf.io.osim import OsimBody, OsimModel
 from mbkf.io.osim_joints import OsimAxis, OsimCoordinate, OsimJoint
 from mbkf.model.osim_kinematics import GROUND, OsimKinematics
 from mbkf.model.urdf_tree import UrdfJoint, UrdfTree
@@ -28,22 +27,19 @@ from mbkf.model.urdf_tree import UrdfJoint, UrdfTree
 _LETTERS = "xyz"
 
 
-def read_osim_tree(path: Path) -> UrdfTree:
+def osim_tree(model: OsimModel) -> UrdfTree:
     """The tree of an OpenSim model.
 
+    Args:
+        model: The model.
+
     Raises:
-        FileFormatError: The file is missing or not an OpenSim model, or a joint or constraint has no place in a body of
-            ours; names it.
+        InvalidInput: A joint or constraint has no place in a body of ours; names it.
     """
-    model = read_osim(path, markers_needed=False)
-    try:
-        return _tree(model)
-    except InvalidInput as error:
-        raise FileFormatError(path, str(error)) from error
-
-
-def _tree(model: OsimModel) -> UrdfTree:
     OsimKinematics(model)
+    roots = [one.name for one in model.joints if one.parent == GROUND]
+    if len(roots) > 1:
+        raise InvalidInput(f"the joints {', '.join(roots)} start at the ground; a body of ours has one root")
     for one in model.couplers:
         raise InvalidInput(
             f"the coordinate '{one.follower}' follows '{one.leader}'; a body of ours has no followers"
@@ -165,14 +161,14 @@ def _line(
     return (None, line[0], 0.0) if coordinate is None or line[1] == 0.0 else (coordinate, *line)
 
 
-def osim_zeros_deg(path: Path) -> dict[str, float]:
+def osim_zeros_deg(model: OsimModel) -> dict[str, float]:
     """Values of OpenSim's coordinates at which their hinges' turns are zero, by name, where they are not zero.
 
     Args:
-        path: The model.
+        model: The model.
     """
     found = {}
-    for joint in read_osim(path, markers_needed=False).joints:
+    for joint in model.joints:
         for one in joint.turns:
             line = one.amount.line
             if one.coordinate and line is not None and line[0] and abs(line[1]) == 1.0:
@@ -180,14 +176,13 @@ def osim_zeros_deg(path: Path) -> dict[str, float]:
     return found
 
 
-def osim_root_angles(path: Path, root: str) -> TomlTable | None:
+def osim_root_angles(model: OsimModel, root: str) -> TomlTable | None:
     """Table ``[[clinical_joint]]`` of the root with OpenSim's coordinates; None where its axes are no world axes.
 
     Args:
-        path: The model.
+        model: The model.
         root: Name of the root's segment.
     """
-    model = read_osim(path, markers_needed=False)
     joint = next(one for one in model.joints if one.parent == GROUND)
     turned = rotation_to_world("y") @ joint.parent_frame[:3, :3]
     entries = []

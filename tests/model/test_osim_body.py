@@ -14,6 +14,7 @@ from mbkf.model.osim import osim_coordinates, osim_files, to_osim_axes
 from mbkf.model.osim_kinematics import OsimKinematics
 from mbkf.model.protocol import load_protocol
 from mbkf.model.urdf_body import side_path
+from tests.osim_mechanisms import mechanism
 from tests.recordings import walker
 
 SOLE = """[sole]
@@ -91,6 +92,13 @@ def test_a_missing_side_file_or_entry_is_named(tmp_path):
         load_body(written(tmp_path, None))
     with pytest.raises(FileFormatError, match="lacks sole"):
         load_body(written(tmp_path, ROLES))
+
+
+def test_a_joint_without_a_place_in_a_body_is_refused_with_the_file(tmp_path):
+    path = tmp_path / "held.osim"
+    path.write_text(mechanism(), encoding="utf-8")
+    with pytest.raises(FileFormatError, match=r"held\.osim: .*'patella' follows 'knee'"):
+        load_body(path)
 
 
 def test_its_markers_are_a_protocol(tmp_path):

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from mbkf.errors import FileFormatError
-from mbkf.model.osim_tree import osim_root_angles, osim_zeros_deg, read_osim_tree
+from mbkf.errors import InvalidInput
+from mbkf.io.osim import read_osim
+from mbkf.model.osim_tree import osim_root_angles, osim_tree, osim_zeros_deg
 from tests.osim_mechanisms import (
     BACK,
     COUPLER,
@@ -25,9 +26,13 @@ def custom(turns, shifts=(), coordinates=("knee", "twist")):
     return joint("CustomJoint", "root", "shin", coordinates, spatial_transform(turns, shifts))
 
 
+def model(folder, *joints, constraints=""):
+    (folder / "model.osim").write_text(mechanism(joints, constraints), encoding="utf-8")
+    return read_osim(folder / "model.osim")
+
+
 def tree(folder, *joints, constraints=""):
-    (folder / "model.osim").write_text(mechanism((ROOT, *joints), constraints), encoding="utf-8")
-    return read_osim_tree(folder / "model.osim")
+    return osim_tree(model(folder, ROOT, *joints, constraints=constraints))
 
 
 def test_turns_become_hinges_between_links_without_mass(tmp_path):
@@ -39,7 +44,7 @@ def test_turns_become_hinges_between_links_without_mass(tmp_path):
     assert first.axis == pytest.approx([1.0, 0.0, 0.0]) and second.axis == pytest.approx([0.0, -0.6, -0.8])
     # −x + 0.2 turns by zero where x = 0.2, from where limits of ±2 count
     assert first.limits_rad == pytest.approx([-2.0, 2.0]) and second.limits_rad == pytest.approx([-2.2, 1.8])
-    assert osim_zeros_deg(tmp_path / "model.osim") == {"twist": pytest.approx(np.rad2deg(0.2))}
+    assert osim_zeros_deg(read_osim(tmp_path / "model.osim")) == {"twist": pytest.approx(np.rad2deg(0.2))}
 
 
 def test_constant_shifts_and_locked_coordinates_are_part_of_the_frames(tmp_path):
@@ -60,14 +65,13 @@ def test_a_weld_fixes_and_markers_are_fixed_links(tmp_path):
 def test_the_root_turns_from_y_up_to_z_up(tmp_path):
     (floating,) = tree(tmp_path).joints["ground"]
     assert floating.kind == "floating"
-    plain = mechanism((ROOT.replace("0.3 -0.5 0.8", "0 0 0").replace("-0.2 0.4 1.1", "0 0 0"),), "")
-    (tmp_path / "plain.osim").write_text(plain, encoding="utf-8")
-    found = osim_root_angles(tmp_path / "plain.osim", "root")
+    plain = model(tmp_path, ROOT.replace("0.3 -0.5 0.8", "0 0 0").replace("-0.2 0.4 1.1", "0 0 0"))
+    found = osim_root_angles(plain, "root")
     assert found["order"] == "xzy" and found["main"] == "rx"
     assert [one["sign"] for one in found["angle"]] == [1, 1, -1]
     assert [(one["axis"], one["sign"]) for one in found["translation"]] == [("x", 1), ("z", 1), ("y", -1)]
     assert found["opensim_origin_m"] == pytest.approx([0.02, -0.05, -0.1])
-    assert osim_root_angles(tmp_path / "model.osim", "root") is None
+    assert osim_root_angles(model(tmp_path, ROOT), "root") is None
 
 
 @pytest.mark.parametrize(
@@ -84,13 +88,17 @@ def test_the_root_turns_from_y_up_to_z_up(tmp_path):
     ],
 )  # fmt: skip
 def test_joints_without_a_place_in_our_bodies_are_refused_by_name(joints, constraints, reason, tmp_path):
-    with pytest.raises(FileFormatError, match=reason):
+    with pytest.raises(InvalidInput, match=reason):
         tree(tmp_path, *joints, constraints=constraints)
 
 
-def test_a_root_that_does_not_float_is_refused(tmp_path):
-    (tmp_path / "model.osim").write_text(
-        mechanism((joint("PinJoint", "ground", "root", ("a",)),), ""), "utf-8"
-    )
-    with pytest.raises(FileFormatError, match="does not float"):
-        read_osim_tree(tmp_path / "model.osim")
+@pytest.mark.parametrize(
+    ("joints", "reason"),
+    [
+        ((joint("PinJoint", "ground", "root", ("a",)),), "does not float"),
+        ((ROOT, joint("WeldJoint", "ground", "ball", ())), "to_root, to_ball start at the ground"),
+    ],
+)
+def test_a_body_has_one_root_that_floats(joints, reason, tmp_path):
+    with pytest.raises(InvalidInput, match=reason):
+        osim_tree(model(tmp_path, *joints))
