@@ -88,11 +88,11 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.trial.export import export_result, export_subject
 
     source, out = Path(args.source), Path(args.out)
+    is_result = source.is_dir() or source.suffix.lower() in {".h5", ".hdf5"}
+    _check(args, source, is_result)
     beside = _beside(args.to, out)
     for path in beside:
         check_file(path)
-    is_result = source.is_dir() or source.suffix.lower() in {".h5", ".hdf5"}
-    _check(args, source, is_result)
     if args.onto:
         return _onto(args, source)
     if args.to in _FILMS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from mbkf.errors import FileFormatError, UnknownName
+from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.io.atomic import write_text
 from mbkf.io.atomic_folder import replacing_beside
 from mbkf.io.results import Reconstruction
@@ -117,10 +117,16 @@ def export_result(
     Raises:
         UnknownName: The format or the subject's body is unknown.
         FileFormatError: The path is a folder.
-        InvalidInput: The result holds no motion (for OpenSim, no loads), the name of a C3D file ends otherwise, or
-            ``trial`` is another one.
+        InvalidInput: The result holds no motion (for OpenSim, no loads), the name of a C3D file ends otherwise,
+            ``trial`` is another one, or it is given for another format, or ``forces`` without it.
         OSError: The file cannot be written.
     """
+    if trial is not None and kind != "c3d":
+        raise InvalidInput(
+            f"the trial's plates and channels are of the format c3d; leave trial out for {kind}"
+        )
+    if forces is not None and trial is None:
+        raise InvalidInput("forces belong to a trial; give its file as well")
     if kind in RESULT_FOLDERS:
         RESULT_FOLDERS[kind](reconstruction, path)
         return

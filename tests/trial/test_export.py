@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mbkf
-from mbkf.errors import FileFormatError, UnknownName
+from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.io.written import form_of
 from mbkf.model.body_file import load_body
@@ -75,5 +75,9 @@ def test_wrong_formats_and_places_of_results_are_refused(tmp_path):
         export_result(walk(), "bhv", tmp_path / "x")
     with pytest.raises(UnknownName, match="opensim"):
         export_result(walk(), "opensin", tmp_path / "x")
+    with pytest.raises(InvalidInput, match="of the format c3d"):
+        export_result(walk(), "opensim", tmp_path / "x", trial="walk.c3d")
+    with pytest.raises(InvalidInput, match="belong to a trial"):
+        export_result(walk(), "c3d", tmp_path / "x", forces="walk.mot")
     with pytest.raises(FileFormatError, match="folder"):
         export_result(walk(), "glb", tmp_path)

@@ -49,11 +49,11 @@ def trial_of(r: Reconstruction, path: str | Path, forces: str | Path | None = No
     apart = [_distances(r.measured_m[t], capture.markers.positions_m[frames[t]]) for t in seen]
     distances = np.concatenate([np.zeros(0), *apart])
     if len(inside) < r.frames or not len(distances) or np.median(distances) > _SAME_M:
-        found = (
-            f"its markers lie {1e3 * np.median(distances):.0f} mm from those of the result"
-            if len(distances)
-            else "no marker of the result is in it at the same time"
-        )
+        found = "no marker of the result is seen in it"
+        if len(inside) < r.frames:
+            found = f"it has {len(inside)} of these frames"
+        elif len(distances):
+            found = f"its markers lie {1e3 * np.median(distances):.0f} mm from those of the result"
         raise InvalidInput(
             f"{path} is not the trial of this result ('{r.trial}', {r.frames} frames): {found}; name the file that "
             "'mbkf reconstruct' read"
