@@ -20,6 +20,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.axes import rotation_to_world
+from mbkf.io.labels import unique_labels
 from mbkf.io.subject import SubjectMarker
 from mbkf.io.written import MARK
 from mbkf.model.body import Body
@@ -56,7 +57,7 @@ def osim_files(model: Body, markers: Sequence[SubjectMarker], name: str) -> dict
         UnknownName: A marker names a segment the body does not have.
     """
     stem = name.rpartition(".")[0] or name
-    surfaces = {segment: f"{stem}_{segment}.vtp" for segment in model.joints}
+    surfaces = {segment: f"{stem}_{osim_name(segment)}.vtp" for segment in model.joints}
     meshes = {segment: joined(map(shape_mesh, shapes)) for segment, shapes in segment_shapes(model).items()}
     texts = {surfaces[segment]: vtp_text(_turned(mesh)) for segment, mesh in meshes.items()}
     return {name: to_osim(model, markers, surfaces), **texts}
@@ -109,11 +110,7 @@ def osim_name(name: str) -> str:
 
 def osim_marker_names(names: Sequence[str]) -> list[str]:
     """Names of markers as OpenSim takes them; equal ones get a number."""
-    found: list[str] = []
-    for name in map(osim_name, names):
-        others = (f"{name}_{k}" for k in range(2, len(names) + 2))
-        found.append(next(one for one in (name, *others) if one not in found))
-    return found
+    return unique_labels([osim_name(name) for name in names], [])
 
 
 def to_osim_axes(vectors: Array) -> Array:
@@ -178,7 +175,9 @@ def _add_body(bodies: ET.Element, model: Body, segment: str, surface: str) -> No
     R, own = rotation_to_world(UP), model.pin_model.inertias[model.joint(segment).joint_id]
     body = ET.SubElement(bodies, "Body", name=osim_name(segment))
     if surface:
-        mesh = ET.SubElement(ET.SubElement(body, "attached_geometry"), "Mesh", name=f"{segment}_surface")
+        mesh = ET.SubElement(
+            ET.SubElement(body, "attached_geometry"), "Mesh", name=f"{osim_name(segment)}_surface"
+        )
         _text(mesh, "socket_frame", "..")
         _text(mesh, "mesh_file", surface)
         _text(ET.SubElement(mesh, "Appearance"), "color", _numbers(COLOURS[side_of(segment)]))

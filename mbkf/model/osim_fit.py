@@ -19,8 +19,14 @@ from mbkf.conventions import Array
 from mbkf.model.osim_kinematics import GROUND, OsimKinematics
 
 ROUNDS = 60
+"""Most steps of a frame."""
+
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e8
+"""Share of the normal matrix's diagonal that is added to it: at first, at least, and where a frame is given up."""
+
 EASED, TIGHTENED = 0.2, 8.0
+"""Factors of the damping after a step that came nearer, and after one that did not."""
+
 SETTLED = 1e-9
 """A frame is settled when no coordinate moves by more, rad or m."""
 

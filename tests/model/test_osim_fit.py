@@ -49,7 +49,7 @@ def test_points_that_are_not_known_do_not_count(body, motion):
     at = wanted.at_m.copy()
     at[3:7, 0] = np.nan
     at[5, 8] = np.nan
-    found = fit(body, Targets(wanted.bodies, wanted.places_m, at, wanted.weights), RATE_HZ)
+    found = fit(body, Targets(wanted.bodies, wanted.places_m, at, wanted.weights), RATE_HZ, motion[0])
     assert found == pytest.approx(motion, abs=1e-7)
 
 

@@ -43,7 +43,6 @@ SETUP_ANALYZE, ANALYSES_OUT = "setup_analyze.xml", "analyses"
 CONTROLS, ORIENTATIONS = "controls.sto", "orientations.sto"
 """File of the analysis, the folder that it writes, the torques that drive the model, and the segments' orientations."""
 
-
 ANALYSES = {
     "BodyKinematics": {"in_degrees": "false"},
     "JointReaction": {"joint_names": "ALL", "apply_on_bodies": "child", "express_in_frame": "ground"},

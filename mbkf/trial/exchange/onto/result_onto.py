@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import io
+from codecs import BOM_UTF8
 from pathlib import Path
 
 import numpy as np
@@ -147,7 +148,8 @@ def _residuals(found: OntoMotion) -> str:
 
 def _marked(content: bytes) -> bytes:
     """A model file with the comment by which mbkf knows what it wrote."""
+    content = content.removeprefix(BOM_UTF8).lstrip()
     declaration, closed, rest = content.partition(b"?>")
-    if not closed or not declaration.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"<?xml"):
-        declaration, rest = b'<?xml version="1.0" encoding="UTF-8" ', content
-    return declaration.strip(b"\xef\xbb\xbf \r\n") + b"?>\n<!-- " + MARK.encode() + b" -->\n" + rest.lstrip()
+    if not closed or not declaration.startswith(b"<?xml"):
+        declaration, rest = b'<?xml version="1.0" encoding="UTF-8"', content
+    return declaration + b"?>\n<!-- " + MARK.encode() + b" -->\n" + rest.lstrip()

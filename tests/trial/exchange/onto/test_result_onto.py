@@ -30,15 +30,24 @@ def model(result, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def written(result, model, tmp_path_factory):
+def bare(model):
+    """The model without a declaration, after a byte order mark."""
+    path = model.with_name("bare.osim")
+    path.write_text(model.read_text("utf-8").split("?>", 1)[1], encoding="utf-8-sig")
+    return path
+
+
+@pytest.fixture(scope="module")
+def written(result, model, bare, tmp_path_factory):
+    """The motion, the folder, and the model's file there after the model without a declaration was exported."""
     folder = tmp_path_factory.mktemp("onto") / "walk"
-    for _ in range(2):
-        found = export_onto(result, model, folder)
-    return found, folder
+    export_onto(result, bare, folder)
+    first = (folder / "model.osim").read_text("utf-8")
+    return export_onto(result, model, folder), folder, first
 
 
 def test_the_motion_is_in_degrees_and_metres_with_the_distances_in_its_head(result, written):
-    found, folder = written
+    found, folder, _ = written
     table = read_storage(folder / "motion.mot")
     assert table.in_degrees and table.names == found.kinematics.names
     np.testing.assert_allclose(table.times_s, result.times_s[result.tracked], atol=1e-9)
@@ -59,7 +68,7 @@ def test_loads_act_on_the_models_bodies_and_others_are_left_out(result, written)
 
 
 def test_every_free_coordinate_has_an_actuator_and_the_root_a_strong_one(written):
-    found, folder = written
+    found, folder, _ = written
     motors = list(ET.parse(folder / "actuators.xml").getroot().iter("CoordinateActuator"))
     kinematics = found.kinematics
     assert [one.findtext("coordinate") for one in motors] == [kinematics.names[k] for k in kinematics.free]
@@ -81,7 +90,7 @@ def test_set_ups_name_files_of_the_folder(written):
 
 
 def test_the_model_is_theirs_and_the_folder_is_ours(model, written):
-    found, folder = written
+    found, folder, _ = written
     content = (folder / "model.osim").read_text("utf-8")
     assert content.split("-->", 1)[1].strip() == model.read_text("utf-8").split("?>", 1)[1].strip()
     assert all(form_of(path) for path in folder.iterdir())
@@ -92,12 +101,10 @@ def test_the_model_is_theirs_and_the_folder_is_ours(model, written):
     assert float(rows[0]["place_mm"]) == pytest.approx(found.residuals[0].place_mm, abs=1e-3)
 
 
-def test_a_model_without_a_declaration_gets_one(result, model, tmp_path):
-    bare = tmp_path / "bare.osim"
-    bare.write_text(model.read_text("utf-8").split("?>", 1)[1], encoding="utf-8")
-    export_onto(result, bare, tmp_path / "out")
-    assert (tmp_path / "out" / "model.osim").read_text("utf-8").startswith("<?xml")
-    assert ET.parse(tmp_path / "out" / "model.osim").getroot().tag == "OpenSimDocument"
+def test_a_model_without_a_declaration_gets_one(written):
+    first = written[2]
+    assert first.startswith("<?xml")
+    assert ET.fromstring(first.encode()).tag == "OpenSimDocument"
 
 
 def test_other_files_are_refused(result, tmp_path):
