@@ -132,7 +132,7 @@ def _put_right(
     named, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
     own, shrunken = without_shrunken(named, subject)
     start = settings.kinematic
-    measured, entering = without_entering(own, start.min_markers, start.restart_after_s)
+    measured, entering = without_entering(own, subject, start.min_markers, start.restart_after_s)
     return measured, exchanged, [*exchange_notes(exchanged), *shrunken, *entering]
 
 
