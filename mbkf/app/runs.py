@@ -325,6 +325,9 @@ def _read(file: Path) -> dict[str, RunState]:
         found = {str(name): RunState(**one) for name, one in plain.items()}
         for state in found.values():
             state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}
+            state.persons = {
+                str(k): [str(name) for name in names] for k, names in state.persons.items() if names
+            }
             state.under_way = {}
         return found
     except (OSError, ValueError, TypeError, AttributeError):

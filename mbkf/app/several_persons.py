@@ -72,11 +72,14 @@ def separate(root: Path, folder: Path, files: Mapping[str, Sequence[str]]) -> No
 
     Raises:
         Refused: A file of the same name with another content is there.
-        InvalidInput: A file cannot be placed there.
+        InvalidInput: A file is not in the session's folder, or cannot be placed there.
         OSError: A file cannot be read or written.
     """
     notes = current_session(folder / SESSION_FILE)
-    marker_set = [path.name for path in folder.iterdir() if path.name == notes.protocol]
+    present = {path.name for path in folder.iterdir() if path.is_file()}
+    if missing := sorted({name for names in files.values() for name in names} - present):
+        raise InvalidInput(f"the session's folder does not hold {', '.join(missing)}; run the session again")
+    marker_set = present & {notes.protocol}
     for place, names in files.items():
         for name in (*names, *marker_set):
             with opened(folder / name) as content, putting(root, f"{place}/{name}") as copy:

@@ -281,7 +281,15 @@ def test_a_session_that_cannot_run_says_why(workspace):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[1]", '{"P1": 3}', '{"P1": {"other": 1}}', '{"P1": {"trials": {"a": [1]}}}']
+    "text",
+    [
+        "",
+        "[1]",
+        '{"P1": 3}',
+        '{"P1": {"other": 1}}',
+        '{"P1": {"trials": {"a": [1]}}}',
+        '{"P1": {"persons": ["a.c3d"]}}',
+    ],
 )
 def test_a_damaged_file_of_states_is_forgotten(workspace, text):
     workspace.out.mkdir()

@@ -8,6 +8,7 @@ from mbkf.app.failures import Refused
 from mbkf.app.runs import FAILED
 from mbkf.app.several_persons import SeveralPersons, separate
 from mbkf.app.workspace import Workspace
+from mbkf.errors import InvalidInput
 from mbkf.io.session import SessionNotes, TrialKind, TrialNotes, read_session, write_session
 from tests.app.asking import plain
 from tests.studies import study
@@ -57,6 +58,17 @@ def test_each_person_gets_a_session_with_the_statements_about_the_captures(works
     (workspace.root / "P1-S01" / "S01_walk1.c3d").write_bytes(b"another")
     with pytest.raises(Refused, match="another content"):
         separate(workspace.root, folder, found)
+
+
+@pytest.mark.parametrize("name", ["gone.c3d", "../outside.c3d", "/outside.c3d"])
+def test_files_outside_the_folder_are_not_copied(workspace, name):
+    """The list of files is read from the results' folder, and may be old or changed."""
+    (workspace.root / "outside.c3d").write_bytes(b"mine")
+    if name.startswith("/"):
+        name = str(workspace.root / name[1:])
+    with pytest.raises(InvalidInput, match="run the session again"):
+        separate(workspace.root, workspace.root / "P1", {"Q": ["S01_walk1.c3d", name]})
+    assert not (workspace.root / "Q").exists()
 
 
 def test_the_page_separates_the_session_of_a_run_that_was_refused(server, cookie):
