@@ -4,7 +4,7 @@ Markers show such joints together only: hips and lumbar joint by where thighs an
 and shank are. Near a straight chain they hardly distinguish two ways of bending it, so that skin of some millimetres
 decides. There the usual posture of people counts for more: a frame of markers on skin counts for 0.12 of an independent
 reading (:class:`mbkf.sensors.markers.MarkerSettings`), and the posture prior beside it for a whole one, with
-√0.12 = 0.35 times its own spreads. Errors of the pose by the person's body and posture have to know that weight, too
+√0.12 = 0.35 times its own spreads. Errors of the pose by the person's body and posture take that weight into account
 (:mod:`mbkf.filters.pose_errors`).
 """
 

@@ -23,7 +23,7 @@ def size(picture):
 @pytest.mark.usefixtures("real_data")
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
 def test_an_example_draws_the_picture_that_the_page_shows(script, tmp_path):
-    """What moved is drawn anew by ``python docs/gallery/make.py NAME``."""
+    """``python docs/gallery/make.py NAME`` draws one anew whose output changed."""
     draw(script, tmp_path)
     drawn, kept = ((folder / f"{script.stem}.txt").read_text(encoding="utf-8") for folder in (tmp_path, HERE))
     assert NUMBER.sub("#", drawn) == NUMBER.sub("#", kept)

@@ -24,7 +24,6 @@ REMEDY = (
 )
 """Mend for a trial that belongs to no standing trial."""
 
-
 OTHERS = "-other"
 """Ends the name of the person whose trials do not show the person of the standing trial beside them."""
 
@@ -84,8 +83,8 @@ def plan_of_others(trials: Sequence[Trial]) -> Plan:
             moving=scaling_candidates(files),
             protocol=person.protocol,
             remarks=(
-                f"its markers do not fit the standing trial of {person.name}: another person, or markers put on anew; "
-                f"scaled from moving trials, and the mass in session.toml is not used; {REMEDY}",
+                f"its markers do not fit the capture that {person.name} was scaled from: another person, or markers "
+                f"put on anew; scaled from its own trials without the mass in session.toml; {REMEDY}",
             ),
             unsorted=files,
         )

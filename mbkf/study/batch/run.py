@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import replace
 from os import cpu_count
 from pathlib import Path
@@ -138,13 +138,27 @@ def with_others(
     if not strange:
         return plan, outcomes
     others = sorted_plan(plan_of_others([plan.trials[k] for k in strange]), executor, progress)
+    others = _with_free_places(others, {one.place for one in plan.persons})
     trials, found = list(plan.trials), list(outcomes)
-    for k, trial, one in zip(
-        strange, others.trials, outcomes_of(others, out, settings, executor, progress), strict=True
-    ):
+    try:
+        done = outcomes_of(others, out, settings, executor, progress)
+    finally:
+        sweep_plan(others, out)
+    for k, trial, one in zip(strange, others.trials, done, strict=True):
         if one.status != Status.FAILED:
             trials[k], found[k] = trial, one
     return Plan(tuple(trials), plan.notes), found
+
+
+def _with_free_places(others: Plan, taken: Set[Path]) -> Plan:
+    """The plan in which trials of persons whose place is taken have that as their fault."""
+    trials = (
+        replace(one, fault=f"{one.person.place} is another person's folder")
+        if one.person.place in taken
+        else one
+        for one in others.trials
+    )
+    return Plan(tuple(trials), others.notes)
 
 
 def plan_of(source: Path) -> Plan:

@@ -73,4 +73,7 @@ def test_trials_of_others_are_planned_with_their_own_captures_alone():
     other = plan.trials[0].person
     assert other.unsorted == (Files(Path("a.c3d")), Files(Path("b.c3d"), forces))
     assert (other.statics, other.mass_kg, other.height_m, other.subject) == ((), None, None, None)
-    assert other.protocol == "reference36" and "standing trial of P: another person" in other.remarks[0]
+    assert (
+        other.protocol == "reference36"
+        and "capture that P was scaled from: another person" in other.remarks[0]
+    )

@@ -202,6 +202,15 @@ def test_trials_of_another_person_beside_one_standing_trial_are_done_with_a_body
     ]
 
 
+def test_a_trial_of_another_person_is_not_written_into_the_folder_of_a_third(tmp_path):
+    person, third = Person("P", statics=(Path("static"),)), Person("P-other-walk2")
+    plan = Plan((Trial(person, Path("walk2")), Trial(third, Path("walk3"))))
+    after, outcomes = with_others(
+        plan, outcomes_of(plan, tmp_path, QUICK, Strange()), tmp_path, QUICK, Strange()
+    )
+    assert after == plan and [one.reason for one in outcomes] == ["longer", ""]
+
+
 def test_a_shard_leaves_trials_of_another_person_to_the_whole(monkeypatch, tmp_path):
     """It may hold some of that person's trials only, and bodies would depend on the shards."""
     asked, table = [], tmp_path / "t.parquet"
