@@ -64,7 +64,7 @@ class OsimMarker:
         name: Its name.
         body: The body that it is on, as the file calls it.
         position_m: (3,) where, in the body's frame, m.
-        fixed: Whether OpenSim leaves it there when it fits a model to a person; None where the file does not say.
+        fixed: OpenSim leaves it there when it fits a model to a person; None where the file does not say.
     """
 
     name: str

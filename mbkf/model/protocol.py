@@ -115,8 +115,8 @@ def protocol_names() -> tuple[str, ...]:
 def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Protocol:
     """Reads a protocol by its name, from a TOML file of the same form, or an OpenSim model that is the body itself.
 
-    Markers of such a model (``.osim``) are where it has them: those that are fixed within 10 mm, the others within
-    60 mm (standard deviations).
+    Markers of such a model (``.osim``) are where it has them: those that it states as not fixed within 60 mm, the
+    others within 10 mm (standard deviations).
 
     Args:
         name: The protocol's name, or its file.
