@@ -44,6 +44,8 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
+    "model.osim_kinematics.OsimKinematics.expanded": "model/test_osim_kinematics.py",
+    "model.osim_kinematics.OsimPoses.points": "model/test_osim_kinematics.py",
     "sensors.gating.gated": "sensors/test_gating.py",
     "sensors.given_plates.GivenPlates.linearise": "sensors/test_given_plates.py",
     "filters.plant.Plant.step_transition": "filters/test_plant.py step_transition",

@@ -133,7 +133,7 @@ def _file_over_inputs(case: Case, world: Path) -> Iterator[Act]:
         target = scene.inputs[name]
         if link:
             target = _linked(scene.folder, target, side)
-        return {}, target.with_suffix(suffix)
+        return {}, target.with_name(target.name.removesuffix(side) + suffix)
 
     for name in case.guarded:
         source = world / INPUTS[name]
@@ -158,7 +158,7 @@ def _file_over_foreign(case: Case) -> Iterator[Act]:
     def over(scene: Scene, suffix: str, content: bytes) -> Set:
         out = scene.folder / NEW / case.out
         out.parent.mkdir()
-        out.with_suffix(suffix).write_bytes(content)
+        out.with_name(out.stem + suffix).write_bytes(content)
         return {}, out
 
     own = Path(case.out).suffix

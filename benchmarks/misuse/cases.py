@@ -16,12 +16,13 @@ from typing import Literal
 
 from benchmarks.misuse.world import INPUTS
 from mbkf.cli.main import build_parser
+from mbkf.model.body_file import load_body
 
 OUT = "OUT"
 NO_FILES = {
     "acc=g,gyr=deg/s", "ADDRESS", "[ADDRESS:]PORT", "AXIS", "A,B", "A,B,C", "A,B@T0:T1", "CODE", "E",
-    "FIRST:LAST:COUNT", "FRACTION", "HZ", "I/N", "IP", "KG", "KG|auto", "LIST", "M", "MS", "N", "NAME", "NAME=VALUE",
-    "NAME|N", "S", "SD", "TEXT", "T0:T1", "UNIT", "W,X,Y,Z|compared", "X", "X,Y,Z",
+    "FIRST:LAST:COUNT", "FRACTION", "HZ", "I/N", "IP", "KG", "KG|auto", "LABEL", "LIST", "M", "MS", "N", "NAME",
+    "NAME=VALUE", "NAME|N", "S", "SD", "TEXT", "T0:T1", "UNIT", "W,X,Y,Z|compared", "X", "X,Y,Z",
 }  # fmt: skip
 """Values in help texts that name no file."""
 
@@ -34,7 +35,7 @@ class Case:
         command: The command, of one or two words.
         words: What follows it: ``{name}`` is an input of :data:`benchmarks.misuse.world.INPUTS`, ``{OUT}`` the output.
         out: Name of an output that can be written, without suffix for a folder; "" for a command without output.
-        sides: Suffixes of the files that are written beside an output file under its name.
+        sides: Ends of the names of files that are written beside an output file, after its name without suffix.
         again: Whether the same call takes the place of its own earlier output.
         slow: Whether it takes many seconds, so that it runs where it is refused only.
         runs: Whether it ends by itself, and well, where nothing is in the way.
@@ -95,6 +96,7 @@ DEMO = ("trial.c3d", "raw.c3d", "static.c3d", "subject.toml", "truth.h5", "resul
 LIVE = ("motion.h5", "summary.json", "markers.trc", "live.json", "subject.toml", "mounts.toml")
 ON_TRIAL = "--subject {subject} --forces {forces} --preset {preset}"
 ON_IMUS = "{imus} --subject {subject}"
+SURFACES = tuple(f"_{segment.name}.vtp" for segment in load_body("human18").segments)
 
 CASES = (
     Case("demo", "--motion squat --seconds 1 --no-report --out {OUT}", "demo", slow=True, writes=DEMO),
@@ -150,7 +152,16 @@ CASES = (
     Case("imu stride", "{imus} --sensor left_foot --out {OUT}", "new"),
     Case("export", "{subject} --to urdf --out {OUT}", "new.urdf", (".urdf.toml",)),
     Case("export", "{subject} --to mjcf --out {OUT}", "new.xml"),
+    Case("export", "{subject} --to osim --out {OUT}", "new.osim", SURFACES),
     Case("export", "{result} --to c3d --out {OUT}", "new.c3d"),
+    Case("export", "{result} --to c3d --trial {trial} --forces {forces} --out {OUT}", "new.c3d"),
+    Case("export", "{result} --to csv --out {OUT}", "new.csv"),
+    Case("export", "{result} --to summary --out {OUT}", "new.csv", ("_more.csv",)),
+    Case("export", "{result} --to v3d --out {OUT}", "new.txt"),
+    Case("export", "{result} --to mjcf --out {OUT}", "new.xml"),
+    Case("export", "{result} --to bids --out {OUT}", "new"),
+    Case("export", "{result} --to opensim --out {OUT}", "new"),
+    Case("export", "{result} --onto {model} --out {OUT}", "new"),
     Case("export", "{result} --to bvh --out {OUT}", "new.bvh"),
     Case("export", "{result} --to glb --out {OUT}", "new.glb"),
     Case("export", "{result} --to mp4 --out {OUT}", "new.mp4", slow=True),

@@ -15,6 +15,7 @@ INPUTS = {
     "forces": "forces.mot", "preset": "own.toml", "protocol": "set.toml", "body": "body.toml", "imus": "imus.csv",
     "mounts": "imus.toml", "truth": "truth.h5", "result": "result", "study": "lab", "list": "list.csv",
     "listed": "list.toml", "norms": "norms.toml", "labels": "labels.json", "session": "results", "osim": "model.osim",
+    "model": "person.osim",
     "qualisys": "qualisys.tsv", "motive": "motive.csv", "still": "still.csv",
 }  # fmt: skip
 """Files and folders of the laboratory by the names that cases give them."""
@@ -33,6 +34,7 @@ def made_world(folder: Path) -> Path:
     (folder / "list.toml").write_text(REST, "utf-8")
     (folder / "list.csv").write_text("subject,trial,static\nP,trial.c3d,static.c3d\n", "utf-8")
     mbkf("imu", "synth", folder / "truth.h5", "--out", folder / "imus.csv")
+    mbkf("export", folder / "subject.toml", "--to", "osim", "--out", folder / "person.osim")
     for person in PERSONS:
         own = folder / "lab" / person
         own.mkdir(parents=True)

@@ -33,7 +33,6 @@ from mbkf.model.description import (
     SegmentShape,
     Sole,
 )
-from mbkf.model.osim_body import osim_body_text
 from mbkf.model.sides import mirrored
 from mbkf.model.spread_tables import joint_centres, segment_skin, shoulder_girdle
 from mbkf.model.trunk_levels import trunk_levels
@@ -59,6 +58,8 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
     """
     path = Path(body)
     if path.suffix.lower() == ".osim":
+        from mbkf.model.osim_body import osim_body_text
+
         return parse_body(osim_body_text(path), f"{path} with {side_path(path).name}")
     if path.suffix.lower() == ".urdf":
         return parse_body(urdf_body_text(path), f"{path} with {side_path(path).name}")

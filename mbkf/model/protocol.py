@@ -14,7 +14,6 @@ import numpy as np
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.known_keys import refuse_unknown
-from mbkf.io.osim import read_osim
 from mbkf.io.plain_data import number_between, parse_toml, plain_text
 from mbkf.io.subject import match_names
 from mbkf.model.body_file import load_body
@@ -137,6 +136,8 @@ def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Prot
 
 def _of_model(path: Path, body: BodyDescription) -> Protocol:
     """The markers of an OpenSim model, which are landmarks of the body that it is."""
+    from mbkf.io.osim import read_osim
+
     model = read_osim(path)
     markers = []
     for one in (one for one in model.markers if one.name in body.landmarks):
