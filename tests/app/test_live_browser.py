@@ -4,7 +4,9 @@ import pytest
 
 from mbkf.app import routes as module
 from mbkf.app.server import AppServer
+from mbkf.io.c3d_write import write_c3d
 from mbkf.stream.lsl.discovery import FoundStream
+from mbkf.trial.synth import synthesise
 from tests.app.test_recordings import record
 from tests.studies import study
 from tests.viz.browsing import until
@@ -35,6 +37,9 @@ def replay(page, trial, body):
 
 
 def test_a_capture_is_replayed_stopped_and_joins_the_session(opened, lab):
+    # A browser on a busy machine may draw later than the study's walk of 2.5 s ends.
+    _, lasting = synthesise("squat", seconds=40.0, rate_hz=50.0)
+    write_c3d(lasting.trial, lab.workspace.folder("P1") / "walk1.c3d")
     with opened(lab.url) as page:
         page.set_viewport_size({"width": 1280, "height": 800})
         page.click("button.live")
