@@ -36,7 +36,7 @@ class SeveralPersons(InvalidInput):
 
 
 def _files(trial: Trial) -> list[Path]:
-    """A trial's files, and the standing trials of its person; none of a trial that belongs to no person."""
+    """A trial's files and the standing trials of its person; empty where the trial's person is unknown."""
     if trial.fault:
         return []
     return [trial.path, *([trial.forces] if trial.forces else []), *trial.person.statics]

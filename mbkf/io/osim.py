@@ -82,7 +82,7 @@ class OsimModel:
         joints: Its joints in the order of the file; empty for a marker set.
         markers: Its markers.
         damaged: The reason by name of each marker that could not be read.
-        bodies: Its bodies; the ground is no body of a file.
+        bodies: Its bodies, without the ground.
         couplers: Its constraints between coordinates, those that are in force.
         other_constraints: Names and kinds of its other constraints in force.
     """

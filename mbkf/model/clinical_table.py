@@ -111,7 +111,7 @@ def opensim_zeros_rad(joints: Iterable[ClinicalJoint]) -> dict[str, float]:
 
 
 def positive_senses(joints: Iterable[ClinicalJoint]) -> dict[str, str]:
-    """What a positive value of each coordinate means, by name; those that a body file explains."""
+    """Meaning of a positive value by the name of the coordinate, where the body file states it."""
     return {angle.name: angle.positive for joint in joints for angle in joint.coordinates if angle.positive}
 
 

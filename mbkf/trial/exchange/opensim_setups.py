@@ -89,7 +89,7 @@ def external_loads(r: Reconstruction, loads: Table, bodies: Mapping[str, str]) -
 
 
 def _sources(r: Reconstruction, bodies: Mapping[str, str]) -> str:
-    """How each load is known, and the forces that have no place here, as a comment."""
+    """A comment that states how each load is known, and lists the forces that the file leaves out."""
     lines = [f"{c.part}: {c.how} from {c.from_s:.3f} to {c.to_s:.3f} s" for c in r.contacts]
     lines += [
         f"{part}: the model has no such body, not applied" for part in r.loads.names if part not in bodies

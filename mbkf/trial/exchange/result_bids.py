@@ -56,7 +56,7 @@ def write_results_bids(results: Sequence[Reconstruction], folder: str | Path, pe
         person: Label of the person, of letters and digits.
 
     Raises:
-        InvalidInput: The label holds another character, or there is no result.
+        InvalidInput: The label holds a character besides letters and digits, or ``results`` is empty.
         ProtectedFile: A file of a trial is there, and mbkf may not replace it.
         OSError: A file cannot be written.
     """

@@ -84,7 +84,9 @@ def onto(r: Reconstruction, model: OsimModel) -> OntoMotion:
     """
     rows = r.tracked & np.isfinite(r.q).all(axis=1)
     if not rows.any():
-        raise InvalidInput("the body is followed in no frame; there is no motion to export")
+        raise InvalidInput(
+            "the result follows the body in no frame, so it holds no motion; reconstruct the trial anew"
+        )
     kinematics, ours = OsimKinematics(model), HumanModel.of(r.subject)
     shared = shared_markers(model, r.subject.markers)
     names = tuple(
