@@ -84,5 +84,5 @@ def test_locked_and_clamped_coordinates_are_kept(result, text, tmp_path):
 
 
 def test_a_result_that_is_followed_in_no_frame_is_refused(result, text, tmp_path):
-    with pytest.raises(InvalidInput, match="followed in no frame"):
+    with pytest.raises(InvalidInput, match="follows the body in no frame"):
         onto(replace(result, tracked=np.zeros(result.frames, dtype=bool)), model(tmp_path, text))
