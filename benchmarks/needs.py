@@ -126,6 +126,18 @@ NEEDS: Mapping[str, Needs] = {
         ),
         some_rows=("bids_validator_deno", "bpy", "ezc3d", "mujoco", "opensim", "pandas", "pybullet"),
     ),
+    "clinic": Needs(
+        captures=(
+            "biobuddy_functional",
+            "biomechzoo_walk_turn",
+            "cgm24_lowerlimb_walk",
+            "flywheel_squat",
+            "gaitalytics_walk",
+            "landings",
+            "rehazenter_walk",
+            "unipd_walk",
+        )
+    ),
     "contact": Needs(captures=_MARKED),
     "double_pendulum": Needs(("matplotlib",)),
     "dynamic": Needs(captures=_GAIT),

@@ -26,6 +26,7 @@ TITLES = {
     "Reactions": "feet",
     "SupportLoads": "other parts that may bear load",
     "TrunkMoments": "moments of the trunk",
+    "Muscles": "electromyograms",
     "Quality": "frames that count",
 }
 """Headings of the groups."""

@@ -11,6 +11,7 @@ Examples:
   mbkf report results/P1/monday              a session of 'mbkf batch': writes report.html there
   mbkf report friday --against monday --norms norms.toml --language es
   mbkf report results/P1 --curves curves.csv
+  mbkf report results/P1 --emg-reference mvc          EMG in per cent of the trial mvc's largest envelope
 """
 
 from __future__ import annotations
@@ -43,6 +44,11 @@ def options(parser: argparse.ArgumentParser) -> None:
     session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
     session.add_argument("--norms", metavar="FILE.toml", help="reference bands of 'mbkf norms build'")
     session.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
+    session.add_argument(
+        "--emg-reference",
+        metavar="WORD",
+        help="100 %% of EMG: peak or mean of the session's cycles, or the peak of the trial of that name (peak)",
+    )
     add_out(session, "FILE", "write every curve, too: .csv or .parquet", option="--curves")
     session.add_argument("--name", metavar="TEXT", help="heading of the page (the folder's name)")
 
@@ -57,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.results_folder import MOTION_FILE
 
     folders = [Path(folder) for folder in args.folders]
-    for_session = [args.against, args.norms, args.language, args.curves, args.name]
+    for_session = [args.against, args.norms, args.language, args.curves, args.name, args.emg_reference]
     one = len(folders) == 1 and ((folders[0] / MOTION_FILE).is_file() or not folders[0].is_dir())
     if one and not any(option is not None for option in for_session):
         return _trial(args, folders[0])
@@ -83,6 +89,7 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
     from mbkf.io.atomic import write_text
     from mbkf.io.norms import read_norms
     from mbkf.io.utf8 import storable
+    from mbkf.study.session.emg import PEAK
     from mbkf.study.session.gather import results_in, session_from
     from mbkf.viz.language import ENGLISH
     from mbkf.viz.session.document import session_page
@@ -100,7 +107,9 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
 
     before = None if args.against is None else read([Path(place) for place in args.against], None)
     session = read(folders, args.name)
-    write_text(out, session_page(session, before, norms, args.language or ENGLISH))
+    write_text(
+        out, session_page(session, before, norms, args.language or ENGLISH, args.emg_reference or PEAK)
+    )
     print(out)
     if args.curves is not None:
         write_session_curves(session, args.curves)

@@ -51,6 +51,7 @@ AXES: Mapping[str, Axis] = {
     "state": Axis("2n_v", "configuration and velocity in the tangent space"),
     "ball": Axis("N", "joints with three angles"),
     "level": Axis("L", "levels of the spine", "level_names"),
+    "muscle": Axis("E", "muscles with an electromyogram", "muscle_names"),
     "way": Axis("2", "from the part above the level, or below it", "way", ("top_down", "bottom_up")),
     "turn": Axis("3", "axes of the trunk's coordinates", "turn", ("extension", "bending", "rotation")),
     "unknown": Axis("n", "scale factors and places of markers on the body", "subject_unknown"),
@@ -78,7 +79,9 @@ def _with_translations(angle: str, length: str) -> Unit:
     return Unit(f"{angle}; pelvis_t* {length}", (("*_t[xyz]", length), ("*", angle)))
 
 
-ONE, SECOND, METRE, RADIAN, NEWTON, NEWTON_METRE = (Unit(text) for text in ("1", "s", "m", "rad", "N", "N m"))
+ONE, SECOND, METRE, RADIAN, NEWTON, NEWTON_METRE, VOLT = (
+    Unit(text) for text in ("1", "s", "m", "rad", "N", "N m", "V")
+)
 ANGLE = _with_translations("rad", "m")
 RATE = _with_translations("rad/s", "m/s")
 ACCELERATION = _with_translations("rad/s^2", "m/s^2")

@@ -22,11 +22,13 @@ from mbkf.io.dimensions import (
     RADIAN,
     RATE,
     SECOND,
+    VOLT,
     WRENCH,
 )
 from mbkf.io.estimates import Estimates
 from mbkf.io.findings import Finding
 from mbkf.io.limb_doubts import LimbDoubt
+from mbkf.io.muscle_bursts import MuscleBurst, bursts_of_text
 from mbkf.io.quantities import LATER, Column, Plot, attribute, change, flag, offset, quantity, spread, texts
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
@@ -228,6 +230,28 @@ class TrunkMoments:
     trunk_moments_sd_offset: Array | None = offset("trunk_moments_sd")
 
 
+@dataclass(frozen=True, kw_only=True)
+class Muscles:
+    """Electromyograms; no muscles (E = 0) of a capture without them."""
+
+    muscle_names: tuple[str, ...] = texts(
+        "muscles whose electromyogram the capture holds; _r and _l end those of a named side",
+        (),
+        axis="muscle",
+    )
+    emg_envelope: Array | None = quantity(
+        "time muscle",
+        VOLT,
+        "envelope of the electromyogram: band-passed, rectified and low-passed by the settings emg of the run",
+        None,
+        section="electromyograms",
+    )
+    muscle_bursts: tuple[MuscleBurst, ...] = attribute(
+        "stretches in which a muscle is active", (), read=bursts_of_text
+    )
+    emg_rate_hz: float = attribute("sample rate of the electromyograms, Hz; 0 without", 0.0, read=float)
+
+
 def _unexplained(text: str) -> tuple[UnexplainedLoad, ...]:
     return tuple(UnexplainedLoad(**{**one, "vector_n": tuple(one["vector_n"])}) for one in json.loads(text))
 
@@ -322,6 +346,7 @@ GROUPS = (
     Reactions,
     SupportLoads,
     TrunkMoments,
+    Muscles,
     Quality,
 )
 """The records that make a result, in the order of the page on files."""

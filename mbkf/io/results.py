@@ -23,6 +23,7 @@ from mbkf.io.result_groups import (
     Measurements,
     Moments,
     Motion,
+    Muscles,
     Provenance,
     Quality,
     Reactions,
@@ -41,6 +42,7 @@ Part = (
     | Reactions
     | SupportLoads
     | TrunkMoments
+    | Muscles
     | Quality
 )
 
@@ -63,6 +65,7 @@ SMOOTHED, CAUSAL = "smoothed (all later frames known)", "causal (as live)"
 @dataclass(frozen=True, kw_only=True)
 class Reconstruction(
     Quality,
+    Muscles,
     TrunkMoments,
     SupportLoads,
     Reactions,

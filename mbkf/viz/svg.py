@@ -52,6 +52,19 @@ class Mark:
     side: str = ""
 
 
+@dataclass(frozen=True)
+class Span:
+    """A bar above the curves from one x to another, in the row and the colour of a side."""
+
+    first: float
+    last: float
+    side: str
+
+
+SPAN_HEIGHT, SPAN_ROWS = 3.0, {"r": 0, "l": 1}
+"""Height of such a bar, and the row of each side from the top."""
+
+
 def chart(
     title: str,
     unit: str,
@@ -60,6 +73,7 @@ def chart(
     x_unit: str,
     *,
     marks: Sequence[Mark] = (),
+    spans: Sequence[Span] = (),
     level: float | None = None,
     note: str = "",
     width: float = WIDTH,
@@ -74,6 +88,7 @@ def chart(
         x_range: First and last x shown.
         x_unit: Written after the last tick.
         marks: Vertical lines.
+        spans: Bars above the curves.
         level: Height of a horizontal line: a bound, or an expected value.
         note: Text shown while the pointer rests on the chart.
         width: In the drawing's own units, which the page scales.
@@ -88,6 +103,12 @@ def chart(
         f'<path class="mark {_side(m.side)}" d="M{box.x(m.x):.1f} {TOP:g}V{height - BOTTOM:g}"/>'
         for m in marks
         if x_range[0] <= m.x <= x_range[1]
+    ]
+    parts += [
+        f'<rect class="span {one.side}" x="{box.x(one.first):.1f}" '
+        f'y="{TOP - (2 - SPAN_ROWS[one.side]) * (SPAN_HEIGHT + 0.5):g}" '
+        f'width="{box.x(one.last) - box.x(one.first):.1f}" height="{SPAN_HEIGHT:g}"/>'
+        for one in spans
     ]
     parts += [_band(box, one, one.sd, "band" if one.inner_sd is None else "band outer") for one in lines]
     parts += [_band(box, one, one.inner_sd, "band inner") for one in lines]

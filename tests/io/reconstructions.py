@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mbkf.io.muscle_bursts import MuscleBurst
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
 
@@ -64,6 +65,10 @@ def made_up_whole(frames=12, **changes):
         "marker_nis": rng.random((frames, 2)),
         "marker_spread_m": rng.random((frames, 2)),
         "angles_lab": rng.normal(size=(frames, len(COORDINATES))),
+        "muscle_names": ("soleus_r",),
+        "emg_envelope": 1e-4 * rng.random((frames, 1)),
+        "muscle_bursts": (MuscleBurst("soleus_r", 0.0, 0.05),),
+        "emg_rate_hz": 1000.0,
         **_trunk(frames),
     }
     return made_up(frames, **{**optional, **changes})

@@ -92,7 +92,7 @@ def _compare(before: MovementGroup, after: MovementGroup, same: bool) -> Compari
         first, second = before.sides[side], after.sides[side]
         moved = postures_apart(first, second)
         for key in second.curves:
-            if key not in first.curves:
+            if key not in first.curves or key.is_emg:  # electrodes were put on anew
                 continue
             old, new = chosen_curves(first, key), chosen_curves(second, key)
             if old.mean is None or new.mean is None or old.estimated != new.estimated:

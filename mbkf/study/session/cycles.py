@@ -28,10 +28,12 @@ EDGE = 0.025
 plate's edge is read a frame or two late."""
 
 ANGLE, TORQUE, POWER, REACTION = "angle", "torque", "power", "reaction"
+EMG, EMG_ACTIVE = "emg", "emg_active"
+"""Envelope of a muscle's electromyogram, and 1 where the muscle is active."""
 
 
 class Key(NamedTuple):
-    """Kind of a curve ("angle", "torque", "power" or "reaction") and its coordinate without the side."""
+    """Kind of a curve, e.g. "angle", "torque" or "emg", and its coordinate or muscle without the side."""
 
     quantity: str
     name: str
@@ -39,7 +41,12 @@ class Key(NamedTuple):
     @property
     def is_load(self) -> bool:
         """True for quantities that follow from loads, and so are measured or estimated."""
-        return self.quantity != ANGLE
+        return self.quantity != ANGLE and not self.is_emg
+
+    @property
+    def is_emg(self) -> bool:
+        """True for envelopes and activity of muscles, which a trial may lack."""
+        return self.quantity in (EMG, EMG_ACTIVE)
 
 
 @dataclass(frozen=True)
@@ -47,7 +54,7 @@ class Curves:
     """A quantity over cycles.
 
     Attributes:
-        unit: deg, m, N m/kg, W/kg, or % of body weight.
+        unit: deg, m, N m/kg, W/kg, % of body weight, or V.
         values: (C, 101) over each cycle.
         sd: (C, 101) standard deviations.
         shift_sd: (C, 101) the part of these that repeats in the same posture, and so shifts all cycles alike.
@@ -184,7 +191,7 @@ def _whole_joints(curves: Mapping[Key, Curves], body: BodyDescription, side: int
 
 
 def together(parts: list[SideCycles], side: int) -> SideCycles:
-    """Cycles of several trials of one side; curves that one of them lacks are left out.
+    """Cycles of several trials of one side; curves that one of them lacks are left out, but for muscles: there NaN.
 
     Args:
         parts: The cycles of each trial.
@@ -193,10 +200,12 @@ def together(parts: list[SideCycles], side: int) -> SideCycles:
     filled = [part for part in parts if part.cycles]
     if not filled:
         return SideCycles(side, (), {})
-    keys = [key for key in filled[0].curves if all(key in part.curves for part in filled)]
+    every = dict.fromkeys(key for part in filled for key in part.curves)
+    keys = [key for key in every if key.is_emg or all(key in part.curves for part in filled)]
 
     def joined(key: Key) -> Curves:
-        each = [part.curves[key] for part in filled]
+        unit = next(part.curves[key].unit for part in filled if key in part.curves)
+        each = [part.curves.get(key, _unknown(unit, len(part.cycles))) for part in filled]
         return Curves(
             each[0].unit,
             np.concatenate([one.values for one in each]),
@@ -208,6 +217,12 @@ def together(parts: list[SideCycles], side: int) -> SideCycles:
 
     cycles = tuple(cycle for part in filled for cycle in part.cycles)
     return SideCycles(side, cycles, {key: joined(key) for key in keys})
+
+
+def _unknown(unit: str, count: int) -> Curves:
+    """A quantity that a trial lacks over so many cycles."""
+    unknown = np.full((count, POINTS), np.nan)
+    return Curves(unit, unknown, unknown, unknown, unknown)
 
 
 def mirrored_midline(body: BodyDescription) -> frozenset[str]:

@@ -21,6 +21,7 @@ from mbkf.model.human import HumanModel
 from mbkf.study.batch.inputs import RECORD, read_record
 from mbkf.study.session.agreement import TrialBody, disagreements
 from mbkf.study.session.cycles import SideCycles, cycles_of_trial, together
+from mbkf.study.session.emg import trial_emg, with_emg
 from mbkf.study.session.jumps import jump_measures
 from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
 from mbkf.study.session.squats import squat_measures
@@ -150,6 +151,7 @@ def trial_summary(r: Reconstruction, kind: TrialKind | None = None) -> SessionTr
         (*verdict.sentences, *r.warnings),
         f"{r.filter}, {r.later_frames}",
         listed(out),
+        trial_emg(r),
     )
 
 
@@ -191,7 +193,7 @@ def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
     r = replace(r, verdict=verdict_of(r))
     trial = trial_summary(r, stated.kind)
     gait = find_gait(r, stated.events) if trial.kind in GAIT_KINDS and r.tracked.any() else None
-    sides = (cycles_of_trial(r, gait, 0), cycles_of_trial(r, gait, 1))
+    sides = (with_emg(r, cycles_of_trial(r, gait, 0)), with_emg(r, cycles_of_trial(r, gait, 1)))
     moves = all(verdict_of(r).may_use(part) for part in (PELVIS, *LEGS))
     return _Part(
         trial,

@@ -10,6 +10,22 @@ from mbkf.io.session import TrialKind
 from mbkf.io.subject import Subject
 from mbkf.study.session.agreement import Disagreement
 from mbkf.study.session.cycles import SideCycles
+from mbkf.trial.emg.settings import EmgSettings
+
+
+@dataclass(frozen=True)
+class TrialEmg:
+    """Electromyograms of a trial in short.
+
+    Attributes:
+        peaks_v: Largest envelope of each muscle, V.
+        settings: Filters.
+        rate_hz: Sample rate.
+    """
+
+    peaks_v: Mapping[str, float]
+    settings: EmgSettings
+    rate_hz: float
 
 
 @dataclass(frozen=True)
@@ -24,6 +40,7 @@ class SessionTrial:
         remarks: The reasons of the verdict, gravest first, then the trial's remarks.
         filter: The filter, and which later frames it knew.
         left_out: Parts that the capture shows and that may not be used, in words; means and norms leave them out.
+        emg: Its electromyograms; None without.
     """
 
     name: str
@@ -33,6 +50,7 @@ class SessionTrial:
     remarks: tuple[str, ...]
     filter: str
     left_out: str = ""
+    emg: TrialEmg | None = None
 
 
 @dataclass(frozen=True)

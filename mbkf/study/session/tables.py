@@ -39,9 +39,10 @@ SCHEMA = pa.schema(
 )
 """Columns. kind: of the movement. side: whose cycle. start_s, duration_s, toe_off_percent: of the cycle. measured,
 valid: whether a plate of its own measured that foot throughout, and whether the leg's torques are known. quantity:
-angle, torque, power or reaction. name: the coordinate without its side, the joint of a whole power, or the direction of
-a force. value, sd, sd_shift: in ``unit``; sd_shift is the part of sd that repeats in the same posture, and so
-shifts all cycles alike. Angles of the midline are as that side sees them."""
+angle, torque, power, reaction, emg (envelope, V) or emg_active (1 where the muscle is active). name: the coordinate or
+muscle without its side, the joint of a whole power, or the direction of a force. value, sd, sd_shift: in ``unit``;
+sd_shift is the part of sd that repeats in the same posture, and so shifts all cycles alike. Angles of the midline are
+as that side sees them."""
 
 SUFFIXES = (".csv", ".parquet")
 

@@ -16,6 +16,7 @@ from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.preset import Value
 from mbkf.io.results import LAG_KEY
 from mbkf.kernel.loading import kernel_name
+from mbkf.trial.emg.settings import EmgSettings
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class ReconstructSettings:
         checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.trial.checks`).
         spreads: Standard deviations given besides those of configuration, velocity and wrenches: "torques" and
             "angles". Frames with an estimated load do not count as valid without those of the torques.
+        emg: Filters of the electromyograms.
         preset: Name of the preset, or of its file, of the filter's settings; empty without one. For the record.
         given: Single settings of the filter that a command gave besides, by name. For the record.
     """
@@ -73,6 +75,7 @@ class ReconstructSettings:
     other_contacts: bool = True
     checks: bool = True
     spreads: tuple[str, ...] = ASKED
+    emg: EmgSettings = field(default_factory=EmgSettings)
     preset: str = ""
     given: tuple[tuple[str, Value], ...] = ()
 

@@ -22,6 +22,7 @@ from mbkf.io.utf8 import storable
 from mbkf.model.body import Body
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.emg.muscles import muscles_of
 from mbkf.trial.loads.balance import LoadBalance
 from mbkf.trial.loads.unexplained import unexplained_loads
 from mbkf.trial.preparation.filters import FilterInputs
@@ -80,6 +81,7 @@ def assemble(
     known &= torques_possible(torques.tau, ROOT_DOFS, model.mass_kg)
     balance = balance_of(model, result, measured.rate_hz, ground)
     judged = unexplained_loads(balance, times_s, inputs.contradictions, causal=not result.smoothed)
+    muscles, of_emg = muscles_of(capture.analog, capture.markers.start_time_s, times_s, settings.emg)
     instrument = "marker" if measured.names else "sensor"
     of_track = track_warnings(result, motion.dof_names, inputs.unobservable, instrument)
     return Reconstruction.of(
@@ -96,7 +98,7 @@ def assemble(
             settings=recorded(settings),
             file_axes=capture.axes,
             file_axes_source=capture.axes_source.value,
-            warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *of_track),
+            warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *of_track, *of_emg),
         ),
         Measurements(
             marker_names=measured.names,
@@ -114,6 +116,7 @@ def assemble(
         ground.loads,
         ground.supports,
         trunk_moments(model, result, ground),
+        muscles,
         Quality(
             measured=ground.measured & located,
             valid=ground.accounted & located & known & ~judged.acts,

@@ -10,6 +10,7 @@ from mbkf.model.human import reference_body
 from mbkf.study.scaling.report import used_trials
 from mbkf.study.session.comparison import Comparison, by_curve, compare, measure_pairs
 from mbkf.study.session.cycles import Key
+from mbkf.study.session.emg import PEAK
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH
@@ -24,12 +25,17 @@ from mbkf.viz.session.charts import (
     reaction_rows,
     session_chart,
 )
+from mbkf.viz.session.emg import emg_part
 from mbkf.viz.session.tables import changes_table, measures_table, trials_table
 from mbkf.viz.session.terms import Terms
 
 
 def session_page(
-    session: Session, before: Session | None = None, norms: Norms | None = None, language: str = ENGLISH
+    session: Session,
+    before: Session | None = None,
+    norms: Norms | None = None,
+    language: str = ENGLISH,
+    emg_reference: str = PEAK,
 ) -> str:
     """The report.
 
@@ -38,15 +44,21 @@ def session_page(
         before: An earlier session to compare with; None without.
         norms: The laboratory's reference bands; None without.
         language: Code of the report's language.
+        emg_reference: 100 % of electromyograms: "peak" or "mean" of the session's cycles, or the peak of a trial.
 
     Raises:
         InvalidInput: The language does not exist.
+        UnknownName: The session has no such trial with electromyograms.
     """
     terms = Terms(language)
     names = joint_names(reference_body(session.subject))
     parts = [("trials", terms.say("trials"), trials_table(session, terms))]
     parts += [
-        (f"gait-{gait.kind.value}", terms.say(gait.kind.value), _gait(session, gait, names, norms, terms))
+        (
+            f"gait-{gait.kind.value}",
+            terms.say(gait.kind.value),
+            _gait(session, gait, names, norms, terms) + emg_part(session, gait, terms, emg_reference),
+        )
         for gait in session.gaits
     ]
     if not (session.gaits or session.jumps or session.squats):

@@ -33,6 +33,10 @@ class Terms:
         """The name of a joint, e.g. "knee"; joints of other bodies keep their names."""
         return words(self.language, "joints").get(name, name.replace("_", " ").capitalize())
 
+    def muscle(self, name: str) -> str:
+        """The name of a muscle, e.g. "Soleus"; channels without a known muscle keep their names."""
+        return words(self.language, "muscles").get(name, name.replace("_", " ").upper())
+
     def coordinate(self, name: str, otherwise: str) -> str:
         """The title of a coordinate without its side, or the body's own one."""
         return words(self.language, "coordinates").get(name, otherwise)

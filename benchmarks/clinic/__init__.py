@@ -1,0 +1,26 @@
+"""The clinic: electromyograms, scores and norms against scipy, known truth and independent implementations.
+
+``python -m benchmarks clinic --only PART`` runs one part; ``--only`` may be repeated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from benchmarks.checks import Check, Context
+from benchmarks.clinic.emg import emg_rows
+from benchmarks.parts import Part, part_rows
+
+PARTS: Mapping[str, Part] = {
+    "emg": lambda context: emg_rows(context.require_data(), context.quick),
+}
+"""Rows by the part's name."""
+
+
+def run(context: Context) -> list[Check]:
+    """Rows of all parts, or of those of ``--only``.
+
+    Raises:
+        UnknownName: A part of ``--only`` does not exist.
+    """
+    return part_rows(context, PARTS)
