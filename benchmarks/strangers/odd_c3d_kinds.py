@@ -288,7 +288,7 @@ NAMES = (
 
 PLATES = (
     OddC3d("ORIGIN under another name", FLOATS, _renamed_origin, "lacks FORCE_PLATFORM:ORIGIN"),
-    OddC3d("no FORCE_PLATFORM:USED", FLOATS, without("FORCE_PLATFORM", "USED"), "TYPE lists 9 plates"),
+    OddC3d("no FORCE_PLATFORM:USED", FLOATS, without("FORCE_PLATFORM", "USED"), "that of TYPE, 9"),
     OddC3d(
         "99 plates used",
         FLOATS,
