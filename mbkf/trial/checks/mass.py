@@ -37,6 +37,14 @@ PART_S, PARTS_PERCENT = 0.5, 4.0
 """Parts of a trial, of about this duration, agree on the mass to this; else something besides the feet carries load."""
 
 
+UNLOADED_SHARE = 0.02
+"""Share of the body's weight below which plates read no load."""
+
+SUPPORTED_SHARE = 0.5
+"""Share of the weight that something else has to carry, on average over a stretch in which plates read no load, for
+the person to stand beside them (on a box, say): in flight it is 0, on a support 1. Speeds may err by two sd each."""
+
+
 @dataclass(frozen=True)
 class VerticalLoads:
     """Vertical force and motion of a trial.
@@ -86,7 +94,8 @@ def impulse_finding(loads: VerticalLoads, others: BoolArray, plates_agree: bool 
         others: (T,) frames in or near which parts besides the feet carry load.
         plates_agree: False for plates that contradict each other; the mass is then doubtful at most.
     """
-    for frames in (loads.accounted, loads.accounted & ~others):
+    accounted = loads.accounted & ~_supported_elsewhere(loads)
+    for frames in (accounted, accounted & ~others):
         parts = _parts(frames, loads)
         if sum(len(part) - 1 for part in parts) < LEAST_S * loads.rate_hz:
             return undetermined("needs half a second in which only feet on plates carry load")
@@ -107,6 +116,17 @@ def impulse_finding(loads: VerticalLoads, others: BoolArray, plates_agree: bool 
 def undetermined(why: str) -> Finding:
     """The check of a capture that does not determine the mass."""
     return not_judged(NAME, "%", BOUND_PERCENT, why)
+
+
+def _supported_elsewhere(loads: VerticalLoads) -> BoolArray:
+    """(T,) frames of stretches in which plates read no load, but the person does not fall either."""
+    found = np.zeros(len(loads.force_n), dtype=bool)
+    weight_n = GRAVITY_M_S2 * loads.mass_kg
+    for run in stretches(loads.accounted & (np.abs(loads.force_n) < UNLOADED_SHARE * weight_n)):
+        fallen_m_s = GRAVITY_M_S2 * (len(run) - 1) / loads.rate_hz
+        _, per_kg = _impulses(loads, run)
+        found[run] = per_kg - 2.0 * np.sqrt(2.0) * loads.speed_sd_m_s > SUPPORTED_SHARE * fallen_m_s
+    return found
 
 
 def _parts(frames: BoolArray, loads: VerticalLoads) -> list[Array]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.trial.checks.mass import SCALE_PERCENT, SPEED_SD_M_S, mass_finding
+from mbkf.trial.checks.mass import SCALE_PERCENT, SPEED_SD_M_S, VerticalLoads, impulse_finding, mass_finding
 from tests.checked import amplified, body, evidence, nothing, plates
 
 
@@ -48,6 +48,27 @@ def test_who_sits_is_weighed_only_while_standing():
     seated = replace(given, raw=raw)
     assert mass_finding(seated, nothing(given)).verdict == "not judged"
     assert mass_finding(seated, sits).better == pytest.approx(body("squat").mass_kg, rel=0.02)
+
+
+def hops_from_a_box(mass_kg, hops, rate_hz=200.0):
+    """One second on a box without a plate, then falls of 0.3 s and contacts of 0.2 s on a plate."""
+    fall, contact = 60, 40
+    on_plate = np.concatenate([np.zeros(200), np.tile(np.repeat([0.0, 1.0], [fall, contact]), hops)])
+    standing = np.arange(len(on_plate)) < 200
+    push = GRAVITY_M_S2 * (fall + contact) / contact
+    per_kg = np.where(standing, GRAVITY_M_S2, push * on_plate)
+    rise = per_kg - GRAVITY_M_S2
+    speed = np.concatenate([[0.0], np.cumsum(0.5 * (rise[1:] + rise[:-1]))]) / rate_hz
+    accounted = np.ones(len(on_plate), dtype=bool)
+    return VerticalLoads(rate_hz, 70.0, mass_kg * push * on_plate, speed, accounted)
+
+
+def test_who_stands_on_a_box_is_weighed_from_the_landing_on():
+    """The flights between contacts count; without them the contacts are too short."""
+    loads = hops_from_a_box(37.0, hops=4)
+    found = impulse_finding(loads, np.zeros(len(loads.force_n), dtype=bool))
+    assert found.better == pytest.approx(37.0, rel=0.01)
+    assert found.verdict == "outside"
 
 
 def test_too_little_is_not_judged():
