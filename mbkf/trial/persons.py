@@ -30,7 +30,9 @@ STILL_M, STILL_S = 0.0015, 1.0
 mm and more (25 public captures), points on the floor by the cameras' noise."""
 
 FAR_M, RIGID_M = 0.3, 0.01
-"""Points that move so far, and whose distances change by less, are those of a rigid object."""
+"""Points that move so far, and whose distances change by less, are those of a rigid object. In 55 public captures of
+persons who move by 0.3 m and more distances change by 0.10 m and more; persons who stand (28) move by 0.035 m at
+most."""
 
 
 @dataclass(frozen=True)
