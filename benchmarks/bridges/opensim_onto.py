@@ -15,6 +15,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from benchmarks.bridges.joint_forces import joint_force_rows
 from benchmarks.bridges.opensim_out import reconstructed
 from benchmarks.checks import Check, information, left_out
 from benchmarks.needs import installed
@@ -89,6 +90,7 @@ def opensim_onto_rows(data: Path, out: Path, quick: bool) -> Iterator[Check]:
             yield left_out(f"{name}: muscles", "needs opensim: pip install '.[peers]'")
         elif case.muscles:
             yield from muscle_rows(name, folder, quick)
+            yield from joint_force_rows(name, folder)
 
 
 def pose_rows(name: str, result: Reconstruction, found: OntoMotion) -> Iterator[Check]:

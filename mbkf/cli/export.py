@@ -25,7 +25,8 @@ A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
   opensim  a folder: the model, its motion, the loads as ExternalLoads, set-ups for inverse dynamics and analyses:
         cd DIR; opensim-cmd run-tool setup_id.xml
   --onto MODEL.osim  a folder as well, for an OpenSim model of the person's size from elsewhere: the motion in its
-        coordinates, fitted frame by frame, and set-ups for inverse dynamics, static optimisation and joint reactions
+        coordinates, fitted frame by frame, and set-ups for inverse dynamics, static optimisation, joint reactions,
+        computed muscle control and Moco
   mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and the extra 'film'.
 
 Examples:

@@ -85,11 +85,20 @@ def read_loose_xml(path: str | Path, never_nested: frozenset[str] = frozenset())
         FileFormatError: The file does not exist, or no element in it.
     """
     path = Path(path)
-    check_input(path, "name an OpenSim model (.osim) or a marker set (.xml)")
-    root = parse_loose_xml(_decoded(read_bytes(path)), never_nested)
+    root = parse_loose_xml(xml_text(path), never_nested)
     if not root.children:
         raise FileFormatError(path, "not XML: it holds no element")
     return root
+
+
+def xml_text(path: str | Path) -> str:
+    """The characters of a file in UTF-8, UTF-16 or the encoding that it declares, without a byte order mark.
+
+    Raises:
+        FileFormatError: The file does not exist.
+    """
+    check_input(path, "name an OpenSim model (.osim) or a marker set (.xml)")
+    return _decoded(read_bytes(path))
 
 
 def parse_loose_xml(text: str, never_nested: frozenset[str] = frozenset()) -> Element:

@@ -36,8 +36,9 @@ RIDGE = 1e-9
 KEY_S = 0.1
 """Time between frames that are followed one after another; the frames between them start from these."""
 
-ALIKE = 1.01
-"""Poses whose costs differ by less than this factor fit alike; turns by other angles may give one pose."""
+ALIKE, EXACT_M2 = 1.01, 1e-9
+"""Poses fit alike whose costs differ by less than this factor, or by less than this squared residual, m²: those of an
+exact fit are rounding alone. Turns by other angles may give one pose."""
 
 BLOCK = 200
 """Number of frames that are solved at once."""
@@ -110,7 +111,7 @@ def _first(kinematics: OsimKinematics, targets: Targets) -> Array:
     found = _solved(kinematics, targets, frame, found)
     costs = (_residuals(kinematics, targets, frame, found)[0] ** 2).sum(axis=1)
     far = (np.where([one.rotational for one in free], found - default, 0.0) ** 2).sum(axis=1)
-    return found[np.argmin(np.where(costs <= ALIKE * costs.min() + RIDGE, far, np.inf))]
+    return found[np.argmin(np.where(costs <= ALIKE * costs.min() + EXACT_M2, far, np.inf))]
 
 
 def _solved(kinematics: OsimKinematics, targets: Targets, rows: NDArray[np.intp], start: Array) -> Array:

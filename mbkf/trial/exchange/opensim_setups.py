@@ -145,17 +145,10 @@ def analysis(
         kinds: Settings of the analyses by their class.
         controls: File of the controls that drive all actuators.
     """
-    root = ET.Element("AnalyzeTool", name=NAME)
+    root = driven_tool("AnalyzeTool", span, out)
     texts(
         root,
-        model_file=MODEL,
-        replace_force_set="false",
-        force_set_files=ACTUATORS,
-        results_directory=out,
-        initial_time=repr(span[0]),
-        final_time=repr(span[1]),
         solve_for_equilibrium_for_auxiliary_states="false",
-        external_loads_file=LOADS,
         coordinates_file=MOTION,
         lowpass_cutoff_frequency_for_coordinates="-1",
     )
@@ -166,6 +159,28 @@ def analysis(
         held = ET.SubElement(ET.SubElement(root, "ControllerSet", name="Controllers"), "objects")
         controller = ET.SubElement(held, "ControlSetController", name="controls")
         texts(controller, actuator_list="ALL", controls_file=controls)
+    return root
+
+
+def driven_tool(kind: str, span: tuple[float, float], out: str) -> ET.Element:
+    """A tool of this class on the folder's model, with the loads and the actuators beside its own forces.
+
+    Args:
+        kind: Class of the tool.
+        span: First and last time, s.
+        out: Folder for its results.
+    """
+    root = ET.Element(kind, name=NAME)
+    texts(
+        root,
+        model_file=MODEL,
+        replace_force_set="false",
+        force_set_files=ACTUATORS,
+        results_directory=out,
+        initial_time=repr(span[0]),
+        final_time=repr(span[1]),
+        external_loads_file=LOADS,
+    )
     return root
 
 

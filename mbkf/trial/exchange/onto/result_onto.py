@@ -1,6 +1,7 @@
 """A reconstruction as a folder for an OpenSim model of someone else: its motion, loads on its bodies, and set-ups.
 
-Besides inverse dynamics there are set-ups for static optimisation and for joint reactions from its muscles' forces.
+Besides inverse dynamics there are set-ups for static optimisation and for joint reactions from its muscles' forces;
+where the model has muscles, for computed muscle control and Moco as well.
 Actuators beside the muscles keep both possible: at the root they are the residual, which loads and motion leave; at
 the other coordinates they are reserves of 1 N m, so that each N m beyond costs as much as many muscles.
 """
@@ -9,13 +10,13 @@ from __future__ import annotations
 
 import csv
 import io
-from codecs import BOM_UTF8
+import re
 from pathlib import Path
 
 import numpy as np
 
 from mbkf.io.atomic_folder import replacing_folder
-from mbkf.io.files_read import read_bytes
+from mbkf.io.loose_xml import xml_text
 from mbkf.io.osim import read_osim
 from mbkf.io.results import Reconstruction
 from mbkf.io.storage import Table, write_storage
@@ -23,6 +24,14 @@ from mbkf.io.written import MARK
 from mbkf.model.human import HumanModel
 from mbkf.model.osim_kinematics import GROUND, OsimKinematics
 from mbkf.trial.exchange.onto.fitting import OntoMotion, onto
+from mbkf.trial.exchange.onto.muscle_setups import (
+    SETUP_CMC,
+    SETUP_MOCO,
+    TASKS,
+    cmc_tasks,
+    moco_inverse,
+    muscle_control,
+)
 from mbkf.trial.exchange.opensim_setups import (
     ACTUATORS,
     LOADS,
@@ -52,6 +61,10 @@ RESERVE, RESIDUAL = "_reserve", "_residual"
 RESERVE_NM, RESIDUAL_N = 1.0, 100.0
 """Force or moment of an actuator at full control; the cost is the sum of squared controls."""
 
+_DECLARATION = re.compile(r"\s*<\?xml.*?\?>", re.DOTALL)
+_MUSCLE = re.compile(r"<\w+Muscle(_Deprecated)?\s+name=")
+"""Start of a file that states its encoding, and of an element that is a muscle."""
+
 _SPREADSHEET = ("segment", "body", "markers", "place_mm", "turn_deg")
 
 
@@ -73,7 +86,7 @@ def export_onto(r: Reconstruction, model: str | Path, folder: str | Path) -> Ont
         FileFormatError: The model cannot be read, or a file stands where a folder is needed.
         OSError: A file cannot be written.
     """
-    found = onto(r, read_osim(model, markers_needed=False))
+    found, text = onto(r, read_osim(model, markers_needed=False)), xml_text(model)
     motion, loads = motion_table(r, found), loads_table(r)
     span = common_span(motion, loads)
     muscles = f"{MUSCLES_OUT}/{NAME}_StaticOptimization_force.sto"
@@ -86,8 +99,15 @@ def export_onto(r: Reconstruction, model: str | Path, folder: str | Path) -> Ont
             span, JOINTS_OUT, {"JointReaction": {"forces_file": muscles, "joint_names": "ALL"}}
         ),
     }
+    if _MUSCLE.search(text):
+        names = [found.kinematics.names[number] for number in found.kinematics.free]
+        elements |= {
+            TASKS: cmc_tasks(names),
+            SETUP_CMC: muscle_control(span),
+            SETUP_MOCO: moco_inverse(span, RESERVE_NM, RESIDUAL_N),
+        }
     with replacing_folder(folder) as partial:
-        (partial / MODEL).write_bytes(_marked(read_bytes(Path(model))))
+        (partial / MODEL).write_text(_marked(text), encoding="utf-8", newline="")
         write_storage(motion, partial / MOTION)
         write_storage(loads, partial / LOADS_DATA)
         (partial / RESIDUALS).write_text(_residuals(found), encoding="utf-8")
@@ -146,10 +166,7 @@ def _residuals(found: OntoMotion) -> str:
     return file.getvalue()
 
 
-def _marked(content: bytes) -> bytes:
-    """A model file with the comment by which mbkf knows what it wrote."""
-    content = content.removeprefix(BOM_UTF8).lstrip()
-    declaration, closed, rest = content.partition(b"?>")
-    if not closed or not declaration.startswith(b"<?xml"):
-        declaration, rest = b'<?xml version="1.0" encoding="UTF-8"', content
-    return declaration + b"?>\n<!-- " + MARK.encode() + b" -->\n" + rest.lstrip()
+def _marked(text: str) -> str:
+    """The text of a model file in UTF-8, with the comment by which mbkf knows what it wrote."""
+    content = _DECLARATION.sub("", text, count=1).lstrip()
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n<!-- {MARK} -->\n{content}'

@@ -22,27 +22,34 @@ def result():
 
 
 @pytest.fixture(scope="module")
-def model(result, tmp_path_factory):
+def text(result):
+    """A model of theirs, without a declaration."""
+    text = osim_files(walker()[1], result.subject.markers, "theirs.osim")["theirs.osim"]
+    return text.replace("right_hand", "gripper").split("?>", 1)[1].strip()
+
+
+@pytest.fixture(scope="module")
+def model(text, tmp_path_factory):
+    """The model's file, after a byte order mark."""
     path = tmp_path_factory.mktemp("model") / "theirs.osim"
-    text = osim_files(walker()[1], result.subject.markers, path.name)[path.name]
-    path.write_text(text.replace("right_hand", "gripper"), encoding="utf-8")
+    path.write_text(text, encoding="utf-8-sig")
     return path
 
 
 @pytest.fixture(scope="module")
-def bare(model):
-    """The model without a declaration, after a byte order mark."""
-    path = model.with_name("bare.osim")
-    path.write_text(model.read_text("utf-8").split("?>", 1)[1], encoding="utf-8-sig")
-    return path
+def muscular(text):
+    """The model with a muscle, and with characters beyond ASCII."""
+    return text.replace("</Model>", '<credits>Müller, Ångström</credits><Thelen2003Muscle name="a"/></Model>')
 
 
 @pytest.fixture(scope="module")
-def written(result, model, bare, tmp_path_factory):
-    """The motion, the folder, and the model's file there after the model without a declaration was exported."""
-    folder = tmp_path_factory.mktemp("onto") / "walk"
-    export_onto(result, bare, folder)
-    first = (folder / "model.osim").read_text("utf-8")
+def written(result, model, muscular, tmp_path_factory):
+    """The motion, the folder, and texts of the folder for the model with a muscle, in UTF-16."""
+    folder, wide = tmp_path_factory.mktemp("onto") / "walk", model.with_name("wide.osim")
+    wide.write_text(f'<?xml version="1.0" encoding="UTF-16"?>\n{muscular}', encoding="utf-16")
+    other = folder.with_name("wide")
+    export_onto(result, wide, other)
+    first = {path.name: path.read_text("utf-8") for path in other.iterdir()}
     return export_onto(result, model, folder), folder, first
 
 
@@ -89,10 +96,10 @@ def test_set_ups_name_files_of_the_folder(written):
     assert forces == f"{out}/{tool}_StaticOptimization_force.sto"
 
 
-def test_the_model_is_theirs_and_the_folder_is_ours(model, written):
+def test_the_model_is_theirs_and_the_folder_is_ours(text, written):
     found, folder, _ = written
     content = (folder / "model.osim").read_text("utf-8")
-    assert content.split("-->", 1)[1].strip() == model.read_text("utf-8").split("?>", 1)[1].strip()
+    assert content.startswith("<?xml") and content.split("-->", 1)[1].strip() == text
     assert all(form_of(path) for path in folder.iterdir())
     with (folder / "residuals.csv").open(encoding="utf-8", newline="") as file:
         assert next(file).startswith("#")
@@ -101,10 +108,29 @@ def test_the_model_is_theirs_and_the_folder_is_ours(model, written):
     assert float(rows[0]["place_mm"]) == pytest.approx(found.residuals[0].place_mm, abs=1e-3)
 
 
-def test_a_model_without_a_declaration_gets_one(written):
-    first = written[2]
-    assert first.startswith("<?xml")
-    assert ET.fromstring(first.encode()).tag == "OpenSimDocument"
+def test_a_model_in_utf_16_is_written_in_utf_8(written, muscular):
+    declared, _, rest = written[2]["model.osim"].partition("-->")
+    assert "UTF-16" not in declared and rest.strip() == muscular
+    assert ET.fromstring(written[2]["model.osim"].encode()).findtext(".//credits") == "Müller, Ångström"
+
+
+def test_set_ups_of_muscle_control_stand_beside_muscles_alone(written):
+    found, folder, first = written
+    new = {"setup_cmc.xml", "cmc_tasks.xml", "setup_moco.xml"}
+    assert set(first) - {path.name for path in folder.iterdir()} == new
+    free = [found.kinematics.names[k] for k in found.kinematics.free]
+    tasks = list(ET.fromstring(first["cmc_tasks.xml"].encode()).iter("CMC_Joint"))
+    assert [one.findtext("coordinate") for one in tasks] == free
+    # ë + kv ė + kp e = 0 has one double root.
+    gains = {(float(one.findtext("kp").split()[0]), float(one.findtext("kv").split()[0])) for one in tasks}
+    assert all(kv**2 == pytest.approx(4.0 * kp) and kp > 0.0 for kp, kv in gains)
+    static = ET.fromstring(first["setup_static_optimization.xml"].encode())
+    for setup in ("setup_cmc.xml", "setup_moco.xml"):
+        root = ET.fromstring(first[setup].encode())
+        files = [one.text for one in root.iter() if (one.text or "").endswith((".osim", ".mot", ".xml"))]
+        assert {"model.osim", "motion.mot", "ExternalLoads.xml"} <= set(files) <= set(first)
+        for tag in ("initial_time", "final_time"):
+            assert root.findtext(f".//{tag}") == static.findtext(f".//{tag}")
 
 
 def test_other_files_are_refused(result, tmp_path):
