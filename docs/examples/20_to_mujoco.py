@@ -27,18 +27,16 @@ for t in range(0, model.nkey, 10):  # frames in which the body is followed; here
     v, a = result.v[t], result.a[t]
     R = Rotation.from_quat(result.q[t, 3:7]).as_matrix()  # the root's own axes in the world's
     data.qacc[:] = a
-    data.qacc[:3] = R @ (
-        a[:3] + np.cross(v[3:6], v[:3])
-    )  # MuJoCo: acceleration of the root's place in the world
+    # MuJoCo: acceleration of the root's place in the world
+    data.qacc[:3] = R @ (a[:3] + np.cross(v[3:6], v[:3]))
     mujoco.mj_inverse(model, data)
 
     ground = np.zeros(model.nv)  # generalised forces of the ground
     for foot, wrench in zip(("right_foot", "left_foot"), result.foot_wrench[t], strict=True):
         body = model.body(foot).id
         at = data.xpos[body]
-        moment = wrench[3:] - np.cross(
-            at, wrench[:3]
-        )  # about the ankle, of the moment about the world's origin
+        # about the ankle, of the moment about the world's origin
+        moment = wrench[3:] - np.cross(at, wrench[:3])
         mujoco.mj_applyFT(model, data, wrench[:3], moment, at, body, ground)
     torque = (data.qfrc_inverse - ground)[6:]
     largest = max(largest, np.abs(torque - result.tau[t, 6:]).max())

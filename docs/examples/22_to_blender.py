@@ -35,9 +35,8 @@ except ImportError:
 else:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    scene.render.fps = round(
-        result.rate_hz
-    )  # before the file: then every frame of the result is one of the scene
+    # before the file: then every frame of the result is one of the scene
+    scene.render.fps = round(result.rate_hz)
     bpy.ops.import_scene.gltf(filepath="squat.glb")
     scene.frame_start, scene.frame_end = 0, result.frames - 1
     (action, *_) = bpy.data.actions
