@@ -13,6 +13,7 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from benchmarks.checks import Check
@@ -59,7 +60,7 @@ def joint_force_rows(name: str, folder: Path) -> Iterator[Check]:
         yield Check(f"{name}: {joint} force, RMS from Newton's law by its peak", max(shares), SHARE, "<=")
 
 
-def _newton(folder: Path, model: Any, state: Any, names: list[str], rows: Array) -> Array:
+def _newton(folder: Path, model: Any, state: Any, names: list[str], rows: NDArray[np.intp]) -> Array:
     """(R, 3) force of a joint on the bodies beyond it, N, in the ground's axes.
 
     Args:
