@@ -9,10 +9,14 @@ from collections.abc import Mapping
 
 from benchmarks.checks import Check, Context
 from benchmarks.clinic.emg import emg_rows
+from benchmarks.clinic.norms import norms_rows
+from benchmarks.clinic.scores import score_rows
 from benchmarks.parts import Part, part_rows
 
 PARTS: Mapping[str, Part] = {
     "emg": lambda context: emg_rows(context.require_data(), context.quick),
+    "norms": lambda context: norms_rows(context.out),
+    "scores": lambda _: score_rows(),
 }
 """Rows by the part's name."""
 

@@ -27,6 +27,8 @@ RECORDS: dict[str, Record] = {
     "preset": preset.PRESET,
     "norms": norms.NORMS,
     "norms-curve": norms.CURVE,
+    "norms-person": norms.PERSON,
+    "norms-gdi": norms.GDI,
     "norms-measure": norms.MEASURE,
     "mount": mount.MOUNT,
 }

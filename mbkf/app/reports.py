@@ -1,4 +1,4 @@
-"""Reports of sessions in the page's folder: compared with one another, against norms built from all of them."""
+"""Reports of sessions in the page's folder: compared with one another, against norms built from them."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from pathlib import Path
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.norms import read_norms, write_norms
+from mbkf.io.session import SessionNotes
 from mbkf.study.session.gather import session_from
-from mbkf.study.session.norms import norms_of
+from mbkf.study.session.norm_selection import NormSelection, norm_selection
+from mbkf.study.session.norms import norms_from
 from mbkf.study.session.records import Session
 from mbkf.viz.session.document import session_page
 
@@ -35,7 +37,7 @@ def report_of(workspace: Workspace, session: str, before: str, norms: str, langu
         language: Code of the report's language.
 
     Raises:
-        InvalidInput: Session, result, file of norms or language does not exist.
+        InvalidInput: Session, result, file of norms or language does not exist, or the norms hold this person.
         FileFormatError: A file is damaged.
     """
     bands = None
@@ -44,6 +46,11 @@ def report_of(workspace: Workspace, session: str, before: str, norms: str, langu
         if file is None:
             raise InvalidInput(f"there is no file of norms '{norms}'")
         bands = read_norms(file)
+        if _person(session) in {one.name for one in bands.persons}:
+            raise InvalidInput(
+                f"{norms} holds walks of {_person(session)}, who would be compared with themselves; build the norms "
+                "again in this report, which leaves this person out"
+            )
     earlier = read_whole(workspace, before) if before else None
     return session_page(read_whole(workspace, session), earlier, bands, language)
 
@@ -61,25 +68,67 @@ def read_whole(workspace: Workspace, session: str) -> Session:
     return session_from(workspace.results(session), heading, notes)
 
 
-def build(workspace: Workspace) -> Plain:
-    """Builds norms from all sessions with results, each first folder a person; writes them to the page's folder.
+def norms_selection(workspace: Workspace, session: str) -> Plain:
+    """Persons that norms for a session would be built of, and who is left out and why, in words.
+
+    Args:
+        workspace: The sessions.
+        session: Name of the session that the norms are for; empty for norms of all.
 
     Raises:
-        InvalidInput: Fewer than two persons have gait.
+        FileFormatError: A file is damaged.
+    """
+    found = _selection(workspace, session)
+    persons = [
+        f"{one.facts.name}: {one.facts.sex}, {one.facts.age:g}, {one.facts.speed_m_s:.2f} m/s, {one.facts.cycles}"
+        for one in found.persons
+    ]
+    return {"persons": persons, "left_out": [one.sentence for one in found.left_out], "cycles": found.cycles}
+
+
+def build(workspace: Workspace, session: str) -> Plain:
+    """Builds norms from the sessions that belong into them, each first folder a person; writes them to the folder.
+
+    Args:
+        workspace: The sessions.
+        session: Name of the session that the norms are for, whose person is left out; empty for norms of all.
+
+    Raises:
+        InvalidInput: Fewer than two persons belong into them.
         FileFormatError: A file is damaged.
         OSError: The norms cannot be written.
     """
+    norms = norms_from(_selection(workspace, session), workspace.root.name)
+    write_norms(norms, workspace.root / NORMS_FILE)
+    return {"norms": NORMS_FILE, "persons": len(norms.persons)}
+
+
+def _selection(workspace: Workspace, session: str) -> NormSelection:
     persons: dict[str, list[str]] = {}
     for name in workspace.sessions():
         if _is_done(workspace, name):
-            persons.setdefault(name.split("/")[0], []).append(name)
-    sessions = (
-        session_from([result for one in names for result in workspace.results(one)], person)
+            persons.setdefault(_person(name), []).append(name)
+    sessions = [
+        session_from(
+            [result for one in names for result in workspace.results(one)], person, _facts(workspace, names)
+        )
         for person, names in persons.items()
+    ]
+    return norm_selection(sessions, {_person(session)} & set(persons) if session else ())
+
+
+def _facts(workspace: Workspace, names: list[str]) -> SessionNotes:
+    """Sex, age and kinds of trials of a person, from the sessions that state them."""
+    stated = [workspace.stated(name) for name in names]
+    trials = {name: notes for one in stated for name, notes in one.trials.items()}
+    sex = next((one.sex for one in stated if one.sex), "")
+    return SessionNotes(
+        sex=sex, age=next((one.age for one in stated if one.age is not None), None), trials=trials
     )
-    norms = norms_of(sessions, workspace.root.name)
-    write_norms(norms, workspace.root / NORMS_FILE)
-    return {"norms": NORMS_FILE, "persons": max(band.persons for band in norms.curves.values())}
+
+
+def _person(session: str) -> str:
+    return session.split("/", maxsplit=1)[0]
 
 
 def norms_files(workspace: Workspace) -> list[Path]:

@@ -127,7 +127,8 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
         page("/report", report),
         data("/report/choices", lambda query: reports.choices(workspace, query["session"])),
         download("/report/curves", curves),
-        action("/norms", lambda _query, _body: reports.build(workspace)),
+        data("/norms/selection", lambda query: reports.norms_selection(workspace, query["session"])),
+        action("/norms", lambda query, _body: reports.build(workspace, query["session"])),
     ]
 
 

@@ -15,31 +15,46 @@ from tests.study.session.sessions import walks
 
 @pytest.fixture
 def workspace(tmp_path):
-    """Two persons with two walks each, as if they had been run."""
-    study(tmp_path / "lab", persons=2, trials=2)
+    """Three persons with two walks each, as if they had been run; the sex and age of the third one are not stated."""
+    study(tmp_path / "lab", persons=3, trials=2)
     made = Workspace(tmp_path / "lab")
-    for person, first in (("P1", 5), ("P2", 6)):
+    for person, first in (("P1", 5), ("P2", 6), ("P3", 5)):
         for k, r in enumerate(walks(2, first), start=1):
             write_reconstruction(r, summarise(r), made.out / person / f"walk{k}")
+    for person in ("P1", "P2"):
+        made.change(person, SessionNotes(), SessionNotes(sex="female", age=30.0))
     return made
 
 
 def test_a_report_alone_compared_and_with_norms(workspace):
-    assert reports.choices(workspace, "P1") == {"sessions": ["P2"], "norms": []}
-    assert reports.build(workspace) == {"norms": "norms.toml", "persons": 2}
-    assert reports.choices(workspace, "P2") == {"sessions": ["P1"], "norms": ["norms.toml"]}
+    assert reports.choices(workspace, "P1") == {"sessions": ["P2", "P3"], "norms": []}
+    chosen = reports.norms_selection(workspace, "P3")
+    assert [one.split(",")[0] for one in chosen["persons"]] == ["P1: female", "P2: female"] and chosen[
+        "cycles"
+    ] > 4
+    assert chosen["left_out"] == ["P3: the person in view is compared with others alone"]
+    assert reports.build(workspace, "P3") == {"norms": "norms.toml", "persons": 2}
+    assert reports.choices(workspace, "P2") == {"sessions": ["P1", "P3"], "norms": ["norms.toml"]}
     assert read_norms(workspace.root / "norms.toml").name == "lab"
-    page = reports.report_of(workspace, "P1", "P2", "norms.toml", "es")
+    page = reports.report_of(workspace, "P3", "P2", "norms.toml", "es")
     assert 'id="change"' in page and 'class="band n"' in page and '<html lang="es">' in page
-    assert 'id="change"' not in reports.report_of(workspace, "P1", "", "", "en")
+    assert 'id="change"' not in reports.report_of(workspace, "P3", "", "", "en")
+
+
+def test_nobody_is_compared_with_norms_of_themselves(workspace):
+    reports.build(workspace, "")
+    with pytest.raises(InvalidInput, match="holds walks of P1"):
+        reports.report_of(workspace, "P1", "", "norms.toml", "en")
+    with pytest.raises(InvalidInput, match="P1: the person in view"):
+        reports.build(workspace, "P1")
 
 
 def test_trials_that_are_left_out_do_not_count(workspace):
     assert len(reports.read_whole(workspace, "P1").trials) == 2
     notes = SessionNotes(name="Ana", sex="female", trials={"walk2": TrialNotes(excluded="fell")})
-    workspace.change("P1", SessionNotes(), notes)
-    left = reports.read_whole(workspace, "P1")
-    assert len(left.trials) == 1 and left.name == "Ana, P1" and left.sex == "female"
+    workspace.change("P3", SessionNotes(), notes)
+    left = reports.read_whole(workspace, "P3")
+    assert len(left.trials) == 1 and left.name == "Ana, P3" and left.sex == "female"
 
 
 def test_what_is_not_there_is_told(workspace, tmp_path):

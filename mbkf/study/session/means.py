@@ -100,6 +100,17 @@ def mean_of(
     return Mean(mean, values.std(axis=0, ddof=1), variance, freedom, shift, change, count)
 
 
+def half_width(mean: Mean) -> Array:
+    """(P,) half of the 95 % interval of a mean: how cycles and trials differ, and the shift that they share.
+
+    Args:
+        mean: The mean.
+    """
+    parts = [(mean.variance, mean.freedom), (mean.shift_variance, np.full_like(mean.mean, np.inf))]
+    variance = np.sum([part for part, _ in parts], axis=0)
+    return np.asarray(_quantile(_freedom(parts)) * np.sqrt(variance))
+
+
 def difference_of(after: Mean, before: Mean, same_body: bool, apart: Array | float = 0.0) -> Difference:
     """After less before, with its interval.
 

@@ -10,7 +10,11 @@ async function sessionReport(session, act) {
   const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
   chosenBefore.select.onchange = chosenNorms.select.onchange = show;
   const build = element("button", { type: "button", onclick: async () => {
-    const made = await ask("norms", { method: "POST" });
+    const chosen = await ask("norms/selection?" + query({ session }));
+    const parts = [word("norms_of", chosen.persons.length, chosen.cycles), ...chosen.persons];
+    if (chosen.left_out.length) parts.push("", word("norms_without"), ...chosen.left_out);
+    if (!window.confirm(parts.join("\n"))) return;
+    const made = await ask("norms?" + query({ session }), { method: "POST" });
     tell(word("norms_built", made.persons));
     if (![...chosenNorms.select.options].some((one) => one.value === made.norms)) chosenNorms.select.append(new Option(made.norms, made.norms));
     chosenNorms.select.value = made.norms;

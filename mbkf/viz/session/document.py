@@ -11,6 +11,7 @@ from mbkf.study.scaling.report import used_trials
 from mbkf.study.session.comparison import Comparison, by_curve, compare, measure_pairs
 from mbkf.study.session.cycles import Key
 from mbkf.study.session.emg import PEAK
+from mbkf.study.session.norm_selection import speed_of
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH
@@ -26,6 +27,7 @@ from mbkf.viz.session.charts import (
     session_chart,
 )
 from mbkf.viz.session.emg import emg_part
+from mbkf.viz.session.scores import scores_part
 from mbkf.viz.session.tables import changes_table, measures_table, trials_table
 from mbkf.viz.session.terms import Terms
 
@@ -91,6 +93,7 @@ def _heading(session: Session, terms: Terms) -> str:
 def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms | None, terms: Terms) -> str:
     """The section of one kind of gait."""
     body = reference_body(session.subject)
+    norms = None if norms is None else norms.at_speed(speed_of(gait))
     counts = [len(side.cycles) for side in gait.sides]
 
     known = {} if norms is None else norms.curves
@@ -117,6 +120,7 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f"<h3>{escape(terms.say('parameters'))}</h3>",
             measures_table(gait.measures, terms, norms, gait.kind),
             paragraph(terms.say("table_note")),
+            scores_part(gait, norms, terms),
             f'<h3 class="sheet">{escape(terms.say("angles"))}</h3>',
             _key(gait, norms, terms),
             paragraph(terms.say("midline_note")),

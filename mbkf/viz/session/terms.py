@@ -37,6 +37,10 @@ class Terms:
         """The name of a muscle, e.g. "Soleus"; channels without a known muscle keep their names."""
         return words(self.language, "muscles").get(name, name.replace("_", " ").upper())
 
+    def score(self, name: str) -> str:
+        """The name of a score, e.g. "GPS"; that of a single variable is its coordinate's."""
+        return words(self.language, "coordinates").get(name, name)
+
     def coordinate(self, name: str, otherwise: str) -> str:
         """The title of a coordinate without its side, or the body's own one."""
         return words(self.language, "coordinates").get(name, otherwise)

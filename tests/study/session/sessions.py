@@ -33,6 +33,12 @@ def session(count=2, first=5):
     return session_of(walks(count, first), f"session {first}")
 
 
+@cache
+def person(count=2, first=5, age=30.0):
+    """The same session of a person whose age and sex are stated, so that norms may hold it."""
+    return replace(session(count, first), sex="female", age=age)
+
+
 def estimated(r, frames=slice(None)):
     """A trial whose loads were not measured but estimated in some frames."""
     measured, source = r.measured.copy(), r.foot_source.copy()

@@ -13,7 +13,7 @@ from mbkf.study.session.gather import session_of
 from mbkf.study.session.norms import norms_of
 from mbkf.viz.session.charts import Shown, joint_rows, pair_charts, session_chart
 from mbkf.viz.session.terms import Terms
-from tests.study.session.sessions import estimated, session, walks
+from tests.study.session.sessions import estimated, person, session, walks
 
 KNEE = Shown(Key("torque", "knee_angle"), "Knee <flexion>", "bent")
 ENGLISH = Terms("en")
@@ -49,7 +49,7 @@ def test_only_estimated_cycles_are_dashed():
 
 
 def test_norms_stand_behind_where_units_agree():
-    norms = norms_of([session(), session(1, 6)], "ours")
+    norms = norms_of([person(), person(1, 6)], "ours")
     band = norms.curves["walk", KNEE.key.quantity, KNEE.key.name]
     assert ("run", KNEE.key.quantity, KNEE.key.name) not in norms.curves
     assert 'class="band n"' in session_chart(session().gaits[0].sides, KNEE, band, ENGLISH)

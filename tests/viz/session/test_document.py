@@ -11,12 +11,12 @@ from mbkf.study.session.norms import norms_of
 from mbkf.viz.language import languages
 from mbkf.viz.session.document import session_page
 from tests.recordings import recorded
-from tests.study.session.sessions import estimated, session, walks
+from tests.study.session.sessions import estimated, person, session, walks
 
 
 def everything(language):
     whole = session_of([*walks(), recorded("jump", 3.0, 2), recorded("squat", 4.0, 2)], "Ana")
-    norms = norms_of([session(), session(1, 6)], "ours")
+    norms = norms_of([person(), person(1, 6)], "ours")
     return session_page(whole, whole, norms, language)
 
 

@@ -10,7 +10,7 @@ from mbkf.study.session.norms import norms_of
 from mbkf.study.session.records import Measure
 from mbkf.viz.session.tables import changes_table, measures_table, trials_table
 from mbkf.viz.session.terms import Terms
-from tests.study.session.sessions import session
+from tests.study.session.sessions import person, session
 
 ENGLISH, SPANISH = Terms("en"), Terms("es")
 
@@ -44,7 +44,7 @@ def test_measures_of_the_body_stand_in_a_table_of_their_own():
 
 
 def test_the_norm_is_shown_where_there_is_one():
-    norms = norms_of([session(), session(1, 6)], "ours")
+    norms = norms_of([person(), person(1, 6)], "ours")
     measures = session().gaits[0].measures
     assert "norm" in measures_table(measures, ENGLISH, norms, TrialKind.WALK)
     assert "norm" not in measures_table(measures, ENGLISH, norms, TrialKind.RUN)

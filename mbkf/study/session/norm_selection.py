@@ -1,0 +1,166 @@
+"""Persons of norms: walks that may be used, of named persons with age, sex and speed; all others with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.errors import UnknownName
+from mbkf.io.norms import NormPerson
+from mbkf.io.session import TrialKind
+from mbkf.study.session.cycles import Curves, SideCycles
+from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
+
+SPEED = "Speed"
+"""Measure that states the walking speed."""
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A person or a trial that norms leave out.
+
+    Attributes:
+        person: The person.
+        trial: The trial; empty for the whole person.
+        reason: In words.
+    """
+
+    person: str
+    trial: str
+    reason: str
+
+    @property
+    def sentence(self) -> str:
+        """Who, and why."""
+        return f"{self.person}{f', {self.trial}' if self.trial else ''}: {self.reason}"
+
+
+@dataclass(frozen=True)
+class ChosenPerson:
+    """A person that norms are made of: facts, and the walks that count."""
+
+    facts: NormPerson
+    gait: MovementGroup
+
+
+@dataclass(frozen=True)
+class NormSelection:
+    """Persons of norms.
+
+    Attributes:
+        persons: Those that count.
+        left_out: All others, and trials of those that count.
+    """
+
+    persons: tuple[ChosenPerson, ...]
+    left_out: tuple[LeftOut, ...]
+
+    @property
+    def cycles(self) -> int:
+        """Number of cycles."""
+        return sum(one.facts.cycles for one in self.persons)
+
+
+def norm_selection(sessions: Iterable[Session], in_view: Collection[str] = ()) -> NormSelection:
+    """The persons of norms among sessions, one session for each.
+
+    Args:
+        sessions: They.
+        in_view: Names of persons that the norms are for, and that are never among them.
+
+    Raises:
+        UnknownName: There is no session of a person in view.
+    """
+    sessions, persons, left_out = list(sessions), [], []
+    names = [session.name for session in sessions]
+    for name in in_view:
+        if name not in names:
+            raise UnknownName("person", name, names)
+    for session in sessions:
+        if session.name in in_view:
+            left_out.append(LeftOut(session.name, "", "the person in view is compared with others alone"))
+            continue
+        reasons = {trial.name: _against(session, trial) for trial in session.trials}
+        left_out += [LeftOut(session.name, name, reason) for name, reason in reasons.items() if reason]
+        found = _person(session, {name for name, reason in reasons.items() if not reason})
+        if isinstance(found, str):
+            left_out.append(LeftOut(session.name, "", found))
+        else:
+            persons.append(found)
+    return NormSelection(tuple(persons), tuple(left_out))
+
+
+def _against(session: Session, trial: SessionTrial) -> str:
+    """Why a trial is left out; empty for one that counts."""
+    if trial.kind != TrialKind.WALK:
+        kind = trial.kind.value.replace("_", " ")
+        return (
+            "movement not recognised; state its kind in the session"
+            if kind == "unknown"
+            else f"no walk ({kind})"
+        )
+    if trial.verdict != "use":
+        return f"{trial.verdict}: {trial.remarks[0] if trial.remarks else 'see its report'}"
+    doubt = next((one for one in session.disagreements if trial.name in one.trials), None)
+    return "" if doubt is None else f"{doubt.word}: {doubt.sentence}"
+
+
+def _person(session: Session, trials: Collection[str]) -> ChosenPerson | str:
+    """The walks of a person in some trials, or why there are none."""
+    walk = session.gait(TrialKind.WALK)
+    if walk is None or not trials:
+        return "no walk that may be used"
+    lacking = [word for word, value in (("age", session.age), ("sex", session.sex)) if value is None]
+    if session.age is None or session.sex is None:
+        return f"{' and '.join(lacking)} not stated; write them into the session"
+    gait = of_trials(walk, trials)
+    counts = [len(side.cycles) for side in gait.sides]
+    if not all(counts):
+        return "no whole cycle of both feet"
+    speed = speed_of(gait)
+    if not np.isfinite(speed):
+        return "walking speed not known"
+    return ChosenPerson(NormPerson(session.name, session.sex, session.age, speed, sum(counts)), gait)
+
+
+def speed_of(gait: MovementGroup) -> float:
+    """Mean speed over all cycles, m/s; NaN where it is not known."""
+    speeds = [np.concatenate(list(one.values.values())) for one in gait.measures if one.name == SPEED]
+    return float(np.nanmean(speeds[0])) if speeds and np.isfinite(speeds[0]).any() else float("nan")
+
+
+def of_trials(gait: MovementGroup, trials: Collection[str]) -> MovementGroup:
+    """The part of a gait that some of its trials are.
+
+    Args:
+        gait: The gait.
+        trials: Names of the trials.
+    """
+    names = tuple(name for name in gait.trials if name in trials)
+    right, left = (_side(side, trials) for side in gait.sides)
+    measures = tuple(_measure(one, trials) for one in gait.measures)
+    return MovementGroup(gait.kind, names, (right, left), measures)
+
+
+def _side(side: SideCycles, trials: Collection[str]) -> SideCycles:
+    rows = [k for k, cycle in enumerate(side.cycles) if cycle.trial in trials]
+
+    def part(one: Curves) -> Curves:
+        own = (one.values[rows], one.sd[rows], one.shift_sd[rows], one.change_sd[rows])
+        return Curves(one.unit, *own, one.midline)
+
+    curves = {key: part(one) for key, one in side.curves.items()} if rows else {}
+    return SideCycles(side.side, tuple(side.cycles[k] for k in rows), curves)
+
+
+def _measure(one: Measure, trials: Collection[str]) -> Measure:
+    counts = {
+        side: np.array([name in trials for name in names], dtype=bool) for side, names in one.trials.items()
+    }
+    return replace(
+        one,
+        values={side: values[counts[side]] for side, values in one.values.items()},
+        trials={side: tuple(name for name in names if name in trials) for side, names in one.trials.items()},
+    )

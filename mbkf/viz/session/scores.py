@@ -1,0 +1,112 @@
+"""The part of a session's report on scores: Gait Profile Score, Movement Analysis Profile, gait deviation index."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+
+from mbkf.io.norms import Band, Norms
+from mbkf.study.session.means import Mean, half_width
+from mbkf.study.session.records import MovementGroup
+from mbkf.study.session.scores import GPS, GaitScores, gait_scores
+from mbkf.viz.markup import paragraph, table
+from mbkf.viz.session.profile_chart import ProfileRow, profile_chart
+from mbkf.viz.session.terms import Terms
+from mbkf.viz.svg import number
+
+GDI = "GDI"
+
+
+@dataclass(frozen=True)
+class ScoreLine:
+    """A row of the table: a score of right, left and both, and of the norms' own persons."""
+
+    title: str
+    right: Mean | None
+    left: Mean | None
+    both: Mean | None = None
+    norm: Band | None = None
+
+
+def scores_part(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
+    """Heading, profile and table; an empty text without norms that have angles of this kind of gait.
+
+    Args:
+        gait: The gait.
+        norms: The laboratory's; None without.
+        terms: The report's words.
+    """
+    scores = None if norms is None else gait_scores(gait, norms)
+    if norms is None or scores is None:
+        return ""
+    lines = _lines(gait, scores, norms, terms)
+    rows = [
+        (
+            f"{one.title}, {terms.unit('deg')}",
+            _text(one.right),
+            _text(one.left),
+            _text(one.both),
+            _norm(one.norm),
+        )
+        for one in lines
+    ]
+    right, left = (None if side is None else side.gdi for side in scores.sides)
+    if right is not None or left is not None:
+        rows.append((terms.score(GDI), _text(right), _text(left), "–", "100 ± 10"))
+    note = terms.say("scores_note", norms.name)
+    if scores.lacking:
+        note += " " + terms.say("scores_lacking", ", ".join(terms.score(name) for name in scores.lacking))
+    heads = ["", *(terms.say(word) for word in ("right", "left", "both", "norm"))]
+    drawn = [ProfileRow(one.title, _pair(one.right), _pair(one.left), _band(one.norm)) for one in lines]
+    return "".join(
+        (
+            f"<h3>{escape(terms.say('scores'))}</h3>",
+            paragraph(note),
+            profile_chart(terms.say("profile"), drawn, terms.unit("deg")),
+            table(heads, rows),
+        )
+    )
+
+
+def _lines(gait: MovementGroup, scores: GaitScores, norms: Norms, terms: Terms) -> list[ScoreLine]:
+    """A line for each variable, and one for the GPS."""
+    right, left = scores.sides
+    names = list(next(side.gvs for side in scores.sides if side is not None))
+
+    def norm(name: str) -> Band | None:
+        return norms.measures.get((gait.kind.value, name))
+
+    lines = [
+        ScoreLine(
+            terms.score(name),
+            None if right is None else right.gvs[name],
+            None if left is None else left.gvs[name],
+            norm=norm(name),
+        )
+        for name in names
+    ]
+    own = (None if right is None else right.gps, None if left is None else left.gps)
+    return [*lines, ScoreLine(terms.score(GPS), *own, scores.gps, norm(GPS))]
+
+
+def _pair(mean: Mean | None) -> tuple[float, float] | None:
+    """A score with half of its interval."""
+    return None if mean is None else (float(mean.mean[0]), float(half_width(mean)[0]))
+
+
+def _band(norm: Band | None) -> tuple[float, float] | None:
+    return None if norm is None else (float(norm.mean[0]), float(norm.sd[0]))
+
+
+def _text(mean: Mean | None) -> str:
+    pair = _pair(mean)
+    return "–" if pair is None else _plus_minus(*pair)
+
+
+def _norm(norm: Band | None) -> str:
+    band = _band(norm)
+    return "–" if band is None else _plus_minus(*band)
+
+
+def _plus_minus(value: float, spread: float) -> str:
+    return f"{number(value, 1)} ± {number(spread, 1)}"
