@@ -1,7 +1,7 @@
 """Norms from the sessions of eight persons of which four do not belong, built by the command.
 
-Made walks of four persons belong. The patient in view, a person who turns, one who is reconstructed with another
-person's body, and one whose age is not stated do not.
+Made walks of four persons belong, without plates. The patient in view, a person who turns, one who is reconstructed with another
+person's size, and one whose age is not stated do not.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def _person(folder: Path, name: str, seed: int) -> None:
     subject, made = mbkf.synthesise(
         motion, seconds=None if motion == "turn" else SECONDS, seed=seed, varied=True
     )
-    trial = made.trial
+    trial = replace(made.trial, plates=())
     if name == "stranger":
         trial = replace(trial, markers=replace(trial.markers, positions_m=1.15 * trial.markers.positions_m))
     settings = mbkf.ReconstructSettings(filter="kinematic")

@@ -63,7 +63,7 @@ def made_norms() -> Norms:
     }
     n = np.arange(459)
     features: Array = np.sqrt(2.0 / 459.0) * np.cos(np.pi * np.outer(np.arange(1, 16), n + 0.5) / 459.0)
-    gdi = GdiBasis(VARIABLES, features, 0.1 * np.arange(15), 4.443685139, 0.223457646)
+    gdi = GdiBasis(VARIABLES, features, np.linspace(0.0, 1.4, 15), 4.443685139, 0.223457646)
     return Norms("made", bands, {}, gdi=gdi)
 
 

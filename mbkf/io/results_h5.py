@@ -19,6 +19,7 @@ from mbkf.io.contacts import foot_sources
 from mbkf.io.dimensions import AXES, WORLD, Unit, numbered
 from mbkf.io.files_read import check_input
 from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
+from mbkf.io.inertia import SegmentInertia
 from mbkf.io.quantities import Quantity
 from mbkf.io.quantities_h5 import plain_json, read_record, write_array, write_labels, write_record
 from mbkf.io.results import Reconstruction
@@ -136,4 +137,10 @@ def _subject(table: dict[str, Any], covariance: BodyCovariance | None) -> Subjec
         )
         for entry in table["markers"]
     )
-    return Subject(**{**table, "markers": markers, "covariance": covariance})
+    inertia = {
+        segment: SegmentInertia(
+            **own | {key: read_only(own[key]) for key in ("centre_shift_m", "centre_shift_sd_m")}
+        )
+        for segment, own in table.get("inertia", {}).items()
+    }
+    return Subject(**{**table, "markers": markers, "inertia": inertia, "covariance": covariance})

@@ -9,6 +9,7 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.findings import Finding, not_judged
+from mbkf.io.inertia import SegmentInertia
 from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import ARRAYS, QUANTITIES, Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
@@ -202,3 +203,16 @@ def test_keys_are_those_of_older_files(tmp_path):
     back = read_h5(tmp_path / "motion.h5")
     assert back.unobserved_dofs == r.unobserved_dofs
     np.testing.assert_array_equal(back.foot_contact, r.foot_contact)
+
+
+def test_the_inertia_of_a_persons_segments_comes_back(tmp_path):
+    own = SegmentInertia(1.2, np.array([0.01, 0.0, -0.02]), 0.1, np.array([0.003, 0.003, 0.004]))
+    made = made_up()
+    write_h5(
+        dataclasses.replace(made, subject=dataclasses.replace(made.subject, inertia={"pelvis": own})),
+        tmp_path / "motion.h5",
+    )
+    found = read_h5(tmp_path / "motion.h5").subject.inertia["pelvis"]
+    assert (found.mass_factor, found.mass_factor_sd) == (1.2, 0.1)
+    np.testing.assert_array_equal(found.centre_shift_m, own.centre_shift_m)
+    np.testing.assert_array_equal(found.centre_shift_sd_m, own.centre_shift_sd_m)
