@@ -1,7 +1,7 @@
 """Norms from the sessions of eight persons of which four do not belong, built by the command.
 
-Made walks of four persons belong, without plates. The patient in view, a person who turns, one who is reconstructed with another
-person's size, and one whose age is not stated do not.
+Made walks of four persons belong, without plates. The patient in view, a person who turns, one who is reconstructed with
+another person's size, and one whose age is not stated do not.
 """
 
 from __future__ import annotations
