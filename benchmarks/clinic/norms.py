@@ -1,6 +1,6 @@
 """Norms from the sessions of eight persons of which four do not belong, built by the command.
 
-Made walks of four persons belong, without plates. The patient in view, a person who turns, one who is reconstructed with
+Made walks of four persons belong, without plates. The patient in view, a person who turns, one reconstructed with
 another person's size, and one whose age is not stated do not.
 """
 
