@@ -278,6 +278,7 @@ def warn_of_markers(subject: Subject) -> None:
 
 
 def _print(report: dict[str, Any], protocol: str, out: str, advice: str) -> None:
+    from mbkf.scaling.verdict import APPROXIMATED_KEY
     from mbkf.study.scaling.report import scaled_from
     from mbkf.trial.preparation.coverage import listed
 
@@ -312,6 +313,8 @@ def _print(report: dict[str, Any], protocol: str, out: str, advice: str) -> None
         _print_inertia(console, report["inertia"])
     for line in scaled_from(report):
         console.print(line, soft_wrap=True)
+    for found in report.get(APPROXIMATED_KEY, ()):
+        console.print(f"note: {found}", soft_wrap=True)
     for found in report.get("axes", ()):
         console.print(f"note: {found['capture']}: {found['note']}", soft_wrap=True)
     if advice:

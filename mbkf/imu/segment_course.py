@@ -8,6 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.imu.frames import conjugate, multiply
+from mbkf.model.description import Segment
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
 
@@ -37,6 +38,14 @@ def configurations(body: HumanModel, segments: Sequence[str], course: Array) -> 
         if joint.kind in ("free", "spherical"):
             motion[:, joint.q.stop - 4 : joint.q.stop] = turn
         elif joint.kind == "hinge":
-            R = quaternion_matrices(turn)
-            motion[:, joint.q.start] = np.arctan2(R[:, 0, 2], R[:, 0, 0])
+            motion[:, joint.q.start] = _hinge_angle(turn, body.description.segment(name))
     return motion
+
+
+def _hinge_angle(turn: Array, segment: Segment) -> Array:
+    """(T,) angle of a hinge in turns (T, 4): of the x axis about y, else of the part about the hinge's axis."""
+    if segment.axis is None and segment.axes == "y":
+        R = quaternion_matrices(turn)
+        return np.arctan2(R[:, 0, 2], R[:, 0, 0])
+    axis = np.eye(3)["xyz".index(segment.axes)] if segment.axis is None else segment.axis
+    return 2.0 * np.arctan2(turn[:, :3] @ axis, turn[:, 3])

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.model.description import JOINT_DOF, BodyDescription, Segment
 
 MASS_TOLERANCE = 0.01
@@ -74,6 +75,8 @@ def _joint(segment: Segment) -> Iterator[str]:
     kind, dof, axes = f"{segment.joint} joint", JOINT_DOF[segment.joint], segment.axes
     if len(axes) != _AXES[segment.joint] or len(set(axes)) != len(axes) or set(axes) - set("xyz"):
         yield f"a {kind} has {_AXES[segment.joint]} axes out of x, y and z, not '{axes}'"
+    if segment.axis is not None and (segment.joint != "hinge" or not _is_nearest(segment.axis, axes)):
+        yield f"axis is the unit vector of an oblique hinge, nearest to the axis '{axes}'"
     for name in ("origin_m", "com_m", "inertia_kg_m2", "products_kg_m2"):
         values = getattr(segment, name)
         if values.shape != (3,) or not np.isfinite(values).all():
@@ -88,6 +91,12 @@ def _joint(segment: Segment) -> Iterator[str]:
     limits = segment.limits_rad
     if limits.shape != (dof, 2) or not (limits[:, 0] < limits[:, 1]).all():
         yield f"limits_deg needs {dof} pairs [least, greatest] for its {kind}"
+
+
+def _is_nearest(axis: Array, letter: str) -> bool:
+    """True for a unit vector whose largest component is along an axis."""
+    unit = axis.shape == (3,) and abs(np.linalg.norm(axis) - 1.0) < ROUNDING
+    return bool(unit and "xyz"[int(np.argmax(axis))] == letter and axis.max() >= -axis.min())
 
 
 def _inertia(segment: Segment) -> Iterator[str]:

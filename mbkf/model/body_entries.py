@@ -9,9 +9,9 @@ REMARKS = ("source", "_printed_m", "_printed_kg_m2", "_correction")
 SEGMENT_KEYS = (
     "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
     "posture_sd_deg", "acceleration_sd", "movement_sd", "limits_deg",
-    "products_kg_m2",
+    "products_kg_m2", "axis",
 )  # fmt: skip
-OPTIONAL = ("axes", "limits_deg", "products_kg_m2")
+OPTIONAL = ("axes", "limits_deg", "products_kg_m2", "axis")
 """Entries of a segment that may be left out."""
 
 ANGLE_KEYS = ("name", "axis", "sign", "positive", "opensim", "title", "zero_sd_deg", "opensim_zero_deg")
@@ -20,7 +20,7 @@ KNOWN = {
     "": (
         "name", "reference_mass_kg", "reference_height_m", "scale_factors", "split_factors", "roles", "segment",
         "landmark", "sole", "clinical_joint", "shape", "bearing", "joint_centre", "skin", "level",
-        "girdle", "left_sole",
+        "girdle", "left_sole", "approximation",
     ),
     "segment": SEGMENT_KEYS,
     "roles": ("root", "feet", "toes", "leading", "steady", "knees"),
@@ -40,6 +40,7 @@ KNOWN = {
     "level": (
         "name", "above", "position_m", "sd_mm", "part_mass_kg", "part_com_m", "part_inertia_kg_m2", "opensim",
     ),
+    "approximation": ("segment", "rms_mm", "text"),
     "girdle": ("segment", "mean_mm", "sd_mm", "held_mm"),
 }  # fmt: skip
 """Entries of a body's file."""

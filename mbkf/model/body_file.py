@@ -25,6 +25,7 @@ from mbkf.model.body_entries import KNOWN, OPTIONAL, REMARKS, SEGMENT_KEYS
 from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
 from mbkf.model.description import (
     JOINT_DOF,
+    Approximation,
     Bearing,
     BodyDescription,
     Landmark,
@@ -137,6 +138,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         joint_centres=joint_centres(table.get("joint_centre", []), names, path),
         skin=segment_skin(table.get("skin", []), names, path),
         levels=trunk_levels(table.get("level", []), segments, path),
+        approximations=_approximations(table.get("approximation", []), segments, path),
         girdle=shoulder_girdle(table.get("girdle", []), segments, path),
         text=kept,
     )
@@ -177,6 +179,7 @@ def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Seg
             acceleration_sd=read_only(entry["acceleration_sd"]),
             movement_sd=read_only(entry["movement_sd"]),
             limits_rad=_limits(entry),
+            axis=read_only(entry["axis"]) if "axis" in entry else None,
         )
     except (TypeError, ValueError) as error:
         raise FileFormatError(path, f"segment {entry['name']}: {error}") from error
@@ -311,7 +314,7 @@ def _clinical(
     missing = [segment.name for segment in segments if segment.name not in found]
     if missing:
         raise FileFormatError(path, f"no clinical joint has the distal segment {', '.join(missing)}")
-    return tuple(found[segment.name] for segment in segments)
+    return tuple(found[one.name] if one.axis is None else found[one.name].about(one.axis) for one in segments)
 
 
 def _shapes(
@@ -350,3 +353,17 @@ def _bearings(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path
             place = place * [1.0, -1.0, 1.0]
             found.setdefault(mirrored(name), Bearing(mirrored(name), other, read_only(place), *size))
     return found
+
+
+def _approximations(
+    entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
+) -> tuple[Approximation, ...]:
+    """Joints that another program's model has in another form."""
+    return tuple(
+        Approximation(
+            _known(one["segment"], segments, f"{path}, approximation"),
+            1e-3 * float(one["rms_mm"]),
+            str(one["text"]),
+        )
+        for one in entries
+    )

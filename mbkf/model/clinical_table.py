@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +28,7 @@ class Angle:
         positive: What a positive value means, in words.
         opensim: Coordinate of the full-body model of Rajagopal et al. (2016) it compares with, "" where there is none.
         opensim_zero_deg: Value of OpenSim's coordinate where this one is 0.
+        oblique: Unit vector that it turns about in place of ``axis``; None where that is the axis itself.
     """
 
     name: str
@@ -38,11 +39,13 @@ class Angle:
     title: str = ""
     zero_sd_deg: float = 0.0
     opensim_zero_deg: float = 0.0
+    oblique: tuple[float, float, float] | None = None
 
     @property
     def direction(self) -> Array:
         """(3,) unit vector about (or along) which the coordinate is positive."""
-        return self.sign * np.eye(3)["xyz".index(self.axis)] + 0.0
+        axis = np.eye(3)["xyz".index(self.axis)] if self.oblique is None else np.array(self.oblique)
+        return self.sign * axis + 0.0
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,11 @@ class ClinicalJoint:
     def coordinates(self) -> tuple[Angle, ...]:
         """Angles, then translations."""
         return self.angles + self.translations
+
+    def about(self, axis: Array) -> ClinicalJoint:
+        """The joint, a hinge, with its angle about an oblique axis (3,)."""
+        oblique = _place(axis.tolist())
+        return replace(self, angles=tuple(replace(angle, oblique=oblique) for angle in self.angles))
 
 
 def clinical_joints(entries: Iterable[TomlTable]) -> tuple[ClinicalJoint, ...]:

@@ -39,6 +39,8 @@ class Segment:
         movement_sd: (dof,) standard deviation of the acceleration of each dof over a movement, m/s² or rad/s².
         limits_rad: (dof, 2) least and greatest rotation about each axis; ±inf without a limit.
         products_kg_m2: (3,) entries xy, xz and yz of the inertia matrix; 0 where the axes are principal ones.
+        axis: (3,) unit vector that an oblique hinge turns about, nearest to the axis of ``axes``; None where a joint
+            turns about ``axes`` themselves.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Segment:
     movement_sd: Array
     limits_rad: Array
     products_kg_m2: Array = field(default_factory=lambda: read_only(np.zeros(3)))
+    axis: Array | None = None
 
     @property
     def inertia_matrix_kg_m2(self) -> Array:
@@ -238,6 +241,21 @@ class ShoulderGirdle:
     held_m: Array
 
 
+@dataclass(frozen=True)
+class Approximation:
+    """A joint of another program's model that the body has in a simpler form.
+
+    Attributes:
+        segment: The segment whose markers it displaces.
+        rms_m: Distance by which it does, RMS.
+        text: The approximation in words.
+    """
+
+    segment: str
+    rms_m: float
+    text: str
+
+
 @dataclass(frozen=True, eq=False)
 class BodyDescription:
     """A reference body; equal to itself only, so that results for it can be cached.
@@ -258,6 +276,7 @@ class BodyDescription:
         skin: Movement of the skin, by segment; that of other segments does not depend on the posture.
         levels: Levels of the spine at which the trunk's net moment is stated, from the highest one down.
         girdle: Shoulders that are displaced as the arms are raised.
+        approximations: Joints that another program's model has in another form.
         text: The file it was read from, word for word; "" for the bodies that come with mbkf.
     """
 
@@ -276,6 +295,7 @@ class BodyDescription:
     skin: dict[str, SegmentSkin]
     levels: tuple[TrunkLevel, ...] = ()
     girdle: tuple[ShoulderGirdle, ...] = ()
+    approximations: tuple[Approximation, ...] = ()
     text: str = ""
 
     @property

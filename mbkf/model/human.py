@@ -181,11 +181,13 @@ class HumanModel(Body):
         for axis in segment.axes[:-1]:
             parent_id = model.addJoint(parent_id, turning[axis](), placement, f"{segment.name}_{axis}")
             placement = pin.SE3.Identity()
-        if segment.axes:
-            kind = turning[segment.axes[-1]]
+        if segment.axis is not None:
+            joint = pin.JointModelRevoluteUnaligned(segment.axis)
+        elif segment.axes:
+            joint = turning[segment.axes[-1]]()
         else:
-            kind = pin.JointModelFreeFlyer if segment.joint == "free" else pin.JointModelSpherical
-        joint_id = model.addJoint(parent_id, kind(), placement, segment.name)
+            joint = pin.JointModelFreeFlyer() if segment.joint == "free" else pin.JointModelSpherical()
+        joint_id = model.addJoint(parent_id, joint, placement, segment.name)
         model.appendBodyToJoint(joint_id, self._inertia(segment), pin.SE3.Identity())
         q, v = slice(first_q, model.nq), slice(first_v, model.nv)
         return SegmentJoint(segment.name, segment.joint, segment.axes, joint_id, q, v)

@@ -92,6 +92,8 @@ def _add_joints(body: ET.Element, segment: Segment) -> None:
     elif segment.joint == "spherical":
         ET.SubElement(body, "joint", name=segment.name, type="ball")
     directions = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}
+    if segment.axis is not None:
+        directions[segment.axes] = _numbers(segment.axis)
     for axis in segment.axes:
         ET.SubElement(body, "joint", name=f"{segment.name}_{axis}", type="hinge", axis=directions[axis])
 

@@ -13,6 +13,7 @@ from mbkf.conventions import TomlTable
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.osim import read_osim
 from mbkf.io.toml import toml_text
+from mbkf.model.osim_hinges import with_fixed_hinges
 from mbkf.model.osim_tree import osim_root_angles, osim_tree, osim_zeros_deg
 from mbkf.model.urdf_body import body_table, read_side, side_path
 from mbkf.model.urdf_segments import urdf_segments
@@ -20,9 +21,9 @@ from mbkf.model.urdf_segments import urdf_segments
 REQUIRED = ("reference_height_m", "sole")
 """Entries that every side file has."""
 
-FEET, TOES = ("calcn_r", "calcn_l"), ("toes_r", "toes_l")
+FEET, TOES = (("calcn_r", "calcn_l"), ("talus_r", "talus_l")), ("toes_r", "toes_l")
 KNEES = (("femur_r", "tibia_r"), ("femur_l", "tibia_l"))
-"""Names of OpenSim's common models."""
+"""Names of OpenSim's common models; the heel is part of the talus where the joint between them is locked."""
 
 
 def osim_body_text(path: Path) -> str:
@@ -34,9 +35,11 @@ def osim_body_text(path: Path) -> str:
     """
     model = read_osim(path, markers_needed=False)
     try:
-        tree = osim_tree(model)
         side = read_side(path, REQUIRED, "OpenSim")
-        found = urdf_segments(tree, side.pop("names", {}))
+        model, approximations = with_fixed_hinges(model, side.pop("fitted_deg", {}))
+        tree = osim_tree(model)
+        naming = side.pop("names", {})
+        found = urdf_segments(tree, naming)
     except (InvalidInput, ValueError) as error:
         raise FileFormatError(path, str(error)) from error
     names = [one["name"] for one in found.segments]
@@ -50,6 +53,10 @@ def osim_body_text(path: Path) -> str:
         for angle in joint["angle"]:
             if angle["name"] in zeros:
                 angle["opensim_zero_deg"] = zeros[angle["name"]]
+    side["approximation"] = [
+        {"segment": naming.get(one.segment, one.segment), "rms_mm": 1e3 * one.rms_m, "text": one.text}
+        for one in approximations
+    ]
     title = f"{path.name} with {side_path(path).name}"
     return toml_text(title, body_table(str(side.pop("name", tree.name)), found, side, side_path(path)))
 
@@ -60,12 +67,13 @@ def _roles(names: list[str], path: Path) -> TomlTable:
     Raises:
         FileFormatError: The feet are not found.
     """
-    if not set(FEET) <= set(names):
+    feet = next((list(pair) for pair in FEET if set(pair) <= set(names)), None)
+    if feet is None:
         raise FileFormatError(
             side_path(path),
-            f"lacks roles: no segments are named {' and '.join(FEET)}; state [roles] feet; segments are "
+            f"lacks roles: no segments are named {' and '.join(FEET[0])}; state [roles] feet; segments are "
             f"{', '.join(names)}",
         )
     knees = [list(pair) for pair in KNEES if set(pair) <= set(names)]
     toes = list(TOES) if set(TOES) <= set(names) else []
-    return {"feet": list(FEET), **({"toes": toes} if toes else {}), **({"knees": knees} if knees else {})}
+    return {"feet": feet, **({"toes": toes} if toes else {}), **({"knees": knees} if knees else {})}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -115,7 +116,8 @@ def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Prot
     """Reads a protocol by its name, from a TOML file of the same form, or an OpenSim model that is the body itself.
 
     Markers of such a model (``.osim``) are where it has them: those that it states as not fixed within 60 mm, the
-    others within 10 mm (standard deviations).
+    others within 10 mm (standard deviations). The noise of those on a segment whose joint the body has in a simpler
+    form includes the distance that this leaves.
 
     Args:
         name: The protocol's name, or its file.
@@ -139,11 +141,15 @@ def _of_model(path: Path, body: BodyDescription) -> Protocol:
     from mbkf.io.osim import read_osim
 
     model = read_osim(path)
+    displaced = {one.segment: one.rms_m for one in body.approximations}
     markers = []
     for one in (one for one in model.markers if one.name in body.landmarks):
         place = body.landmarks[one.name]
         kind = "technical" if one.fixed is False else "anatomical"
-        spread, noise = DEFAULT_PLACEMENT_SD_M[kind], DEFAULT_NOISE_M[kind]
+        spread, noise = (
+            DEFAULT_PLACEMENT_SD_M[kind],
+            math.hypot(DEFAULT_NOISE_M[kind], displaced.get(place.segment, 0.0)),
+        )
         markers.append(ProtocolMarker(one.name, place.segment, place.position_m, kind, spread, noise))
     if not markers:
         raise FileFormatError(

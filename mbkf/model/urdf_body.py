@@ -46,7 +46,7 @@ SPREADS: dict[str, dict[str, list[float]]] = {
 
 SIDE_KNOWN = {
     **KNOWN,
-    "": (*(key for key in KNOWN[""] if key != "reference_mass_kg"), "names"),
+    "": (*(key for key in KNOWN[""] if key != "reference_mass_kg"), "names", "fitted_deg"),
     "segment": OVERRIDES,
 }
 """Entries of a side file."""

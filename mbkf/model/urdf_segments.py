@@ -141,7 +141,7 @@ def _planned(
     for k, joint in enumerate(chain):
         turn = turn @ joint.placement.rotation if k else turn
         if joint.kind in HINGES:
-            letter, sign = _axis(joint, turn)
+            letter, sign = _axis(joint, turn, len(chain))
             axes, signs = axes + letter, [*signs, sign]
         if joint is not chain[-1]:
             light.append(tree.inertias[joint.child].se3Action(pin.SE3(turn, np.zeros(3))))
@@ -157,6 +157,8 @@ def _planned(
         return _Planned(last, turn, {**entry, "joint": "spherical"}, light, _ball(first, parent, name))
     entry |= {"joint": KIND_BY_HINGES[len(chain)], "limits_deg": _limits(chain, axes, signs)}
     entry |= {"axes": axes} if len(chain) < 3 else {}
+    if len(chain) == 1 and not _is_along(axis := signs[0] * turn @ first.axis):
+        entry["axis"] = (axis / np.linalg.norm(axis)).tolist()
     return _Planned(last, turn, entry, light, _hinged(chain, axes, signs, parent, name))
 
 
@@ -174,16 +176,26 @@ def _chain(tree: UrdfTree, first: UrdfJoint) -> list[UrdfJoint]:
     return chain
 
 
-def _axis(joint: UrdfJoint, turn: Array) -> tuple[str, int]:
-    """The axis of a hinge among those of the root, and its sense."""
+def _axis(joint: UrdfJoint, turn: Array, hinges: int) -> tuple[str, int]:
+    """The axis among those of the root that a hinge's is nearest to, and its sense.
+
+    Raises:
+        ValueError: Several hinges meet at its point, and it is oblique.
+    """
     axis = turn @ joint.axis
     largest = int(np.argmax(np.abs(axis)))
-    if np.linalg.norm(np.delete(axis, largest)) > SAME_AXIS_RAD:
+    if hinges > 1 and not _is_along(axis):
         raise ValueError(
             f"joint {joint.name} turns about {np.round(axis, 4).tolist()} in the axes of the root; with all joints at "
-            "zero a body's hinges turn about the root's x, y or z: turn the posture at zero, or fix the joint"
+            "zero several hinges at one point turn about the root's x, y and z: turn the posture at zero, or fix the "
+            "joint"
         )
     return "xyz"[largest], int(np.sign(axis[largest]))
+
+
+def _is_along(axis: Array) -> bool:
+    """True for an axis of the root."""
+    return bool(np.sort(np.abs(axis))[:2] @ np.sort(np.abs(axis))[:2] <= SAME_AXIS_RAD**2)
 
 
 def _limits(chain: list[UrdfJoint], axes: str, signs: list[int]) -> list[list[float]]:

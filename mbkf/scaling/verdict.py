@@ -34,6 +34,10 @@ walk, which are exchanged, have 0.31; no pair of fifteen other captures has less
 DOUBTS_KEY = "doubts"
 """Key of a subject's report for doubts about the fit, as sentences; absent without any."""
 
+APPROXIMATED_KEY = "approximated"
+"""Key of a subject's report for joints that its body has in a simpler form than the model it comes from, as sentences.
+"""
+
 
 @dataclass(frozen=True)
 class FitQuality:

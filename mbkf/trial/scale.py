@@ -22,7 +22,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.records import ScalingSettings
 from mbkf.scaling.stature import stature_doubts
-from mbkf.scaling.verdict import DOUBTS_KEY
+from mbkf.scaling.verdict import APPROXIMATED_KEY, DOUBTS_KEY
 from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, corrected_axes
 from mbkf.trial.checks.unscaled_mass import PLATES_KEY, plate_notes, stated_mass_notes
 from mbkf.trial.persons import check_one_person
@@ -198,6 +198,8 @@ def _scaled(
     if doubts:
         before = subject.report.get(DOUBTS_KEY)
         extra[DOUBTS_KEY] = [*(before if isinstance(before, list) else ()), *doubts]
+    if protocol.body.approximations:
+        extra[APPROXIMATED_KEY] = [one.text for one in protocol.body.approximations]
     if chosen.inferred is not None:
         extra[INFERRED_KEY] = {"told": chosen.inferred.line, "doubtful": chosen.inferred.doubts}
     return replace(subject, report={**subject.report, **extra})

@@ -111,3 +111,14 @@ def test_hinges_about_any_axis():
     rotations, _ = model.placements(model.integrate(model.neutral(), step))
     np.testing.assert_allclose(rotations[joint.joint_id][:, 0], [1.0, 0.0, 0.0], atol=1e-12)
     assert rotations[joint.joint_id][2, 1] == pytest.approx(np.sin(0.3))
+
+
+@pytest.mark.parametrize("axis", [[0.6, 0.8, 0.1], [0.8, 0.6, 0.0], [0.0, -1.0, 0.0], [0.8, 0.6]])
+def test_an_oblique_axis_is_a_unit_vector_nearest_to_its_letter(axis):
+    check_body(with_segment("right_toes", axis=np.array([0.6, 0.8, 0.0])))
+    with pytest.raises(
+        ValueError, match="right_toes: axis is the unit vector of an oblique hinge, nearest to"
+    ):
+        check_body(with_segment("right_toes", axis=np.array(axis)))
+    with pytest.raises(ValueError, match="axis is the unit vector of an oblique hinge"):
+        check_body(with_segment("neck", axis=np.array([0.6, 0.8, 0.0])))

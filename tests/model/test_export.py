@@ -14,6 +14,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.mjcf import to_mjcf
 from mbkf.model.primitive_shapes import primitives
 from mbkf.model.urdf import MARKER_PREFIX, to_urdf
+from tests.oblique_hinges import oblique_body
 
 POSES = 8
 MARKERS = (
@@ -25,7 +26,7 @@ MARKERS = (
 @pytest.fixture(scope="module")
 def model():
     factors = {"trunk_height": 1.07, "right_thigh": 0.94, "left_foot_width": 1.1, "left_foot_length": 0.9}
-    return HumanModel.scaled(factors, 68.3)
+    return HumanModel.scaled(factors, 68.3, oblique_body())
 
 
 @pytest.fixture(scope="module")

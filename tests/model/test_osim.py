@@ -8,6 +8,7 @@ from mbkf.io.subject import SubjectMarker
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.model.osim import osim_coordinates, osim_files, osim_forces, to_osim, to_osim_axes
+from tests.oblique_hinges import oblique_body
 from tests.osim_reading import OsimModel, vector
 
 MARKERS = (
@@ -20,7 +21,7 @@ MARKERS = (
 @pytest.fixture(scope="module")
 def model():
     factors = {"trunk_height": 1.07, "right_thigh": 0.94, "left_foot_width": 1.1, "left_foot_length": 0.9}
-    return HumanModel.scaled(factors, 68.3)
+    return HumanModel.scaled(factors, 68.3, oblique_body())
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,7 @@
 """An OpenSim model as a body of ours: our own exported one comes back, with its markers and its coordinates."""
 
 import re
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -97,8 +98,35 @@ def test_a_missing_side_file_or_entry_is_named(tmp_path):
 def test_a_joint_without_a_place_in_a_body_is_refused_with_the_file(tmp_path):
     path = tmp_path / "held.osim"
     path.write_text(mechanism(), encoding="utf-8")
+    side_path(path).write_text("reference_height_m = 1.75\n" + SOLE, encoding="utf-8")
     with pytest.raises(FileFormatError, match=r"held\.osim: .*'patella' follows 'knee'"):
         load_body(path)
+
+
+def test_a_joint_that_slides_is_a_hinge_with_its_residual_stated(tmp_path):
+    """Toes that also shift by 0.008 m/rad² θ²; markers on them get the residual as noise."""
+    path = written(tmp_path, ROLES + SOLE)
+    before = {one.name: one.noise_m for one in load_protocol(path).markers}
+    document = ET.fromstring(path.read_text(encoding="utf-8"))
+    axis = document.find(".//CustomJoint[@name='mtp_r']//TransformAxis[@name='translation1']")
+    axis.find("coordinates").text = "mtp_angle_r"
+    axis.remove(axis.find("Constant"))
+    ET.SubElement(ET.SubElement(axis, "PolynomialFunction"), "coefficients").text = "0.008 0 0"
+    path.write_text(ET.tostring(document, encoding="unicode"), encoding="utf-8")
+    protocol = load_protocol(path)
+    (note,) = protocol.body.approximations
+    assert note.segment == "right_toes" and 0.5e-3 < note.rms_m < 5e-3
+    assert note.text.startswith("mtp_r turns about a fixed axis")
+    moved = {one.name: one.segment for one in protocol.markers if one.noise_m != before[one.name]}
+    assert set(moved.values()) == {"right_toes"}
+    name = min(moved)
+    after = next(one.noise_m for one in protocol.markers if one.name == name)
+    assert after**2 == pytest.approx(before[name] ** 2 + note.rms_m**2)
+    side_path(path).write_text(
+        "reference_height_m = 1.75\nfitted_deg = {mtp_angle_r = [0.0, 20.0]}\n" + ROLES + SOLE,
+        encoding="utf-8",
+    )
+    assert load_body(path).approximations[0].rms_m < 0.2 * note.rms_m
 
 
 def test_its_markers_are_a_protocol(tmp_path):

@@ -23,11 +23,13 @@ def arm():
         link("s1", 1e-4, (1e-7,) * 3, com="0 0 0"), link("s2", None), link("arm", 2.0, com="0 0.15 0"),
         link("w1", None), link("hand", 0.4, (0.01, 0.02, 0.02), products, "0.02 0 0.05", "0.3 0.2 0.1"),
         link("tool", 0.3, products=products, com="0.1 0 0", turn="0.5 0 0.2"),
+        link("thumb", 0.1, com="0 0.02 0.03"),
         joint("shoulder_y", "pelvis", "s1", at="0 -0.2 0.4", axis="0 0 -1", turn=f"{QUARTER} 0 0"),
         joint("shoulder_x", "s1", "s2", axis="1 0 0", turn=f"0 0 {HALF_TURN}"),
         joint("shoulder_z", "s2", "arm", axis="0 -1 0"),
         joint("wrist_z", "arm", "w1", at="0 0.3 0", axis="0 1 0"),
         joint("wrist_x", "w1", "hand", axis="1 0 0"),
+        joint("thumb", "hand", "thumb", at="0.02 0.01 0", axis="-0.5 0.3 0.6", turn="0.4 -0.2 0.7"),
         joint("grip", "hand", "tool", "fixed", at="0.01 0.02 0.03", turn="0.4 0.5 0.6"),
     ]  # fmt: skip
 
@@ -47,6 +49,7 @@ def test_joints_of_one_point_become_one(model):
     assert kinds["arm"] == ("pelvis", "spherical", "")
     assert kinds["hand"] == ("arm", "universal", "zx")
     assert kinds["right_shank"] == ("right_thigh", "hinge", "y")
+    assert kinds["thumb"] == ("hand", "hinge", "y")
     assert "tool" not in kinds and "right_sensor" not in kinds
     order = {one.distal: one.order for one in model.description.clinical_joints}
     assert (order["arm"], order["hand"]) == ("yxz", "zx")
@@ -85,7 +88,7 @@ def turned(angle, nq):
 
 
 def test_the_mass_is_that_of_all_links(model):
-    assert model.mass_kg == pytest.approx(20.0 + 2 * 6.5 + 2.0001 + 0.4 + 0.3, abs=1e-12)
+    assert model.mass_kg == pytest.approx(20.0 + 2 * 6.5 + 2.0001 + 0.4 + 0.3 + 0.1, abs=1e-12)
 
 
 def test_limits_follow_the_sense_of_the_axis(tmp_path):
@@ -123,7 +126,8 @@ def test_a_joint_of_the_type_spherical_turns_freely(tmp_path):
     ("parts", "said"),
     [
         ([link("p", None), joint("m", "pelvis", "p")], "link p has no mass"),
-        ([link("p"), joint("m", "pelvis", "p", axis="1 1 0")], r"joint m turns about \[0.7071, 0.7071, 0.0\]"),
+        ([link("a", None), link("p"), joint("m", "pelvis", "a"), joint("n", "a", "p", axis="1 0 1")],
+         r"joint n turns about \[0.7071, 0.0, 0.7071\]"),
         ([link("p"), joint("m", "pelvis", "p", "floating")], "joint m is floating"),
         ([link("a", None), link("p"), joint("m", "pelvis", "a"), joint("n", "a", "p")], "the joints m, n meet"),
         ([link("p", 1.0, (0.1, 0.1, 0.5)), joint("m", "pelvis", "p")], "segment p: a rigid body cannot have"),

@@ -14,6 +14,7 @@ import numpy as np
 
 from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.io.subject import Subject
+from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
 
 NAME = "markers at the subject's places"
@@ -35,13 +36,13 @@ def place_of_markers_finding(before: Subject, after: Subject, names: Sequence[st
         names: Markers of the trial.
     """
     body = reference_body(before)
-    legs = {*body.roles.legs, *body.roles.feet, *body.roles.toes}
+    side_of = sides(body)
     old = {marker.name: marker for marker in before.markers}
     found: dict[str, list[float]] = {"right": [], "left": []}
     for marker in after.markers:
-        if marker.name in names and marker.segment in legs:
+        if marker.name in names and marker.segment in side_of:
             away_m = float(np.linalg.norm(marker.neutral_m - old[marker.name].neutral_m))
-            found[marker.segment.split("_")[0]].append(away_m / old[marker.name].session_sd_m)
+            found[side_of[marker.segment]].append(away_m / old[marker.name].session_sd_m)
     medians = {side: float(np.median(each)) for side, each in found.items() if len(each) >= LEAST_MARKERS}
     if not medians:
         return not_judged(NAME, "times", BOUND, "needs three markers of a leg")
@@ -51,5 +52,15 @@ def place_of_markers_finding(before: Subject, after: Subject, names: Sequence[st
     )
     remedy = ": check names in the standing trial, and that the subject file belongs to this person"
     finding = judged(NAME, medians[side], USUAL, "times", BOUND, hint, remedy)
-    thigh = next(name for name in body.roles.legs if name.startswith(side))
+    thigh = next(name for name in body.roles.legs if side_of[name] == side)
     return replace(finding, segment=thigh)
+
+
+def sides(body: BodyDescription) -> dict[str, str]:
+    """The side of each segment of the legs, feet and toes, by the foot that it bears or hangs on."""
+    found = dict(zip(body.roles.feet, ("right", "left"), strict=True))
+    for one in reversed(body.segments):  # a leg has the side of the foot that it bears
+        if one.name in found and one.parent in body.roles.legs:
+            found[one.parent] = found[one.name]
+    toes = (one for one in body.segments if one.name in body.roles.toes)
+    return found | {one.name: found[one.parent] for one in toes}

@@ -11,7 +11,7 @@ from mbkf.io.findings import Finding
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.unexplained import UnexplainedLoad
-from mbkf.scaling.verdict import DOUBTS_KEY
+from mbkf.scaling.verdict import APPROXIMATED_KEY, DOUBTS_KEY
 from mbkf.trial.checks.judge import messages
 from mbkf.trial.preparation.coverage import INFERRED_KEY
 from mbkf.trial.results import innovations
@@ -31,6 +31,7 @@ def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruct
     """
     report = subject.report
     inferred, doubts = report.get(INFERRED_KEY), report.get(DOUBTS_KEY)
+    known = report.get(APPROXIMATED_KEY)
     return (
         *messages(tuple(checks)),
         *unexplained_remarks(found.unexplained),
@@ -38,6 +39,7 @@ def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruct
         *innovations.remarks(found),
         *((str(inferred["told"]),) if isinstance(inferred, dict) else ()),
         *(f"the subject file: {doubt}" for doubt in (doubts if isinstance(doubts, list) else ())),
+        *(f"the body: {one}" for one in (known if isinstance(known, list) else ())),
         *found.warnings,
         *supports_remarks(found.contacts),
     )

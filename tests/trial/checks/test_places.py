@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.model.body_file import load_body
 from mbkf.synthesis.person import synthesise_subject
-from mbkf.trial.checks.places import BOUND, place_of_markers_finding
+from mbkf.trial.checks.places import BOUND, place_of_markers_finding, sides
 
 PERSON = synthesise_subject(3)
 NAMES = tuple(marker.name for marker in PERSON.markers)
@@ -47,3 +48,13 @@ def test_one_loose_marker_is_no_other_person():
 
 def test_without_markers_of_legs_it_is_not_judged():
     assert place_of_markers_finding(PERSON, PERSON, ("C7", "CLAV")).verdict == "not judged"
+
+
+def test_the_side_is_that_of_the_foot_not_of_a_name():
+    body = load_body()
+    names = {one.name: f"bone {number}" for number, one in enumerate(body.segments)} | {"world": "world"}
+    roles = {key: tuple(names[one] for one in getattr(body.roles, key)) for key in ("feet", "toes", "legs")}
+    segments = tuple(replace(one, name=names[one.name], parent=names[one.parent]) for one in body.segments)
+    found = sides(replace(body, segments=segments, roles=replace(body.roles, **roles)))
+    legs = {*body.roles.legs, *body.roles.feet, *body.roles.toes}
+    assert found == {names[one]: one.split("_")[0] for one in legs}
