@@ -90,21 +90,21 @@ def model_rows(data: Path, out: Path) -> Iterator[Check]:
         path.write_bytes((data / made.model).read_bytes())
         side_path(path).write_text(SIDE, encoding="utf-8")
         model, table = read_osim(path), read_storage(data / made.motion)
-        q = model_motion(model, table)
-        capture = made_capture(model, q, table) if not made.markers else None
+        q = _model_motion(model, table)
+        capture = _made_capture(model, q, table) if not made.markers else None
         if capture is None:
             folder = data / TRUTH
             capture = read_capture(folder / made.markers, forces=folder / made.forces)
-        subject = scaled(path, capture)
+        subject = _scaled(path, capture)
         result = mbkf.reconstruct(capture, subject)
-        yield from angle_rows(name, model, table.times_s, q, result)
+        yield from _angle_rows(name, model, table.times_s, q, result)
         for one in load_protocol(path).body.approximations:
             yield information(f"{name}: {one.text}", 1e3 * one.rms_m, "mm")
         if made.torques:
-            yield torque_row(name, read_storage(data / TRUTH / made.torques), result)
+            yield _torque_row(name, read_storage(data / TRUTH / made.torques), result)
 
 
-def scaled(path: Path, capture: Capture) -> Subject:
+def _scaled(path: Path, capture: Capture) -> Subject:
     """The person of a model, whose markers are at the model's places."""
     protocol = load_protocol(path)
     markers = tuple(replace(one, placement_sd_m=PLACED_M, noise_m=PLACED_M) for one in protocol.markers)
@@ -114,7 +114,7 @@ def scaled(path: Path, capture: Capture) -> Subject:
     )
 
 
-def model_motion(model: OsimModel, table: Table) -> Array:
+def _model_motion(model: OsimModel, table: Table) -> Array:
     """(T, C) coordinates of the model in a file of them; those that follow others do so."""
     kinematics = OsimKinematics(model)
     q = np.tile(kinematics.defaults, (len(table.times_s), 1))
@@ -128,7 +128,7 @@ def model_motion(model: OsimModel, table: Table) -> Array:
     return kinematics.expanded(q[:, kinematics.free])[0]
 
 
-def made_capture(model: OsimModel, q: Array, table: Table) -> Capture:
+def _made_capture(model: OsimModel, q: Array, table: Table) -> Capture:
     """The model's markers in its motion, without plates."""
     kinematics = OsimKinematics(model)
     rate_hz = 1.0 / float(np.median(np.diff(table.times_s)))
@@ -141,7 +141,7 @@ def made_capture(model: OsimModel, q: Array, table: Table) -> Capture:
     return Capture(model.name, markers)
 
 
-def angle_rows(
+def _angle_rows(
     name: str, model: OsimModel, times_s: Array, truth: Array, result: Reconstruction
 ) -> Iterator[Check]:
     """The worst angle of the legs, and of the knees."""
@@ -157,7 +157,7 @@ def angle_rows(
         yield Check(f"{name}: {which}, worst {worst}", float(np.rad2deg(some[worst])), ANGLE_DEG, "<=", "°")
 
 
-def torque_row(name: str, table: Table, result: Reconstruction) -> Check:
+def _torque_row(name: str, table: Table, result: Reconstruction) -> Check:
     """The least correlation of the legs' torques with OpenSim's."""
     body, rows = HumanModel.of(result.subject), result.tracked
     forces, names = osim_forces(body, result.q, result.tau), ClinicalAngles(body).names
