@@ -132,6 +132,7 @@ NEEDS: Mapping[str, Needs] = {
             "biomechzoo_walk_turn",
             "cgm24_lowerlimb_walk",
             "flywheel_squat",
+            "functional_walk",
             "gaitalytics_walk",
             "landings",
             "rehazenter_walk",

@@ -1,4 +1,4 @@
-"""The clinic: electromyograms, scores and norms against scipy, known truth and independent implementations.
+"""The clinic: conventions, electromyograms, scores and norms against scipy, truth and independent implementations.
 
 ``python -m benchmarks clinic --only PART`` runs one part; ``--only`` may be repeated.
 """
@@ -8,12 +8,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmarks.checks import Check, Context
+from benchmarks.clinic.convention import convention_rows
 from benchmarks.clinic.emg import emg_rows
 from benchmarks.clinic.norms import norms_rows
 from benchmarks.clinic.scores import score_rows
 from benchmarks.parts import Part, part_rows
 
 PARTS: Mapping[str, Part] = {
+    "convention": lambda context: convention_rows(context.require_data()),
     "emg": lambda context: emg_rows(context.require_data(), context.quick),
     "norms": lambda context: norms_rows(context.out),
     "scores": lambda _: score_rows(),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mbkf.app.charts import Charts
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.session import FootEvent
 from mbkf.stream.loopback import LOOPBACK
@@ -16,7 +17,7 @@ SCRIPTS = (
 )  # fmt: skip
 """Scripts of the start page, in the order they are needed."""
 
-SECTIONS = ("app", "live", "export", "problems")
+SECTIONS = ("app", "live", "export", "problems", "chart_choices")
 """Sections of the language files with the start page's texts; a key stands in one of them only."""
 
 
@@ -25,17 +26,24 @@ def start_page() -> str:
     return fill("app.html", style=asset("app.css"), words=embedded_words(*SECTIONS), scripts=scripts(SCRIPTS))
 
 
-def trial_report(folder: Path, events: tuple[FootEvent, ...] | None = None) -> str:
+def trial_report(folder: Path, charts: Charts, events: tuple[FootEvent, ...] | None = None) -> str:
     """The report on a trial's result.
 
     Args:
         folder: The result.
+        charts: Convention and colours.
         events: Strikes and toe-offs set by hand; None for the detected ones.
 
     Raises:
         FileFormatError: The result is damaged.
     """
-    return report_page(read_reconstruction(folder), read_summary(folder), by_hand=events)
+    return report_page(
+        read_reconstruction(folder),
+        read_summary(folder),
+        by_hand=events,
+        convention=charts.read,
+        colours=charts.colours,
+    )
 
 
 def live_frame_page(port: int) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
+from mbkf.app.charts import Charts
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.norms import read_norms, write_norms
@@ -12,6 +14,8 @@ from mbkf.study.session.gather import session_from
 from mbkf.study.session.norm_selection import NormSelection, norm_selection
 from mbkf.study.session.norms import norms_from
 from mbkf.study.session.records import Session
+from mbkf.trial.gait.convention import BY_CLINIC, CONVENTIONS, MOMENTS, Convention
+from mbkf.viz.page import COLOURS
 from mbkf.viz.session.document import session_page
 
 NORMS_FILE = "norms.toml"
@@ -23,10 +27,17 @@ Plain = dict[str, object]
 def choices(workspace: Workspace, session: str) -> Plain:
     """Other sessions with results, and files of norms, for comparison with a session."""
     others = [name for name in workspace.sessions() if name != session and _is_done(workspace, name)]
-    return {"sessions": others, "norms": [path.name for path in norms_files(workspace)]}
+    return {
+        "sessions": others,
+        "norms": [path.name for path in norms_files(workspace)],
+        "charts": asdict(workspace.charts),
+        "chart_choices": {"convention": CONVENTIONS, "moments": MOMENTS, "colours": tuple(COLOURS)},
+    }
 
 
-def report_of(workspace: Workspace, session: str, before: str, norms: str, language: str) -> str:
+def report_of(
+    workspace: Workspace, session: str, before: str, norms: str, language: str, charts: Charts | None = None
+) -> str:
     """The report of a session.
 
     Args:
@@ -35,12 +46,14 @@ def report_of(workspace: Workspace, session: str, before: str, norms: str, langu
         before: Name of an earlier session to compare with; empty without.
         norms: Name of a file of norms in the page's folder; empty without.
         language: Code of the report's language.
+        charts: Convention and colours; None: those of the workspace.
 
     Raises:
         InvalidInput: Session, result, file of norms or language does not exist, or the norms hold this person.
+        UnknownName: Convention, kind of moments or colours do not exist.
         FileFormatError: A file is damaged.
     """
-    bands = None
+    bands, chosen = None, charts or workspace.charts
     if norms:
         file = next((path for path in norms_files(workspace) if path.name == norms), None)
         if file is None:
@@ -51,12 +64,18 @@ def report_of(workspace: Workspace, session: str, before: str, norms: str, langu
                 f"{norms} holds walks of {_person(session)}, who would be compared with themselves; build the norms "
                 "again in this report, which leaves this person out"
             )
-    earlier = read_whole(workspace, before) if before else None
-    return session_page(read_whole(workspace, session), earlier, bands, language)
+    earlier = read_whole(workspace, before, chosen.read) if before else None
+    whole = read_whole(workspace, session, chosen.read)
+    return session_page(whole, earlier, bands, language, colours=chosen.colours)
 
 
-def read_whole(workspace: Workspace, session: str) -> Session:
+def read_whole(workspace: Workspace, session: str, convention: Convention) -> Session:
     """A session with all results of trials that are not left out.
+
+    Args:
+        workspace: The sessions.
+        session: Its name.
+        convention: Axes and signs of curves.
 
     Raises:
         InvalidInput: The session does not exist, or has no result.
@@ -65,7 +84,7 @@ def read_whole(workspace: Workspace, session: str) -> Session:
     notes = workspace.stated(session)
     folder = workspace.root.name if session == "." else session
     heading = f"{notes.name}, {folder}" if notes.name not in ("", folder) else folder
-    return session_from(workspace.results(session), heading, notes)
+    return session_from(workspace.results(session), heading, notes, convention)
 
 
 def norms_selection(workspace: Workspace, session: str) -> Plain:
@@ -74,6 +93,10 @@ def norms_selection(workspace: Workspace, session: str) -> Plain:
     Args:
         workspace: The sessions.
         session: Name of the session that the norms are for; empty for norms of all.
+
+    Args:
+        workspace: The sessions.
+        convention: Axes and signs of curves.
 
     Raises:
         FileFormatError: A file is damaged.
@@ -86,31 +109,35 @@ def norms_selection(workspace: Workspace, session: str) -> Plain:
     return {"persons": persons, "left_out": [one.sentence for one in found.left_out], "cycles": found.cycles}
 
 
-def build(workspace: Workspace, session: str) -> Plain:
+def build(workspace: Workspace, session: str, convention: Convention) -> Plain:
     """Builds norms from the sessions that belong into them, each first folder a person; writes them to the folder.
 
     Args:
         workspace: The sessions.
         session: Name of the session that the norms are for, whose person is left out; empty for norms of all.
+        convention: Axes and signs of curves.
 
     Raises:
         InvalidInput: Fewer than two persons belong into them.
         FileFormatError: A file is damaged.
         OSError: The norms cannot be written.
     """
-    norms = norms_from(_selection(workspace, session), workspace.root.name)
+    norms = norms_from(_selection(workspace, session, convention), workspace.root.name)
     write_norms(norms, workspace.root / NORMS_FILE)
     return {"norms": NORMS_FILE, "persons": len(norms.persons)}
 
 
-def _selection(workspace: Workspace, session: str) -> NormSelection:
+def _selection(workspace: Workspace, session: str, convention: Convention = BY_CLINIC) -> NormSelection:
     persons: dict[str, list[str]] = {}
     for name in workspace.sessions():
         if _is_done(workspace, name):
             persons.setdefault(_person(name), []).append(name)
     sessions = [
         session_from(
-            [result for one in names for result in workspace.results(one)], person, _facts(workspace, names)
+            [result for one in names for result in workspace.results(one)],
+            person,
+            _facts(workspace, names),
+            convention,
         )
         for person, names in persons.items()
     ]

@@ -96,7 +96,8 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
 
     def report(query: Query) -> str:
         session, trial = query["session"], query["trial"]
-        return trial_report(workspace.result(session, trial), workspace.events(session, trial))
+        charts = workspace.charts.chosen(query)
+        return trial_report(workspace.result(session, trial), charts, workspace.events(session, trial))
 
     def events(query: Query, sent: object, version: str) -> object:
         return set_events(workspace, runs, query["session"], query["trial"], sent, version)
@@ -117,18 +118,32 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
 def _report_routes(workspace: Workspace) -> list[BaseRoute]:
     def report(query: Query) -> str:
         language = query["language"] or ENGLISH
-        return reports.report_of(workspace, query["session"], query["before"], query["norms"], language)
+        charts = workspace.charts.chosen(query)
+        return reports.report_of(
+            workspace, query["session"], query["before"], query["norms"], language, charts
+        )
+
+    def norms(query: Query, _body: bytes) -> object:
+        return reports.build(workspace, query["session"], workspace.charts.chosen(query).read)
 
     def curves(query: Query) -> tuple[str, bytes]:
+        charts = workspace.charts.chosen(query)
         kind = "parquet" if query["as"] == "parquet" else "csv"
-        return f"curves.{kind}", session_curves(reports.read_whole(workspace, query["session"]), kind)
+        return f"curves.{kind}", session_curves(
+            reports.read_whole(workspace, query["session"], charts.read), kind
+        )
 
     return [
         page("/report", report),
         data("/report/choices", lambda query: reports.choices(workspace, query["session"])),
         download("/report/curves", curves),
         data("/norms/selection", lambda query: reports.norms_selection(workspace, query["session"])),
-        action("/norms", lambda query, _body: reports.build(workspace, query["session"])),
+        action(
+            "/norms",
+            lambda query, _body: reports.build(
+                workspace, query["session"], workspace.charts.chosen(query).read
+            ),
+        ),
     ]
 
 

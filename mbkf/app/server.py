@@ -15,6 +15,7 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 
+from mbkf.app.charts import Charts
 from mbkf.app.failures import HANDLERS
 from mbkf.app.guard import Guard
 from mbkf.app.live_run import LiveRun
@@ -42,19 +43,22 @@ class AppServer:
         port: Its port.
     """
 
-    def __init__(self, folder: Path, port: int = 0, workers: int | None = None) -> None:
+    def __init__(
+        self, folder: Path, port: int = 0, workers: int | None = None, charts: Charts | None = None
+    ) -> None:
         """Begins to listen, and continues unfinished runs.
 
         Args:
             folder: The folder with the sessions; made where missing.
             port: 0 for any free one.
             workers: Processes of a run; by default one for each processor.
+            charts: Choices of charts.
 
         Raises:
             InvalidInput: The port is not free.
             OSError: The folder cannot be made.
         """
-        self.workspace = Workspace(folder)
+        self.workspace = Workspace(folder, charts)
         self._socket = _listening(port)
         self.port = int(self._socket.getsockname()[1])
         self.runs = Runs(self.workspace, workers)

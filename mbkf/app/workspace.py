@@ -12,6 +12,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
+from mbkf.app.charts import Charts
 from mbkf.app.several_persons import of_one_person
 from mbkf.app.uploads import RESULTS, putting
 from mbkf.errors import InvalidInput
@@ -39,14 +40,16 @@ class Workspace:
 
     Args:
         root: The folder; made if it is missing.
+        charts: Choices of charts where a page states no other.
 
     Attributes:
         root: The folder.
+        charts: The choices.
         out: Folder of the results.
     """
 
-    def __init__(self, root: Path) -> None:
-        self.root = root.absolute()
+    def __init__(self, root: Path, charts: Charts | None = None) -> None:
+        self.root, self.charts = root.absolute(), charts or Charts()
         self.root.mkdir(parents=True, exist_ok=True)
         self.out = self.root / RESULTS
         self._cached: dict[Path, tuple[Stamp, SurveyedTrial]] = {}

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import argparse
 
-from mbkf.cli.options import add_page_options, count
+from mbkf.cli.options import add_chart_options, add_page_options, count
 
 END_S = 0.5
 """Longest time that an answer to the page may take after the server has closed."""
@@ -23,6 +23,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("folder", metavar="FOLDER", nargs="?", help="folder with the sessions (~/mbkf)")
     add_page_options(parser)
+    add_chart_options(parser, "clinical")
     parser.add_argument("--workers", type=count, metavar="N", help="processes (one for each processor)")
 
 
@@ -30,13 +31,15 @@ def run(args: argparse.Namespace) -> int:
     """Serves the page until interrupted."""
     from pathlib import Path
 
+    from mbkf.app.charts import Charts
     from mbkf.app.server import AppServer
     from mbkf.cli.opening import open_page, printed_address
     from mbkf.cli.stopping import end_within, stopped_by_signal
     from mbkf.io.atomic import check_folder
 
     folder = check_folder(Path.home() / "mbkf" if args.folder is None else args.folder)
-    server = AppServer(folder, args.port, args.workers)
+    charts = Charts(args.convention, args.moments, args.colours)
+    server = AppServer(folder, args.port, args.workers, charts)
     try:
         print(f"{printed_address(server, not args.no_browser)}\nCtrl-C ends", flush=True)
         with stopped_by_signal() as stop:

@@ -37,6 +37,7 @@ from typing import TYPE_CHECKING
 
 from mbkf.cli.options import (
     EXIT_DO_NOT_USE,
+    add_convention,
     add_lag_option,
     add_out,
     add_preset_options,
@@ -84,6 +85,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     later = parser.add_mutually_exclusive_group()
     later.add_argument("--causal", action="store_true", help="use no later frames")
     add_lag_option(later)
+    add_convention(parser, "model", "model")
     add_spreads_option(parser)
     add_static_only(parser)
     add_strict(parser)
@@ -101,6 +103,7 @@ def run(args: argparse.Namespace) -> int:
         smooth=not args.causal and args.lag is None,
         lag_s=lag_seconds(args),
         spreads=asked_spreads(args),
+        convention=args.convention,
     )
     settings = with_chosen(settings, args)
     with stages() as report:

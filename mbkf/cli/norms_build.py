@@ -18,13 +18,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from mbkf.cli.options import add_out
+from mbkf.cli.options import add_convention, add_out
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("folders", metavar="FOLDER", nargs="+", help="results of persons, by 'mbkf batch'")
     add_out(parser, "FILE.toml", "file to write", required=True)
+    add_convention(parser, None, "that of the results")
     parser.add_argument("--name", metavar="TEXT", help="name of the bands in reports (the file's name)")
     parser.add_argument(
         "--without",
@@ -40,9 +41,12 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.norms import write_norms
     from mbkf.study.session.norm_selection import norm_selection
     from mbkf.study.session.norms import norms_from, person_sessions
+    from mbkf.trial.gait.convention import convention_of
 
     out = Path(args.out)
-    selection = norm_selection(person_sessions([Path(folder) for folder in args.folders]), args.without)
+    convention = None if args.convention is None else convention_of(args.convention)
+    sessions = person_sessions([Path(folder) for folder in args.folders], convention)
+    selection = norm_selection(sessions, args.without)
     norms = norms_from(selection, args.name or out.stem)
     for one in selection.persons:
         facts = one.facts

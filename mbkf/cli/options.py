@@ -58,6 +58,47 @@ def axes_options(args: argparse.Namespace) -> AxesOptions:
     return {"up": args.up, "axes": args.axes, "unit": args.unit, "person": args.person}
 
 
+CONVENTIONS, COLOURS = ("clinical", "isb", "model"), ("blue-red", "green-red")
+"""Values of ``--convention`` and ``--colours``, stated here because help texts import no other package."""
+
+
+def add_convention(parser: argparse._ActionsContainer, default: str | None, otherwise: str) -> None:
+    """Adds ``--convention``.
+
+    Args:
+        parser: Where.
+        default: Its default; None: not asked for.
+        otherwise: The default in words.
+    """
+    parser.add_argument(
+        "--convention",
+        choices=CONVENTIONS,
+        default=default,
+        help="axes, signs and order of curves: a gait laboratory's, with Plug-in Gait's axes and moments positive in "
+        f"extension (clinical), the ISB's axes (isb), or the body's own (model); default: {otherwise}",
+    )
+
+
+def add_chart_options(parser: argparse._ActionsContainer, convention: str | None = None) -> None:
+    """Adds ``--convention``, ``--moments`` and ``--colours`` of charts.
+
+    Args:
+        parser: Where.
+        convention: The default; None: that of the result.
+    """
+    add_convention(parser, convention, convention or "that of the result")
+    parser.add_argument(
+        "--moments",
+        choices=("internal", "external"),
+        default="internal",
+        help="name of the clinical convention's moments: of muscles and ligaments (internal), or of the load that they "
+        "balance (external)",
+    )
+    parser.add_argument(
+        "--colours", choices=COLOURS, default=COLOURS[0], help=f"colours of right and left ({COLOURS[0]})"
+    )
+
+
 def add_axes_options(parser: argparse.ArgumentParser) -> None:
     """Adds ``--up``, ``--axes``, ``--unit`` and ``--person``, for statements that files lack or have wrong."""
     parser.add_argument(

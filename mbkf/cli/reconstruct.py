@@ -30,6 +30,7 @@ from mbkf.cli.options import (
     CAPTURE_FILES,
     FORCE_FILES,
     add_axes_options,
+    add_convention,
     add_lag_option,
     add_out,
     add_preset_options,
@@ -125,6 +126,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="zero of joint angles: the axes of both segments coincide (axes, the default), or the posture of the "
         "static trial that scaled the subject (static)",
     )
+    add_convention(parser, "model", "model; reports take it from the result")
     add_spreads_option(parser)
     add_axes_options(parser)
     add_strict(parser)
@@ -160,6 +162,7 @@ def run(args: argparse.Namespace) -> int:
         pelvis=args.pelvis,
         angles=args.angles,
         angles_zero=args.angles_zero,
+        convention=args.convention,
         spreads=asked_spreads(args),
         keep_covariance=truth is not None,
     )

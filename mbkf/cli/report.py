@@ -20,10 +20,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbkf.cli.options import add_out
+from mbkf.cli.options import add_chart_options, add_out
 
 if TYPE_CHECKING:
     from mbkf.study.session.records import Session
+    from mbkf.trial.gait.convention import Convention
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -40,6 +41,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.json",
         help="one trial: numbers of 'mbkf label' (default: TRIAL.json in DIR or beside it, if there is one)",
     )
+    add_chart_options(parser)
     session = parser.add_argument_group("for a session")
     session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
     session.add_argument("--norms", metavar="FILE.toml", help="reference bands of 'mbkf norms build'")
@@ -72,6 +74,15 @@ def run(args: argparse.Namespace) -> int:
     return _session(args, folders)
 
 
+def _convention(args: argparse.Namespace) -> Convention | None:
+    """The convention that is asked for; None: the result's."""
+    from mbkf.trial.gait.convention import CLINICAL, INTERNAL, convention_of
+
+    if args.convention is None and args.moments == INTERNAL:
+        return None
+    return convention_of(args.convention or CLINICAL, args.moments)
+
+
 def _trial(args: argparse.Namespace, folder: Path) -> int:
     from mbkf.io.atomic import write_text
     from mbkf.io.results_folder import read_reconstruction, read_summary
@@ -80,7 +91,10 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
     result = read_reconstruction(folder)
     labels = labels_of(folder, result.trial) if args.labels is None else read_labels(args.labels)
     out = Path(args.out) if args.out else folder / "report.html"
-    write_text(out, report_page(result, read_summary(folder), labels))
+    page = report_page(
+        result, read_summary(folder), labels, convention=_convention(args), colours=args.colours
+    )
+    write_text(out, page)
     print(out)
     return 0
 
@@ -103,13 +117,14 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
 
     def read(places: list[Path], name: str | None) -> Session:
         results = [result for place in places for result in results_in(place)]
-        return session_from(results, name or storable(places[0].absolute().name))
+        return session_from(results, name or storable(places[0].absolute().name), None, convention)
 
-    before = None if args.against is None else read([Path(place) for place in args.against], None)
+    convention = _convention(args)
     session = read(folders, args.name)
-    write_text(
-        out, session_page(session, before, norms, args.language or ENGLISH, args.emg_reference or PEAK)
-    )
+    convention = session.convention
+    before = None if args.against is None else read([Path(place) for place in args.against], None)
+    language, reference = args.language or ENGLISH, args.emg_reference or PEAK
+    write_text(out, session_page(session, before, norms, language, reference, args.colours))
     print(out)
     if args.curves is not None:
         write_session_curves(session, args.curves)

@@ -29,6 +29,8 @@ CurveName = tuple[str, str, str]
 
 _NAME = fields.text("name", "name in reports; of the coordinate or parameter", required=True, empty=True)
 _KIND = fields.text("kind", "kind of movement", required=True, empty=True)
+_CONVENTION = fields.text("convention", "convention of the curves: clinical, isb or model (model)")
+_AXES = fields.text("axes", "axes of the angles: pig, isb or model (model)")
 _QUANTITY = fields.text("quantity", "angle, torque, power or reaction", required=True, empty=True)
 _UNIT = fields.text("unit", "unit of mean and spread", required=True, empty=True)
 _PERSONS: Field[int] = Field(
@@ -79,6 +81,8 @@ NORMS = fields.record(
     fields.text("format", "kind of the file", required=True),
     fields.number("format_version", "version of the format", required=True),
     _NAME,
+    _CONVENTION,
+    _AXES,
     _SOURCE,
     _PERSON_LIST,
     _CURVES,
@@ -165,6 +169,8 @@ class Norms:
         persons: Whom they are of; empty where only the source knows.
         source: Paper or file that they are from; empty for the laboratory's own.
         gdi: For the gait deviation index; None without.
+        convention: Of the curves: "clinical", "isb" or "model".
+        axes: Axes that angles are read in: "pig", "isb" or "model".
     """
 
     name: str
@@ -174,6 +180,13 @@ class Norms:
     persons: tuple[NormPerson, ...] = ()
     source: str = ""
     gdi: GdiBasis | None = None
+    convention: str = "model"
+    axes: str = "model"
+
+    @property
+    def read(self) -> tuple[str, str]:
+        """Convention and axes: curves are compared with those of the same ones."""
+        return self.convention, self.axes
 
     def at_speed(self, speed_m_s: float) -> Norms:
         """The norms with the curves of persons that walk at a speed, where there are any, and the speeds in the name.
@@ -211,6 +224,8 @@ def write_norms(norms: Norms, path: str | Path) -> None:
     ]
     table = {
         **head,
+        "convention": norms.convention,
+        "axes": norms.axes,
         "person": [asdict(one) for one in norms.persons],
         "curve": [*tables(norms.curves, None), *by_speed],
         "measure": measures,
@@ -252,6 +267,8 @@ def read_norms(path: str | Path) -> Norms:
         persons,
         read.get(_SOURCE) or "",
         _gdi(read.table_of(_GDI, GDI)),
+        read.get(_CONVENTION) or "model",
+        read.get(_AXES) or "model",
     )
 
 

@@ -321,6 +321,11 @@ class Provenance:
     )
     subject: Subject
     settings: dict[str, object] = attribute("settings of the run", read=json.loads, factory=dict)
+    processing: dict[str, float] = attribute(
+        "measurements of the person that the capture states, by the names of its PROCESSING group",
+        read=json.loads,
+        factory=dict,
+    )
     file_axes: str = attribute("axes of the capture's file that became x, y and z", "x,y,z")
     file_axes_source: str = attribute("how these axes are known; empty in older files", "")
     markers_ignored: dict[str, str] = attribute(

@@ -314,6 +314,16 @@ class ClinicalAngles:
         spread[:, self.ball_columns] = np.sqrt(np.maximum(np.einsum("tnai,tnij,tnaj->tna", E, P, E), 0.0))
         return spread
 
+    def ball_rates(self, q: Array, angles: Array) -> Array:
+        """(T, n, 3, 3) rates of the angles :attr:`ball_columns` per angular velocity about their distal segment's axes.
+
+        Args:
+            q: (T, nq) configurations.
+            angles: (T, A) their coordinates.
+        """
+        order = np.argsort(self._order, axis=1)[None, :, None, :]
+        return np.take_along_axis(self._rate_blocks(q, angles), order, axis=3)
+
     def moments(self, q: Array, tau: Array, angles: Array | None = None) -> Array:
         """Generalised moments conjugate to the coordinates, m = Bᵀ τ: power m·θ̇ equals τ·v in every joint.
 

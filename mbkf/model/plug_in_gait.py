@@ -25,6 +25,11 @@ MARKER_RADIUS_M = 0.007
 HIP_ANGLES_RAD = (0.5, 0.314)
 """θ and β of Davis' regression."""
 
+ANGLE_NAMES = (
+    "THIGHROTATION", "SHANKROTATION", "TIBIALTORSION", "ANKLEABADD", "STATICPLANTFLEX", "STATICROTOFF",
+)  # fmt: skip
+"""Angles of a file's PROCESSING group, without their sides."""
+
 JOINT_SIDES = {"r": ("R", "right"), "l": ("L", "left")}
 
 _TOLERANCE_RAD, _MOST_STEPS = 1e-9, 100
@@ -56,7 +61,12 @@ class Measured:
 
 
 def measured_of(stored: Mapping[str, float]) -> Measured:
-    """The measurements in a file's PROCESSING group, whose lengths are in mm and angles in rad."""
+    """The measurements in a file's PROCESSING group, whose lengths are in mm.
+
+    Angles are in rad; in degrees, all of a file's, where one is larger than a right angle would be in rad.
+    """
+    sided = [stored.get(side + name, 0.0) for side in "RL" for name in ANGLE_NAMES]
+    turn = 1.0 if max(map(abs, sided)) <= 0.5 * np.pi else np.pi / 180.0
 
     def length(name: str) -> float | None:
         value = stored.get(name, 0.0)
@@ -66,11 +76,12 @@ def measured_of(stored: Mapping[str, float]) -> Measured:
         return length("R" + name), length("L" + name)
 
     def angles(name: str) -> tuple[float, float]:
-        return stored.get("R" + name, 0.0), stored.get("L" + name, 0.0)
+        return turn * stored.get("R" + name, 0.0), turn * stored.get("L" + name, 0.0)
 
     def foot(side: str) -> tuple[float, float] | None:
         names = (side + "STATICPLANTFLEX", side + "STATICROTOFF")
-        return (stored[names[0]], stored[names[1]]) if all(name in stored for name in names) else None
+        known = all(name in stored for name in names)
+        return (turn * stored[names[0]], turn * stored[names[1]]) if known else None
 
     return Measured(
         lengths("LEGLENGTH"),

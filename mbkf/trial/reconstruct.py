@@ -24,6 +24,7 @@ from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks.in_view import in_view_finding
 from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.trial import trial_checks
+from mbkf.trial.gait.convention import convention_of
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.loads.partners import others_of, with_contacts
 from mbkf.trial.preparation.coverage import use_by_subject
@@ -144,6 +145,7 @@ def _check_names(settings: ReconstructSettings, sensors: bool) -> None:
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     if settings.angles not in ANGLES:
         raise UnknownName("reading of angles", settings.angles, ANGLES)
+    convention_of(settings.convention)
     if sensors and settings.filter != "dynamic":
         raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
 

@@ -10,7 +10,7 @@ from functools import cache
 from html import escape
 from pathlib import Path
 
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, UnknownName
 from mbkf.viz.language import languages, words
 
 ASSETS = Path(__file__).resolve().parent / "assets"
@@ -45,6 +45,29 @@ def document(language: str, title: str, style: str, sections: Iterable[tuple[str
     """
     links = "".join(f'<a href="#{name}">{escape(text)}</a>' for name, text in sections)
     return fill("report.html", language=language, title=escape(title), style=style, links=links, body=body)
+
+
+BLUE_RED = "blue-red"
+COLOURS = {BLUE_RED: ("#0072b2", "#d55e00"), "green-red": ("#00803c", "#c8102e")}
+"""Colours of right and left. Laboratories draw the left red, and the right blue or green; the first pair is that of
+M. Okabe and K. Ito (2008), which people who confuse red and green tell apart."""
+
+
+def report_style(colours: str, *names: str) -> str:
+    """Style sheets of a report, with colours of right and left.
+
+    Args:
+        colours: One of :data:`COLOURS`.
+        names: Names of the style sheets.
+
+    Raises:
+        UnknownName: The colours do not exist.
+    """
+    if colours not in COLOURS:
+        raise UnknownName("colours", colours, COLOURS)
+    right, left = COLOURS[colours]
+    own = f":root {{ --r: {right}; --l: {left}; }}" if colours != BLUE_RED else ""
+    return "".join(asset(name) for name in names) + own
 
 
 def fill(template: str, **parts: str) -> str:

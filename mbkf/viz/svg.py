@@ -76,6 +76,7 @@ def chart(
     spans: Sequence[Span] = (),
     level: float | None = None,
     note: str = "",
+    caption: str = "",
     width: float = WIDTH,
     height: float = HEIGHT,
 ) -> str:
@@ -91,6 +92,7 @@ def chart(
         spans: Bars above the curves.
         level: Height of a horizontal line: a bound, or an expected value.
         note: Text shown while the pointer rests on the chart.
+        caption: Small text above the frame, on the right.
         width: In the drawing's own units, which the page scales.
         height: In the same units.
     """
@@ -113,6 +115,8 @@ def chart(
     parts += [_band(box, one, one.sd, "band" if one.inner_sd is None else "band outer") for one in lines]
     parts += [_band(box, one, one.inner_sd, "band inner") for one in lines]
     parts += [_path(box, line) for line in lines]
+    if caption:
+        parts.append(f'<text class="caption" x="{width - RIGHT:g}" y="{TOP - 3:g}">{escape(caption)}</text>')
     hint = f"<title>{escape(note)}</title>" if note else ""
     return (
         f'<svg class="chart" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="{escape(title)}">{hint}'

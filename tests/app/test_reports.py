@@ -3,11 +3,13 @@
 import pytest
 
 from mbkf.app import reports
+from mbkf.app.charts import Charts
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.norms import read_norms
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import SessionNotes, TrialNotes
+from mbkf.trial.gait.convention import BY_CLINIC, BY_MODEL
 from mbkf.trial.results.summary import summarise
 from tests.studies import study
 from tests.study.session.sessions import walks
@@ -27,33 +29,38 @@ def workspace(tmp_path):
 
 
 def test_a_report_alone_compared_and_with_norms(workspace):
-    assert reports.choices(workspace, "P1") == {"sessions": ["P2", "P3"], "norms": []}
+    shown = reports.choices(workspace, "P1")
+    assert (shown["sessions"], shown["norms"]) == (["P2", "P3"], [])
+    assert shown["charts"]["convention"] == "clinical", "the page's default"
     chosen = reports.norms_selection(workspace, "P3")
     assert [one.split(",")[0] for one in chosen["persons"]] == ["P1: female", "P2: female"] and chosen[
         "cycles"
     ] > 4
     assert chosen["left_out"] == ["P3: the person in view is compared with others alone"]
-    assert reports.build(workspace, "P3") == {"norms": "norms.toml", "persons": 2}
-    assert reports.choices(workspace, "P2") == {"sessions": ["P1", "P3"], "norms": ["norms.toml"]}
+    assert reports.build(workspace, "P3", BY_CLINIC) == {"norms": "norms.toml", "persons": 2}
+    assert reports.choices(workspace, "P2")["norms"] == ["norms.toml"]
     assert read_norms(workspace.root / "norms.toml").name == "lab"
     page = reports.report_of(workspace, "P3", "P2", "norms.toml", "es")
     assert 'id="change"' in page and 'class="band n"' in page and '<html lang="es">' in page
     assert 'id="change"' not in reports.report_of(workspace, "P3", "", "", "en")
+    other = reports.report_of(workspace, "P3", "", "norms.toml", "en", Charts("model"))
+    assert "are in another convention (clinical, Plug-in Gait axes)" in other
+    assert 'class="band n"' not in other
 
 
 def test_nobody_is_compared_with_norms_of_themselves(workspace):
-    reports.build(workspace, "")
+    reports.build(workspace, "", BY_CLINIC)
     with pytest.raises(InvalidInput, match="holds walks of P1"):
         reports.report_of(workspace, "P1", "", "norms.toml", "en")
     with pytest.raises(InvalidInput, match="P1: the person in view"):
-        reports.build(workspace, "P1")
+        reports.build(workspace, "P1", BY_CLINIC)
 
 
 def test_trials_that_are_left_out_do_not_count(workspace):
-    assert len(reports.read_whole(workspace, "P1").trials) == 2
+    assert len(reports.read_whole(workspace, "P1", BY_MODEL).trials) == 2
     notes = SessionNotes(name="Ana", sex="female", trials={"walk2": TrialNotes(excluded="fell")})
     workspace.change("P3", SessionNotes(), notes)
-    left = reports.read_whole(workspace, "P3")
+    left = reports.read_whole(workspace, "P3", BY_MODEL)
     assert len(left.trials) == 1 and left.name == "Ana, P3" and left.sex == "female"
 
 

@@ -121,3 +121,12 @@ def test_lengths_are_told_in_millimetres_and_zero_is_unknown():
     )
     assert found.leg_m == (0.8, None) and found.asis_m == 0.24
     assert found.foot_rad == (None, None) and found.torsion_rad == (0.0, 0.0)
+
+
+def test_a_file_in_degrees_is_told_by_an_angle_beyond_a_right_one():
+    """The offsets of a public file: a sole of 12.9° can be no 12.9 rad, and then 0.3 is in degrees as well."""
+    stored = {"RSTATICPLANTFLEX": 12.891, "RSTATICROTOFF": 0.337, "LTHIGHROTATION": -3.0}
+    found = measured_of(stored)
+    np.testing.assert_allclose(found.foot_rad[0], np.deg2rad([12.891, 0.337]))
+    assert found.thigh_rad == (0.0, pytest.approx(np.deg2rad(-3.0)))
+    assert measured_of({"RSTATICPLANTFLEX": 0.22, "RSTATICROTOFF": 0.006}).foot_rad[0] == (0.22, 0.006)

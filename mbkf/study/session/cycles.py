@@ -14,7 +14,10 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.verdict import LOAD_PARTS
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
-from mbkf.trial.gait.curves import ENDINGS, SideCurve, side_curves
+from mbkf.trial.gait.convention import BY_MODEL, FOOT_PROGRESSION, Convention
+from mbkf.trial.gait.convention import TRUNK as WALKING_TRUNK
+from mbkf.trial.gait.convention_angles import ConventionAngles
+from mbkf.trial.gait.curves import ENDINGS, SideCurve, side_views
 from mbkf.trial.gait.cycles import POINTS, Cycle, Gait, over_cycle
 from mbkf.trial.gait.facing import facing
 from mbkf.trial.verdict.judge import verdict_of
@@ -106,7 +109,13 @@ class SideCycles:
     curves: Mapping[Key, Curves]
 
 
-def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycles:
+def cycles_of_trial(
+    r: Reconstruction,
+    gait: Gait | None,
+    side: int,
+    convention: Convention = BY_MODEL,
+    read: ConventionAngles | None = None,
+) -> SideCycles:
     """The cycles of one side of a trial in which the body was followed throughout; NaN where one may not be used.
 
     Curves of the midline are as either side sees them: those of the left are mirrored.
@@ -115,26 +124,21 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
         r: The trial's results.
         gait: Its gait; None: a trial without gait.
         side: 0 right, 1 left.
+        convention: Axes and signs of the curves.
+        read: The trial's angles in it, where they are known already.
     """
     kept = [] if gait is None else [c for c in gait.of(side) if _within(r, c, r.tracked).all()]
     cycles = tuple(_session_cycle(r, c) for c in kept)
     if not kept:
         return SideCycles(side, (), {})
-    mirrored = mirrored_midline(reference_body(r.subject)) if side else frozenset()
-    whole = frozenset(r.coordinate_names)
+    whole = frozenset((*r.coordinate_names, *WALKING_TRUNK))
     body, verdict = reference_body(r.subject), verdict_of(r)
     curves = {}
-    for curve in [*side_curves(r, side), *_reactions(r, side)]:
+    for curve in [*side_views(r, side, convention, read), *_reactions(r, side)]:
         factor, unit = _shown(curve, r.subject.mass_kg)
-        sign = -1.0 if curve.name in mirrored and curve.quantity != POWER else 1.0
         value, sd, shift, change = (
-            np.array([over_cycle(r.times_s, k * each, c) for c in kept])
-            for k, each in (
-                (sign * factor, curve.value),
-                (factor, curve.sd),
-                (factor, curve.offset_sd),
-                (factor, curve.change_sd),
-            )
+            np.array([over_cycle(r.times_s, factor * each, c) for c in kept])
+            for each in (curve.value, curve.sd, curve.offset_sd, curve.change_sd)
         )
         if not verdict.may_use(part_of_curve(body, Key(curve.quantity, curve.name), side)):
             value = np.full_like(value, np.nan)
@@ -153,6 +157,8 @@ def part_of_curve(body: BodyDescription, key: Key, side: int) -> str:
     """
     if key.quantity == REACTION:
         return LOAD_PARTS[side]
+    if key.name == FOOT_PROGRESSION:
+        return LEGS[side]
     segments = part_of_segment(body)
     names = (key.name, key.name + ENDINGS[side])
     part = next(
@@ -223,17 +229,6 @@ def _unknown(unit: str, count: int) -> Curves:
     """A quantity that a trial lacks over so many cycles."""
     unknown = np.full((count, POINTS), np.nan)
     return Curves(unit, unknown, unknown, unknown, unknown)
-
-
-def mirrored_midline(body: BodyDescription) -> frozenset[str]:
-    """Coordinates of the midline that change their sign in a mirror: about x and z, and along y."""
-    found = set()
-    for joint in body.clinical_joints:
-        if joint.name.endswith(("_r", "_l")):
-            continue
-        found |= {angle.name for angle in joint.angles if angle.axis != "y"}
-        found |= {place.name for place in joint.translations if place.axis == "y"}
-    return frozenset(found)
 
 
 def _session_cycle(r: Reconstruction, cycle: Cycle) -> SessionCycle:

@@ -26,6 +26,8 @@ from mbkf.study.session.jumps import jump_measures
 from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
 from mbkf.study.session.squats import squat_measures
 from mbkf.study.survey.movement import SUNK_M, kind_of_markers
+from mbkf.trial.gait.convention import Convention, convention_of_result
+from mbkf.trial.gait.convention_angles import convention_angles
 from mbkf.trial.gait.cycles import Gait, find_gait
 from mbkf.trial.verdict.judge import verdict_of
 from mbkf.trial.verdict.parts import LEGS, PELVIS
@@ -44,6 +46,7 @@ class _Part:
     trial: SessionTrial
     subject: Subject
     body: TrialBody
+    axes: str
     sides: tuple[SideCycles, SideCycles]
     gait: Gait | None
     moves: bool
@@ -70,13 +73,19 @@ def results_in(folder: Path) -> list[Path]:
     return sorted(found)
 
 
-def session_from(folders: Sequence[Path], name: str, notes: SessionNotes | None = None) -> Session:
+def session_from(
+    folders: Sequence[Path],
+    name: str,
+    notes: SessionNotes | None = None,
+    convention: Convention | None = None,
+) -> Session:
     """Reads the results of a session.
 
     Args:
         folders: A folder with results for each trial.
         name: How the session is called.
         notes: Statements of the session file: kinds of trials, which are left out, and the person.
+        convention: Axes and signs of curves; None: the one that the first trial was reconstructed with.
 
     Raises:
         FileFormatError: A result is damaged.
@@ -85,26 +94,35 @@ def session_from(folders: Sequence[Path], name: str, notes: SessionNotes | None 
     stated = notes or SessionNotes()
     read = ((read_reconstruction(folder), folder) for folder in folders)
     pairs = ((r, _with_events(stated.trial(r.trial), folder)) for r, folder in read)
-    return _session(((r, trial) for r, trial in pairs if not trial.excluded), name, stated)
+    return _session(((r, trial) for r, trial in pairs if not trial.excluded), name, stated, convention)
 
 
-def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes | None = None) -> Session:
+def session_of(
+    results: Iterable[Reconstruction],
+    name: str,
+    notes: SessionNotes | None = None,
+    convention: Convention | None = None,
+) -> Session:
     """The session of results; each is let go before the next one is asked for.
 
     Args:
         results: The trials.
         name: How the session is called.
         notes: Statements of the session file.
+        convention: As for :func:`session_from`.
 
     Raises:
         InvalidInput: The session has no trial.
     """
     stated = notes or SessionNotes()
-    return _session(((r, stated.trial(r.trial)) for r in results), name, stated)
+    return _session(((r, stated.trial(r.trial)) for r in results), name, stated, convention)
 
 
 def _session(
-    results: Iterable[tuple[Reconstruction, TrialNotes]], name: str, stated: SessionNotes
+    results: Iterable[tuple[Reconstruction, TrialNotes]],
+    name: str,
+    stated: SessionNotes,
+    convention: Convention | None,
 ) -> Session:
     """The session of trials, each with its statements in the session file.
 
@@ -114,8 +132,9 @@ def _session(
     parts, seen = [], Counter[str]()
     for r, notes in results:
         seen[r.trial] += 1
-        parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes))
-    if not parts:
+        convention = convention or convention_of_result(r)
+        parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes, convention))
+    if not parts or convention is None:
         raise InvalidInput(f"{name}: no trial to report on was found; reconstruct at least one trial first")
     kinds = [kind for kind in GAIT_KINDS if any(_gait_of(part, kind) for part in parts)]
     return Session(
@@ -128,6 +147,8 @@ def _session(
         stated.sex or None,
         stated.age,
         disagreements([part.body for part in parts]),
+        convention,
+        tuple(dict.fromkeys(part.axes for part in parts)),
     )
 
 
@@ -189,17 +210,19 @@ def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
     )
 
 
-def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
+def _part(r: Reconstruction, stated: TrialNotes, convention: Convention) -> _Part:
     r = replace(r, verdict=verdict_of(r))
     trial = trial_summary(r, stated.kind)
     gait = find_gait(r, stated.events) if trial.kind in GAIT_KINDS and r.tracked.any() else None
-    sides = (with_emg(r, cycles_of_trial(r, gait, 0)), with_emg(r, cycles_of_trial(r, gait, 1)))
+    read = convention_angles(r, convention)
+    right, left = (with_emg(r, cycles_of_trial(r, gait, side, convention, read)) for side in range(2))
     moves = all(verdict_of(r).may_use(part) for part in (PELVIS, *LEGS))
     return _Part(
         trial,
         r.subject,
         TrialBody.of(r),
-        sides,
+        read.axes,
+        (right, left),
         gait,
         moves,
         jump_measures(r) if trial.kind == TrialKind.JUMP and moves else (),

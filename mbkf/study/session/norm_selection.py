@@ -12,6 +12,7 @@ from mbkf.io.norms import NormPerson
 from mbkf.io.session import TrialKind
 from mbkf.study.session.cycles import Curves, SideCycles
 from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
+from mbkf.trial.gait.convention import MODEL
 
 SPEED = "Speed"
 """Measure that states the walking speed."""
@@ -39,10 +40,11 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class ChosenPerson:
-    """A person that norms are made of: facts, and the walks that count."""
+    """A person that norms are made of: facts, the walks that count, and convention and axes of their curves."""
 
     facts: NormPerson
     gait: MovementGroup
+    read: tuple[str, ...] = (MODEL, MODEL)
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,8 @@ def _person(session: Session, trials: Collection[str]) -> ChosenPerson | str:
     speed = speed_of(gait)
     if not np.isfinite(speed):
         return "walking speed not known"
-    return ChosenPerson(NormPerson(session.name, session.sex, session.age, speed, sum(counts)), gait)
+    facts = NormPerson(session.name, session.sex, session.age, speed, sum(counts))
+    return ChosenPerson(facts, gait, (session.convention.name, *session.axes))
 
 
 def speed_of(gait: MovementGroup) -> float:

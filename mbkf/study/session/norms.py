@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -25,6 +26,7 @@ from mbkf.study.session.norm_selection import (
 )
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.study.session.scores import GPS, VARIABLES, gait_scores, gdi_basis
+from mbkf.trial.gait.convention import Convention
 
 _Name = TypeVar("_Name", bound=tuple[str, ...])
 
@@ -41,7 +43,7 @@ MOST_ABOVE = 4
 """Folders above a capture in which its session file is looked for."""
 
 
-def person_sessions(folders: Sequence[Path]) -> list[Session]:
+def person_sessions(folders: Sequence[Path], convention: Convention | None = None) -> list[Session]:
     """A session for each person; the first folder below one of the folders is a person, as ``mbkf batch`` has them.
 
     Age and sex are those of the session file beside the results, else of that beside the captures that the results were
@@ -49,6 +51,7 @@ def person_sessions(folders: Sequence[Path]) -> list[Session]:
 
     Args:
         folders: Folders with the results of persons.
+        convention: Of the curves; None: that of the results.
 
     Raises:
         FileFormatError: A result is damaged.
@@ -60,7 +63,8 @@ def person_sessions(folders: Sequence[Path]) -> list[Session]:
             parts = result.relative_to(folder).parts
             persons.setdefault(folder / parts[0] if len(parts) > 1 else folder, []).append(result)
     return [
-        session_from(results, person.name, _notes(person, results[0])) for person, results in persons.items()
+        session_from(results, person.name, _notes(person, results[0]), convention)
+        for person, results in persons.items()
     ]
 
 
@@ -112,6 +116,11 @@ def norms_from(selection: NormSelection, name: str) -> Norms:
             f"norms need walks that may be used of {LEAST_PERSONS} persons or more, here {len(chosen)}"
             + (f". Left out: {reasons}" if reasons else "")
         )
+    read = {one.read for one in chosen}
+    if len(read) > 1 or any(len(one) > 2 for one in read):
+        apart = "; ".join(f"{one.facts.name}: {', '.join(one.read)}" for one in chosen)
+        raise InvalidInput(f"persons are in different conventions or axes ({apart}); reconstruct them alike")
+    ((convention, axes),) = read
     gaits = [one.gait for one in chosen]
     norms = Norms(
         name,
@@ -120,11 +129,11 @@ def norms_from(selection: NormSelection, name: str) -> Norms:
         _by_speed(chosen),
         tuple(one.facts for one in chosen),
         gdi=_gdi(gaits),
+        convention=convention,
+        axes=axes,
     )
     scores = _bands(_score_means(gaits, norms))
-    return Norms(
-        name, norms.curves, {**norms.measures, **scores}, norms.by_speed, norms.persons, gdi=norms.gdi
-    )
+    return replace(norms, measures={**norms.measures, **scores})
 
 
 def _curve_bands(gaits: Sequence[MovementGroup]) -> dict[CurveName, Band]:

@@ -11,6 +11,7 @@ from mbkf.io.subject import Subject
 from mbkf.study.session.agreement import Disagreement
 from mbkf.study.session.cycles import SideCycles
 from mbkf.trial.emg.settings import EmgSettings
+from mbkf.trial.gait.convention import BY_MODEL, MODEL, Convention
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,8 @@ class Session:
         squats: Measures of each squat; empty without.
         sex, age: As stated; None: not stated.
         disagreements: Trials that disagree with the others about the person's body.
+        convention: Axes and signs of the curves.
+        axes: Axes that angles are read in, one for all trials as a rule: "model", "isb" or "pig".
     """
 
     name: str
@@ -111,6 +114,8 @@ class Session:
     sex: str | None = None
     age: float | None = None
     disagreements: tuple[Disagreement, ...] = ()
+    convention: Convention = BY_MODEL
+    axes: tuple[str, ...] = (MODEL,)
 
     def gait(self, kind: TrialKind) -> MovementGroup | None:
         """The gait of a kind; None: the trial has no such gait."""

@@ -47,6 +47,8 @@ class ReconstructSettings:
         angles: The axes that angles are read in: "model" for the body's own, "isb" for the ISB's, "pig" for
             Plug-in Gait's.
         angles_zero: Zero of angles: "axes" where a joint's axes coincide, "static" for the posture of the static trial.
+        convention: The convention of curves in reports and tables of the result: "clinical", "isb" or "model"
+            (:mod:`mbkf.trial.gait.convention`). The result itself is the same in each.
         keep_covariance: Whether full covariances are kept in memory.
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.
@@ -71,6 +73,7 @@ class ReconstructSettings:
     pelvis: str = "progression"
     angles: str = "model"
     angles_zero: str = "axes"
+    convention: str = "model"
     keep_covariance: bool = False
     other_contacts: bool = True
     checks: bool = True

@@ -74,8 +74,7 @@ def assemble(
     zero_q = zero_posture(settings.angles_zero, subject)
     motion, moments = clinical_motion(model, result, torques, frame, reading, zero_q)
     located = result.tracked & _located(result)
-    bears = bearing(ground.supports.support_wrench)
-    source = ground.loads.foot_source
+    bears, source = bearing(ground.supports.support_wrench), ground.loads.foot_source
     force_n = ground.loads.foot_wrench[:, :, 2]
     known = torques_known(model, motion.coordinate_names, moments.moments_sd, source, force_n, bears)
     known &= torques_possible(torques.tau, ROOT_DOFS, model.mass_kg)
@@ -96,6 +95,7 @@ def assemble(
             uncorrected=int(result.uncorrected.sum()),
             subject=subject,
             settings=recorded(settings),
+            processing=dict(capture.processing),
             file_axes=capture.axes,
             file_axes_source=capture.axes_source.value,
             warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *of_track, *of_emg),

@@ -75,7 +75,7 @@ def clinical_motion(
     own_angles = theta if reading is None or not reading.joints else own.angles(seen)[known]
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
-    zero = 0.0 if zero_q is None else _of_joints(clinical, zero_q)
+    zero = 0.0 if zero_q is None else joint_angles(clinical, zero_q)
     motion = Motion(
         dof_names=dof_names(model),
         configuration_names=configuration_names(model),
@@ -128,7 +128,7 @@ def _moments(own: ClinicalAngles, track: Track, torques: Torques, known: BoolArr
     return Moments(moments=moments, moments_sd=total, moments_sd_offset=offset, moments_sd_change=change)
 
 
-def _of_joints(clinical: ClinicalAngles, q: Array) -> Array:
+def joint_angles(clinical: ClinicalAngles, q: Array) -> Array:
     """(A,) angles of the joints in a posture (nq,), 0 for the root's coordinates."""
     angles = np.where(clinical.rotational, clinical.angles(q[None])[0], 0.0)
     angles[clinical.root_angles] = 0.0

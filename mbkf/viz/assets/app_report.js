@@ -6,15 +6,22 @@ async function sessionReport(session, act) {
   const chosenBefore = choice(word("compare_with"), found.sessions, word("nothing"));
   const chosenNorms = choice(word("norms"), found.norms, word("none_of_them"));
   const frame = element("iframe", { title: word("session_report") });
-  const source = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language });
+  const pick = (name, values) => {
+    const select = element("select", {}, ...values.map((one) => new Option(word(one.replace("-", "_")), one)));
+    select.value = found.charts[name];
+    return { select, label: element("label", {}, word(name) + " ", select) };
+  };
+  const picked = Object.entries(found.chart_choices).map(([name, values]) => [name, pick(name, values)]);
+  const charts = () => Object.fromEntries(picked.map(([name, one]) => [name, one.select.value]));
+  const source = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language, ...charts() });
   const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
-  chosenBefore.select.onchange = chosenNorms.select.onchange = show;
+  for (const one of [chosenBefore, chosenNorms, ...picked.map(([, one]) => one)]) one.select.onchange = () => { show(); link(); };
   const build = element("button", { type: "button", onclick: async () => {
     const chosen = await ask("norms/selection?" + query({ session }));
     const parts = [word("norms_of", chosen.persons.length, chosen.cycles), ...chosen.persons];
     if (chosen.left_out.length) parts.push("", word("norms_without"), ...chosen.left_out);
     if (!window.confirm(parts.join("\n"))) return;
-    const made = await ask("norms?" + query({ session }), { method: "POST" });
+    const made = await ask("norms?" + query({ session, ...charts() }), { method: "POST" });
     tell(word("norms_built", made.persons));
     if (![...chosenNorms.select.options].some((one) => one.value === made.norms)) chosenNorms.select.append(new Option(made.norms, made.norms));
     chosenNorms.select.value = made.norms;
@@ -24,8 +31,10 @@ async function sessionReport(session, act) {
   const keep = (href, name, label) => element("a", { className: "button", href, download: name }, label);
   const save = keep("", `${fileName(session)}.html`, word("save"));
   save.onclick = () => { save.href = source(); };
-  const curves = ["csv", "parquet"].map((kind) => keep("report/curves?" + query({ session, as: kind }), `${fileName(session)}-curves.${kind}`, kind.toUpperCase()));
-  act.dialog(session, frame, [chosenBefore.label, chosenNorms.label, build, print, save, ...curves]);
+  const curves = ["csv", "parquet"].map((kind) => [kind, keep("", `${fileName(session)}-curves.${kind}`, kind.toUpperCase())]);
+  const link = () => { for (const [kind, one] of curves) one.href = "report/curves?" + query({ session, as: kind, ...charts() }); };
+  link();
+  act.dialog(session, frame, [chosenBefore.label, chosenNorms.label, ...picked.map(([, one]) => one.label), build, print, save, ...curves.map(([, one]) => one)]);
   show();
 }
 

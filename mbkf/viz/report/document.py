@@ -14,12 +14,13 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import LABELS_FILE
 from mbkf.io.session import FootEvent
 from mbkf.study.scaling.report import scaled_from
+from mbkf.trial.gait.convention import Convention, convention_of_result
 from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.progression import LABORATORY
 from mbkf.trial.results.summary import progression_summary
 from mbkf.trial.verdict.judge import verdict_of
 from mbkf.viz.markup import folded, paragraph, section, table
-from mbkf.viz.page import asset, document
+from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.contacts import contact_section
 from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
@@ -44,6 +45,8 @@ def report_page(
     summary: Mapping[str, object],
     labels: Mapping[str, object] | None = None,
     by_hand: Iterable[FootEvent] | None = None,
+    convention: Convention | None = None,
+    colours: str = BLUE_RED,
 ) -> str:
     """The report.
 
@@ -52,17 +55,19 @@ def report_page(
         summary: Its summary.json.
         labels: The JSON of ``mbkf label`` for the labelled capture, or None.
         by_hand: Strikes and toe-offs set by hand; None for the detected ones.
+        convention: Axes and signs of curves; None: the one that the result was reconstructed with.
+        colours: Of right and left, one of :data:`mbkf.viz.page.COLOURS`.
     """
-    r = reconstruction
+    r, convention = reconstruction, convention or convention_of_result(reconstruction)
     gait = find_gait(r, by_hand) if r.tracked.any() else None
     sections = [quality_section(r, summary, labels)]
     if r.tracked.any():
-        sections += [gait_section(gait, r.times_s), motion_section(r, gait), trunk_section(r)]
+        sections += [gait_section(gait, r.times_s), motion_section(r, gait, convention), trunk_section(r)]
         sections += [reaction_section(r, gait), contact_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)
-    return document("en", f"{r.trial} · mbkf report", asset("report.css"), there, body)
+    return document("en", f"{r.trial} · mbkf report", report_style(colours, "report.css"), there, body)
 
 
 def read_labels(path: str | Path) -> dict[str, object]:
@@ -125,7 +130,8 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
         folded("Other settings", table(("setting", "value"), _flat(others), "small")),
         folded("Subject", table(("scale factor", "value"), factors, "small") + scaled),
         paragraph(
-            f"{ANGLES_READ[r.angles_read]}; pelvis: {_pelvis_frame(r)}; world axes: x forward, y left, z up."
+            f"Files of the result: {ANGLES_READ[r.angles_read]}; pelvis: {_pelvis_frame(r)}; "
+            "world axes: x forward, y left, z up."
         ),
     )
 

@@ -13,22 +13,23 @@ from mbkf.io.results import Reconstruction, varying_sd
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
 from mbkf.numerics.runs import spread_indices
+from mbkf.trial.gait.convention import BY_MODEL, Convention
+from mbkf.trial.gait.curves import CURVE_PARTS, side_views
 from mbkf.trial.gait.cycles import POINTS, Gait, over_cycle
 from mbkf.trial.gait.facing import facing
+from mbkf.viz.convention_words import angle_positive, angle_title, moment_note, moment_title, notes
+from mbkf.viz.language import ENGLISH
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
+from mbkf.viz.report.reading import Reading, curve_of
 from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_known, spread_note
 from mbkf.viz.svg import WIDTH, Line, Mark, chart, number
-from mbkf.viz.wording import SIDE_NAMES, wordings
+from mbkf.viz.wording import SIDE_NAMES, Wording, wordings
 
 MOST_SINGLE = 8
 """Most cycles that are drawn one by one, evenly chosen; the mean is that of all."""
 
 LONG_S, BROAD = 15.0, 1110.0
 """Curves over a longer time, s, are drawn with this width."""
-
-
-Reader = Callable[..., Array]
-"""Reads a quantity of a result by its coordinate's name, and by the part of its spread."""
 
 
 @dataclass(frozen=True)
@@ -63,35 +64,49 @@ class Cell:
     Attributes:
         title, unit, positive: Texts of the chart.
         curves: By side: "r" and "l", or "" alone.
+        name: The coordinate without its side; empty for forces.
+        caption: The convention.
     """
 
     title: str
     unit: str
     positive: str
     curves: dict[str, Curve]
+    name: str = ""
+    caption: str = ""
 
 
-def motion_section(r: Reconstruction, gait: Gait | None) -> str:
-    """Angles and torques: over the gait cycle if there is gait, then against time."""
-    body = [_unobserved(r), paragraph(spread_note(r)), _ranges(r)]
+def motion_section(r: Reconstruction, gait: Gait | None, convention: Convention = BY_MODEL) -> str:
+    """Angles and torques: over the gait cycle if there is gait, then against time.
+
+    Args:
+        r: The results.
+        gait: The gait; None without.
+        convention: Axes and signs of angles and torques.
+    """
+    read = Reading.of(r, convention)
+    told = [paragraph(one) for one in notes(ENGLISH, convention, (read.angles.axes,))]
+    body = [_unobserved(r), *told, paragraph(spread_note(r)), _ranges(r, read)]
     if gait is not None:
-        body += _curves(r, "over the gait cycle", partial(cycle_chart, r.times_s, gait), gait, broad=False)
-    against = _curves(r, "against time", partial(time_chart, r.times_s), None, broad=is_long(r))
+        drawn = partial(cycle_chart, r.times_s, gait)
+        body += _curves(r, read, "over the gait cycle", drawn, gait, broad=False)
+    against = _curves(r, read, "against time", partial(time_chart, r.times_s), None, broad=is_long(r))
     body += [folded("Angles and torques against time", *against)] if gait and is_long(r) else against
     return section("motion", "Joint angles and torques", *body)
 
 
 def _curves(
-    r: Reconstruction, how: str, draw: Callable[[Cell], str], gait: Gait | None, broad: bool
+    r: Reconstruction, read: Reading, how: str, draw: Callable[[Cell], str], gait: Gait | None, broad: bool
 ) -> list[str]:
     names, parts = joint_names(reference_body(r.subject)), []
+    sense = paragraph(moment_note(ENGLISH, read.convention, _TORQUE_NOTE))
     for what, note, cells, lower in (
-        ("angles", _key(r, gait), angle_cells, names.legs),
-        ("torques", paragraph(_TORQUE_NOTE), torque_cells, names.loaded),
+        ("angles", _key(r, gait), angle_cells, leg_angle_cells(r, names.legs, read)),
+        ("torques", sense, torque_cells, torque_cells(r, names.loaded, read)),
     ):
-        parts += [f"<h3>Joint {what} {how}</h3>", note, charts(cells(r, lower), draw, broad)]
+        parts += [f"<h3>Joint {what} {how}</h3>", note, charts(lower, draw, broad)]
         if names.upper:
-            upper = charts(cells(r, names.upper), draw, broad)
+            upper = charts(cells(r, names.upper, read), draw, broad)
             parts.append(folded(f"Trunk, head and arms: {what}", upper))
     return parts
 
@@ -114,21 +129,71 @@ def reaction_section(r: Reconstruction, gait: Gait | None) -> str:
     return section("reactions", "Ground reactions", _key(r, gait), *body)
 
 
-def angle_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
-    """Charts of angles, one row for each joint."""
-    return _cells(r, joints, "", lambda name, words: _scaled(r, r.angle, r.angle_sd, name, words.factor))
+def leg_angle_cells(r: Reconstruction, joints: Sequence[str], read: Reading) -> list[list[Cell]]:
+    """Charts of the legs' angles in the convention's order, those of the midline as each side sees them.
+
+    Args:
+        r: The results.
+        joints: The body's joints, shown where the convention has no order of its own.
+        read: The angles.
+    """
+    if not read.convention.rows:
+        return angle_cells(r, joints, read)
+    sides = [
+        {one.name: one for one in side_views(r, k, read.convention, read.angles) if one.quantity == "angle"}
+        for k in range(len(SIDES))
+    ]
+    rows = []
+    for row in read.convention.rows:
+        cells = []
+        for name in row:
+            title, positive = (
+                word(ENGLISH, read.convention, name, name) for word in (angle_title, angle_positive)
+            )
+            curves = {
+                side: curve_of(r, one[name].value, one[name][4:])
+                for side, one in zip(SIDES, sides, strict=True)
+                if name in one and np.isfinite(one[name].value).any()
+            }
+            if curves:
+                cells.append(Cell(title, "°", positive, curves, name, read.caption))
+        rows.append(cells)
+    return [row for row in rows if row]
 
 
-def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
-    """Charts of torques per body mass, one row for each joint."""
-    per_kg = 1.0 / r.subject.mass_kg
-    return _cells(r, joints, "N m/kg", lambda name, _: _scaled(r, r.moment, r.moment_sd, name, per_kg))
+def angle_cells(r: Reconstruction, joints: Sequence[str], read: Reading | None = None) -> list[list[Cell]]:
+    """Charts of angles, one row for each joint.
+
+    Args:
+        r: The results.
+        joints: The joints, named without their sides.
+        read: Angles and signs of a convention; None: the result's.
+    """
+    read = read or Reading.of(r, BY_MODEL)
+
+    def curve(name: str, words: Wording) -> Curve:
+        values, spreads = read.angles.of(name)
+        return curve_of(r, words.factor * values, words.factor * spreads)
+
+    return _cells(r, joints, "", curve, read, lambda _, title: title)
 
 
-def _scaled(r: Reconstruction, values: Reader, spreads: Reader, name: str, factor: float) -> Curve:
-    """A coordinate's curve with its spread in the unit shown."""
-    parts = [spreads(name, part) for part in ("offset", "varying")] if offsets_known(r) else []
-    return Curve(*(factor * one for one in (values(name), spreads(name), *parts)))
+def torque_cells(r: Reconstruction, joints: Sequence[str], read: Reading | None = None) -> list[list[Cell]]:
+    """Charts of torques per body mass, one row for each joint.
+
+    Args:
+        r: The results.
+        joints: The joints, named without their sides.
+        read: Angles and signs of a convention; None: the result's.
+    """
+    read = read or Reading.of(r, BY_MODEL)
+    convention, per_kg = read.convention, 1.0 / r.subject.mass_kg
+
+    def curve(name: str, _: Wording) -> Curve:
+        spreads = [per_kg * r.moment_sd(name, part) for part in CURVE_PARTS]
+        return curve_of(r, convention.moment_sign(name[:-2]) * per_kg * r.moment(name), spreads)
+
+    return _cells(r, joints, "N m/kg", curve, read, partial(moment_title, ENGLISH, convention))
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
@@ -182,7 +247,12 @@ def force_cells(
 
 
 def _cells(
-    r: Reconstruction, joints: Sequence[str], unit: str, curve: Callable[..., Curve]
+    r: Reconstruction,
+    joints: Sequence[str],
+    unit: str,
+    curve: Callable[[str, Wording], Curve],
+    read: Reading,
+    title: Callable[[str, str], str],
 ) -> list[list[Cell]]:
     known_joints = reference_body(r.subject).clinical_joints
     words, rows = wordings(known_joints), []
@@ -198,7 +268,10 @@ def _cells(
             known = {side: name for side, name in names.items() if name in r.coordinate_names}
             curves = {side: curve(name, words[name]) for side, name in known.items()}
             if any(np.isfinite(one.values).any() for one in curves.values()):
-                row.append(Cell(w.title, unit or w.unit, w.positive, curves))
+                base = angle.name.removesuffix("_r")
+                shown = title(base, w.title)
+                positive = w.positive if shown == w.title else ""
+                row.append(Cell(shown, unit or w.unit, positive, curves, base, read.caption))
         if row:
             rows.append(row)
     return rows
@@ -230,7 +303,12 @@ def time_chart(times_s: Array, cell: Cell) -> str:
     ]
     span = (float(times_s[0]), float(max(times_s[-1], times_s[0] + 1e-3)))
     width = BROAD if span[1] - span[0] > LONG_S else WIDTH
-    return chart(cell.title, cell.unit, lines, span, "s", note=f"positive: {cell.positive}", width=width)
+    note = _positive(cell)
+    return chart(cell.title, cell.unit, lines, span, "s", note=note, width=width, caption=cell.caption)
+
+
+def _positive(cell: Cell) -> str:
+    return f"positive: {cell.positive}" if cell.positive else ""
 
 
 def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
@@ -257,8 +335,10 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
         bold.append(Line(percent, each.mean(axis=0), wide, side, inner_sd=inner))
         if side:
             marks.append(Mark(float(np.mean([cycle.off_percent for cycle in cycles])), side))
-    note = f"positive: {cell.positive}"
-    return chart(cell.title, cell.unit, [*thin, *bold], (0.0, 100.0), "%", marks=marks, note=note)
+    note, lines = _positive(cell), [*thin, *bold]
+    return chart(
+        cell.title, cell.unit, lines, (0.0, 100.0), "%", marks=marks, note=note, caption=cell.caption
+    )
 
 
 def is_long(r: Reconstruction) -> bool:
@@ -287,18 +367,19 @@ def _unobserved(r: Reconstruction) -> str:
     return paragraph(f"Not shown, because neither markers nor sensors observe them: {', '.join(segments)}.")
 
 
-def _ranges(r: Reconstruction) -> str:
+def _ranges(r: Reconstruction, read: Reading) -> str:
     """Least and greatest angle and torque of the main angle of each joint of the legs."""
     rows = []
     loaded = joint_names(reference_body(r.subject)).loaded
-    loads = {torque.title: torque.curves for torque, *_ in torque_cells(r, loaded)}
-    for angle, *_ in angle_cells(r, loaded):
+    loads = {torque.name: torque.curves for torque, *_ in torque_cells(r, loaded, read)}
+    for angle, *_ in angle_cells(r, loaded, read):
         for side, name in SIDE_NAMES.items():
-            load = _extremes(loads.get(angle.title, {}).get(side), 2)
+            load = _extremes(loads.get(angle.name, {}).get(side), 2)
             rows.append((f"{angle.title}, {name}", *_extremes(angle.curves.get(side), 1), *load))
     if not rows:
         return ""
-    heads = ("", "least angle °", "greatest angle °", "least torque N m/kg", "greatest torque N m/kg")
+    kind = "extension moment" if read.convention.reversed_moments else "torque"
+    heads = ("", "least angle °", "greatest angle °", f"least {kind} N m/kg", f"greatest {kind} N m/kg")
     shift = "; in brackets, its part that repeats in the same posture" if offsets_known(r) else ""
     return f"<h3>Ranges (± 2 standard deviations{shift})</h3>" + table(heads, rows)
 

@@ -13,10 +13,10 @@ from mbkf.model.description import BodyDescription
 from mbkf.numerics.runs import spread_indices
 from mbkf.study.session.chosen import Chosen, chosen_curves
 from mbkf.study.session.comparison import CurvePair
-from mbkf.study.session.cycles import FORCES, PERCENT, POWER, REACTION, Key, SideCycles
+from mbkf.study.session.cycles import ANGLE, FORCES, PERCENT, POWER, REACTION, TORQUE, Key, SideCycles
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.svg import Line, Mark, chart
-from mbkf.viz.wording import wordings
+from mbkf.viz.wording import Wording, wordings
 
 MOST_SINGLE = 12
 """Most cycles that are drawn one by one, evenly chosen; the mean is that of all."""
@@ -50,13 +50,32 @@ def joint_rows(
         entry = next((one for one in body.clinical_joints if one.name in (joint, f"{joint}_r")), None)
         if entry is None:
             continue
-        row = []
-        for angle in entry.angles:
-            own, name = known[angle.name], angle.name.removesuffix("_r")
-            title, positive = terms.coordinate(name, own.title), terms.positive(name, own.positive)
-            row.append(Shown(Key(quantity, name), title, positive))
-        rows.append(row)
+        names = [angle.name for angle in entry.angles]
+        rows.append([_shown(quantity, known[name], name.removesuffix("_r"), terms) for name in names])
     return rows
+
+
+def _shown(quantity: str, own: Wording, name: str, terms: Terms) -> Shown:
+    if quantity == TORQUE and name in terms.convention.reversed_moments:
+        return Shown(Key(quantity, name), terms.moment(name, own.title), "")
+    title, positive = terms.coordinate(name, own.title), terms.positive(name, own.positive)
+    return Shown(Key(quantity, name), title, positive)
+
+
+def angle_rows(body: BodyDescription, joints: Sequence[str], terms: Terms) -> list[list[Shown]]:
+    """The angles of the legs in the order of the convention, or of the body where that has no own one.
+
+    Args:
+        body: The body.
+        joints: Names of its joints without sides.
+        terms: The report's words.
+    """
+    if not terms.convention.rows:
+        return joint_rows(body, joints, ANGLE, terms)
+    return [
+        [Shown(Key(ANGLE, name), terms.coordinate(name, name), terms.positive(name, "")) for name in row]
+        for row in terms.convention.rows
+    ]
 
 
 def power_rows(joints: Sequence[str], terms: Terms) -> list[list[Shown]]:
@@ -93,7 +112,15 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
     if norm is not None and norm.unit == unit:
         thin.insert(0, Line(PERCENT, norm.mean, 0.5 * norm.sd, "n", thin=True))
     note = f"+ {shown.positive}" if shown.positive else ""
-    return chart(shown.title, terms.unit(unit), [*thin, *bold], PER_CENT, "%", marks=marks, note=note)
+    caption = _caption(shown, terms)
+    return chart(
+        shown.title, terms.unit(unit), [*thin, *bold], PER_CENT, "%", marks=marks, note=note, caption=caption
+    )
+
+
+def _caption(shown: Shown, terms: Terms) -> str:
+    """The convention on charts of angles and torques; others have it from neither."""
+    return terms.statement if shown.key.quantity in (ANGLE, TORQUE) else ""
 
 
 def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms: Terms) -> list[str]:
@@ -113,7 +140,10 @@ def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms:
         for side, pair in known.items()
     ]
     title, unit = f"{shown.title}: {terms.say('change')}", next(iter(known.values())).unit
-    return [*charts, chart(title, terms.unit(unit), lines, PER_CENT, "%", level=0.0)]
+    return [
+        *charts,
+        chart(title, terms.unit(unit), lines, PER_CENT, "%", level=0.0, caption=_caption(shown, terms)),
+    ]
 
 
 def _pair_chart(pair: CurvePair, shown: Shown, terms: Terms) -> str:
@@ -121,7 +151,9 @@ def _pair_chart(pair: CurvePair, shown: Shown, terms: Terms) -> str:
     lines = [_mean_line(chosen, style) for chosen, style in both]
     marks = [Mark(chosen.off_percent, style) for chosen, style in both]
     title = f"{shown.title}, {terms.say('left' if pair.side else 'right')}"
-    return chart(title, terms.unit(pair.unit), lines, PER_CENT, "%", marks=marks)
+    return chart(
+        title, terms.unit(pair.unit), lines, PER_CENT, "%", marks=marks, caption=_caption(shown, terms)
+    )
 
 
 def _mean_line(chosen: Chosen, style: str) -> Line:

@@ -13,13 +13,16 @@ from mbkf.study.session.cycles import Key
 from mbkf.study.session.emg import PEAK
 from mbkf.study.session.norm_selection import speed_of
 from mbkf.study.session.records import MovementGroup, Session
+from mbkf.trial.gait.convention import convention_of
 from mbkf.version import __version__
-from mbkf.viz.language import ENGLISH
+from mbkf.viz.convention_words import statement
+from mbkf.viz.language import ENGLISH, filled, words
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
-from mbkf.viz.page import asset, document
+from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.motion import JointNames, joint_names
 from mbkf.viz.session.charts import (
     Shown,
+    angle_rows,
     joint_rows,
     pair_charts,
     power_rows,
@@ -38,6 +41,7 @@ def session_page(
     norms: Norms | None = None,
     language: str = ENGLISH,
     emg_reference: str = PEAK,
+    colours: str = BLUE_RED,
 ) -> str:
     """The report.
 
@@ -47,12 +51,13 @@ def session_page(
         norms: The laboratory's reference bands; None without.
         language: Code of the report's language.
         emg_reference: 100 % of electromyograms: "peak" or "mean" of the session's cycles, or the peak of a trial.
+        colours: Of right and left, one of :data:`mbkf.viz.page.COLOURS`.
 
     Raises:
         InvalidInput: The language does not exist.
-        UnknownName: The session has no such trial with electromyograms.
+        UnknownName: The session has no such trial with electromyograms, or the colours do not exist.
     """
-    terms = Terms(language)
+    terms = Terms(language, session.convention, session.axes)
     names = joint_names(reference_body(session.subject))
     parts = [("trials", terms.say("trials"), trials_table(session, terms))]
     parts += [
@@ -72,7 +77,7 @@ def session_page(
         parts.append(("change", terms.say("before_after"), _changes(before, session, names, terms)))
     parts.append(("numbers", terms.say("numbers"), _numbers(session, terms)))
     body = _heading(session, terms) + "".join(section(name, title, text) for name, title, text in parts)
-    style = asset("report.css") + asset("session_report.css")
+    style = report_style(colours, "report.css", "session_report.css")
     links = [(name, title) for name, title, _ in parts]
     return document(language, f"{session.name} · {terms.say('title')}", style, links, body)
 
@@ -96,7 +101,9 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
     norms = None if norms is None else norms.at_speed(speed_of(gait))
     counts = [len(side.cycles) for side in gait.sides]
 
-    known = {} if norms is None else norms.curves
+    read = (session.convention.name, *session.axes)
+    alike = norms if norms is not None and norms.read == read else None
+    known = {} if alike is None else alike.curves
 
     def draw(rows: list[list[Shown]]) -> str:
         def one_chart(one: Shown) -> str:
@@ -120,13 +127,14 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f"<h3>{escape(terms.say('parameters'))}</h3>",
             measures_table(gait.measures, terms, norms, gait.kind),
             paragraph(terms.say("table_note")),
-            scores_part(gait, norms, terms),
+            scores_part(gait, alike, terms),
             f'<h3 class="sheet">{escape(terms.say("angles"))}</h3>',
-            _key(gait, norms, terms),
+            _key(gait, alike, terms),
+            *(paragraph(one) for one in (*terms.convention_notes, *_norms_apart(norms, session, terms))),
             paragraph(terms.say("midline_note")),
-            coordinates("angle", names.legs),
+            draw(angle_rows(body, names.legs, terms)),
             f'<h3 class="sheet">{escape(terms.say("torques"))}</h3>',
-            paragraph(terms.say("torque_note")),
+            paragraph(terms.moment_note),
             coordinates("torque", names.loaded),
             f"<h3>{escape(terms.say('powers'))}</h3>",
             paragraph(terms.say("power_note")),
@@ -137,6 +145,14 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f'<div class="sheet">{"".join(upper)}</div>' if upper else "",
         )
     )
+
+
+def _norms_apart(norms: Norms | None, session: Session, terms: Terms) -> list[str]:
+    """A sentence on norms that are in another convention than the session."""
+    if norms is None or norms.read == (session.convention.name, *session.axes):
+        return []
+    text = statement(terms.language, convention_of(norms.convention), (norms.axes,))
+    return [filled(words(terms.language, "convention")["norms_differ"], norms.name, text)]
 
 
 def _changes(before: Session, after: Session, names: JointNames, terms: Terms) -> str:
@@ -168,7 +184,7 @@ def _change(comparison: Comparison, after: Session, names: JointNames, terms: Te
         ),
     ]
     for title, rows in (
-        ("angles", joint_rows(body, names.legs, "angle", terms)),
+        ("angles", angle_rows(body, names.legs, terms)),
         ("torques", joint_rows(body, names.loaded, "torque", terms)),
         ("powers", power_rows(joints, terms)),
         ("reactions", reaction_rows(terms)),
@@ -209,7 +225,8 @@ def _key(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
 
 def _numbers(session: Session, terms: Terms) -> str:
     body, names = reference_body(session.subject), joint_names(reference_body(session.subject))
-    shown = [one for row in joint_rows(body, (*names.legs, *names.upper), "angle", terms) for one in row]
+    rows = [*angle_rows(body, names.legs, terms), *joint_rows(body, names.upper, "angle", terms)]
+    shown = [one for row in rows for one in row]
     signs = table((terms.say("angles"), "+"), [(one.title, one.positive) for one in shown], "small")
     filters = "; ".join(dict.fromkeys(trial.filter for trial in session.trials))
     used = used_trials(session.subject.report)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mbkf.trial.gait.convention import BY_MODEL, MODEL, Convention
+from mbkf.viz.convention_words import angle_positive, angle_title, moment_note, moment_title, notes, statement
 from mbkf.viz.language import filled, words
 
 
@@ -13,9 +15,37 @@ class Terms:
 
     Attributes:
         language: Its code, e.g. "es".
+        convention: Axes and signs of the curves.
+        axes: Axes that the trials' angles are read in.
     """
 
     language: str
+    convention: Convention = BY_MODEL
+    axes: tuple[str, ...] = (MODEL,)
+
+    @property
+    def statement(self) -> str:
+        """The convention in short, for charts."""
+        return statement(self.language, self.convention, self.axes)
+
+    @property
+    def convention_notes(self) -> list[str]:
+        """The convention in sentences."""
+        return notes(self.language, self.convention, self.axes)
+
+    @property
+    def moment_note(self) -> str:
+        """The sense of moments."""
+        return moment_note(self.language, self.convention, self.say("torque_note"))
+
+    def moment(self, name: str, otherwise: str) -> str:
+        """The title of the moment of a coordinate.
+
+        Args:
+            name: The coordinate, without its side.
+            otherwise: The body's own title.
+        """
+        return moment_title(self.language, self.convention, name, self.coordinate(name, otherwise))
 
     def say(self, name: str, *values: object) -> str:
         """A text of the section ``session_report``, filled with values."""
@@ -43,8 +73,10 @@ class Terms:
 
     def coordinate(self, name: str, otherwise: str) -> str:
         """The title of a coordinate without its side, or the body's own one."""
-        return words(self.language, "coordinates").get(name, otherwise)
+        known = words(self.language, "coordinates").get(name, otherwise)
+        return angle_title(self.language, self.convention, name, known)
 
     def positive(self, name: str, otherwise: str) -> str:
         """The meaning of a positive value, or the body's own words."""
-        return words(self.language, "positive").get(name, otherwise)
+        known = words(self.language, "positive").get(name, otherwise)
+        return angle_positive(self.language, self.convention, name, known)

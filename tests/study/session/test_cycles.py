@@ -9,7 +9,8 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.verdict import Reason, Verdict
 from mbkf.model.human import reference_body
-from mbkf.study.session.cycles import Key, cycles_of_trial, mirrored_midline, part_of_curve, together
+from mbkf.study.session.cycles import Key, cycles_of_trial, part_of_curve, together
+from mbkf.trial.gait.curves import mirrored_midline
 from mbkf.trial.gait.cycles import find_gait, over_cycle
 from tests.study.session.sessions import estimated, walks
 
