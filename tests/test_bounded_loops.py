@@ -24,6 +24,7 @@ BOUNDS = {
     "model/body_checks.py _tree": "each round shortens the chain",
     "model/body_file.py _chain": "no segment stands twice in the chain",
     "trial/checks/orientation.py axes_findings": "each round settles one plate",
+    "trial/gait/convention_angles.py _chain": "up the tree of segments to its root",
     "trial/inertial/mounted_reversed.py mounted_reversed": "one exchange, and each round takes one group away",
     "trial/labelling/single_pass.py LabellingPass.run": "the frame grows by one or more",
     "trial/labelling/single_pass.py LabellingPass._follow": "the frame grows by one",
