@@ -2,9 +2,9 @@
 
 The model's own best fit to the measured markers, all weighing alike, is the yardstick: no pose of the model lies nearer
 to them. Beside it stand the poses that come with the captures: gait2354's by OpenSim's inverse kinematics, Rajagopal's
-changed by its residual reduction. The capture holds no weights of gait2354's; weights of 20 (pelvis), 10 (heels, tips of
-toes), 1, 0.5 (shoulders) and 0.1 (head), fitted to these poses, give them with subtalar and toe joints held at 0: within
-1° RMS of each leg's coordinate.
+changed by its residual reduction. The capture holds no weights of gait2354's; weights of 20 (pelvis), 10 (heels,
+tips of toes), 1, 0.5 (shoulders) and 0.1 (head), fitted to these poses, give them with subtalar and toe joints held at
+0: within 1° RMS of each leg's coordinate.
 """
 
 from __future__ import annotations
