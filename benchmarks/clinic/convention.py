@@ -1,9 +1,9 @@
 """The clinical convention against the curves of Plug-in Gait that the files of five walks hold.
 
 Zero: the mean difference of a curve. Sign: the correlation of ours with theirs, where theirs moves and both go together
-or against each other. Plug-in Gait's axes were written with HC032A, HC044A and cgm24 in view
-(``benchmarks angles``), the unit of a file's angles and the foot's progression with functional_walk; gaitalytics_walk
-was looked at for neither.
+or against each other. Plug-in Gait's axes were set on HC032A, HC044A and cgm24 (``benchmarks angles``), the unit of a
+file's angles on functional_walk, the order of the foot's progression on functional_walk, gaitalytics_walk and HC032A.
+The movement from which a sign counts, 1°, was set after all five walks had been seen.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ MOMENTS = (
 )
 
 LEAST_MOVED_DEG, LEAST_MOVED_NM_KG = 1.0, 0.2
-"""Standard deviation of Plug-in Gait's curve from which its sign can be judged."""
+"""Standard deviation of Plug-in Gait's curve from which its sign can be judged; 1° was set on all five walks."""
 
 LEAST_CORRELATION = 0.5
 """Without sign; of curves that are less alike, noise hides it."""
