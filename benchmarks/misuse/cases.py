@@ -22,7 +22,7 @@ OUT = "OUT"
 NO_FILES = {
     "acc=g,gyr=deg/s", "ADDRESS", "[ADDRESS:]PORT", "AXIS", "A,B", "A,B,C", "A,B@T0:T1", "CODE", "E",
     "FIRST:LAST:COUNT", "FRACTION", "HZ", "I/N", "IP", "KG", "KG|auto", "LABEL", "LIST", "M", "MS", "N", "NAME",
-    "NAME=VALUE", "NAME|N", "S", "SD", "TEXT", "T0:T1", "UNIT", "W,X,Y,Z|compared", "X", "X,Y,Z",
+    "NAME=VALUE", "NAME|N", "PERSON", "S", "SD", "TEXT", "T0:T1", "UNIT", "WORD", "W,X,Y,Z|compared", "X", "X,Y,Z",
 }  # fmt: skip
 """Values in help texts that name no file."""
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks.commands import mbkf
 from benchmarks.robustness.samples import make_samples
+from mbkf.io.session import SESSION_FILE
 
 INPUTS = {
     "trial": "trial.c3d", "trc": "trial.trc", "raw": "raw.c3d", "static": "static.c3d", "subject": "subject.toml",
@@ -21,6 +22,9 @@ INPUTS = {
 """Files and folders of the laboratory by the names that cases give them."""
 
 PERSONS, GAIT_S = ("P1", "P2"), 3.0
+STATED = 'sex = "female"\nage = 30.0\n'
+"""Statements without which a person belongs into no norms."""
+
 REST = '[[subject]]\nname = "P"\nstatic = "static.c3d"\ntrials = ["trial.c3d"]\n'
 
 
@@ -49,6 +53,8 @@ def made_world(folder: Path) -> Path:
         for name in ("static.c3d", "trial.c3d"):
             shutil.copy(made / name, folder / "gait" / person)
     mbkf("batch", folder / "gait", "--workers", "1", "--filter", "kinematic", "--out", folder / "results")
+    for person in PERSONS:
+        (folder / "results" / person / SESSION_FILE).write_text(STATED, "utf-8")
     for name in ("made", "gait"):
         shutil.rmtree(folder / name)
     return folder
