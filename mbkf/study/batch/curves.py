@@ -14,6 +14,8 @@ from mbkf.io.atomic import replacing
 from mbkf.io.files_read import check_input, own_files_read, read_bytes
 from mbkf.io.results import Reconstruction
 from mbkf.io.session import FootEvent
+from mbkf.trial.gait.convention import Convention, convention_of_result
+from mbkf.trial.gait.convention_angles import ConventionAngles, convention_angles
 from mbkf.trial.gait.curves import SideCurve, side_curves
 from mbkf.trial.gait.cycles import POINTS, Cycle, find_gait, over_cycle
 
@@ -40,7 +42,9 @@ SCHEMA = pa.schema(
 """Columns of a trial's curves. side, cycle: whose cycle, and the how-manieth of that side from 1. start_s, duration_s,
 toe_off_percent: of the cycle. measured, valid: whether every load in it was measured, and every torque known
 (:attr:`Reconstruction.measured`, ``valid``). quantity: angle, torque, power or reaction. name: the coordinate, without
-its side, or the axis of the force. percent: 0 to 100 of the cycle. value, sd: in ``unit``."""
+its side, or the axis of the force. percent: 0 to 100 of the cycle. value, sd: in ``unit``. Angles and torques have the
+axes and signs of the convention that the result was reconstructed with; those of the midline are as the right side
+sees them."""
 
 
 def read_curves(path: Path) -> pa.Table:
@@ -90,18 +94,22 @@ def curves_of(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> 
         r: The reconstruction.
         by_hand: Strikes and toe-offs set by a person; None: those found by the filter or the motion.
     """
-    gait = find_gait(r, by_hand)
-    tables = []
+    gait, convention = find_gait(r, by_hand), convention_of_result(r)
+    if gait is None:
+        return SCHEMA.empty_table()
+    angles, tables = convention_angles(r, convention), []
     for side in range(2):
-        cycles = () if gait is None else gait.of(side)
-        curves = list(_curves(r, side)) if cycles else []
+        cycles = gait.of(side)
+        curves = list(_curves(r, side, convention, angles)) if cycles else []
         tables += [_table(r, cycle, number, curves) for number, cycle in enumerate(cycles, start=1)]
     return pa.concat_tables(tables).unify_dictionaries() if tables else SCHEMA.empty_table()
 
 
-def _curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
+def _curves(
+    r: Reconstruction, side: int, convention: Convention, angles: ConventionAngles
+) -> Iterator[SideCurve]:
     """Quantities of a side's cycles; reactions are in the laboratory's axes."""
-    yield from side_curves(r, side)
+    yield from side_curves(r, side, convention, angles)
     unknown = np.full(len(r.times_s), np.nan)
     for k, axis in enumerate(AXES):
         sd = unknown if r.foot_wrench_sd is None else r.foot_wrench_sd[:, side, k]

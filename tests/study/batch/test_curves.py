@@ -13,6 +13,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.files_read import files_read
 from mbkf.io.subject import read_subject
 from mbkf.study.batch.curves import SCHEMA, curves_of, read_curves, write_curves, write_curves_table
+from mbkf.trial.gait.convention import BY_CLINIC, CLINICAL
+from mbkf.trial.gait.convention_angles import convention_angles
 from mbkf.trial.gait.cycles import POINTS, find_gait, over_cycle
 from mbkf.trial.gait.events import plain_found
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -133,6 +135,23 @@ def test_curves_are_cut_at_events_by_hand():
     own = [value for *key, value in asked if key == ["right", 1, "angle", "knee_angle"]]
     np.testing.assert_allclose(own, knee, rtol=1e-6)
     assert curves_of(walked(), ()).num_rows == 0
+
+
+def test_curves_have_the_convention_of_the_result():
+    r = walked()
+    clinical = curves_of(replace(r, settings={**r.settings, "convention": CLINICAL})).to_pydict()
+    asked = zip(*(clinical[name] for name in ("side", "cycle", "quantity", "name", "value")), strict=True)
+    found = {}
+    for *key, value in asked:
+        found.setdefault(tuple(key), []).append(value)
+    read = convention_angles(r, BY_CLINIC)
+    for side, word, number, cycle in cycles():
+        moment = -over_cycle(r.times_s, r.moment(f"hip_flexion_{'rl'[side]}"), cycle)
+        np.testing.assert_allclose(found[word, number, "torque", "hip_flexion"], moment, rtol=1e-6)
+        for name in ("pelvis_tilt", f"foot_progression_{'rl'[side]}"):
+            angle = np.rad2deg(over_cycle(r.times_s, read.of(name)[0], cycle))
+            own = found[word, number, "angle", name.removesuffix(f"_{'rl'[side]}")]
+            np.testing.assert_allclose(own, angle, rtol=1e-5, atol=1e-5)
 
 
 def test_a_folder_of_any_bytes_holds_curves(tmp_path):
