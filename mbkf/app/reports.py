@@ -94,10 +94,6 @@ def norms_selection(workspace: Workspace, session: str) -> Plain:
         workspace: The sessions.
         session: Name of the session that the norms are for; empty for norms of all.
 
-    Args:
-        workspace: The sessions.
-        convention: Axes and signs of curves.
-
     Raises:
         FileFormatError: A file is damaged.
     """

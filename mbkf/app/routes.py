@@ -138,12 +138,7 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
         data("/report/choices", lambda query: reports.choices(workspace, query["session"])),
         download("/report/curves", curves),
         data("/norms/selection", lambda query: reports.norms_selection(workspace, query["session"])),
-        action(
-            "/norms",
-            lambda query, _body: reports.build(
-                workspace, query["session"], workspace.charts.chosen(query).read
-            ),
-        ),
+        action("/norms", norms),
     ]
 
 

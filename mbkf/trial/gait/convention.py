@@ -108,8 +108,7 @@ def convention_of(name: str, moments: str = INTERNAL) -> Convention:
         raise UnknownName("convention", name, CONVENTIONS)
     if moments not in MOMENTS:
         raise UnknownName("kind of moments", moments, MOMENTS)
-    found = known[name]
-    return replace(found, moments=moments)
+    return replace(known[name], moments=moments)
 
 
 def convention_of_result(r: Reconstruction) -> Convention:

@@ -104,8 +104,7 @@ def _read_again(
     old = ClinicalAngles(model, angle_reading(r.angles_read, model, r.subject, r.processing))
     new = ClinicalAngles(model, reading)
     known = np.asarray(np.isfinite(r.q).all(axis=1))
-    values, carried = np.full(r.angles.shape, np.nan), spreads.copy()
-    q = new.against(heading_rad, r.q)
+    carried, q = spreads.copy(), new.against(heading_rad, r.q)
     values = new.angles(q)
     before = old.angles(r.q if r.heading_rad is None else old.against(r.heading_rad, r.q))[known]
     turns = np.linalg.inv(old.ball_rates(r.q[known], before))
