@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from mbkf.marker_sets.names import NameReading
+from mbkf.model.description import Roles
 
 PARTS = {
     "head": ("head", "neck"),
@@ -16,9 +17,6 @@ PARTS = {
     "foot": ("foot", "toes"),
 }
 """Segments of the parts, by the end of their names."""
-
-LOWER = ("pelvis", "leg", "foot")
-"""Parts of which one at least has to carry markers: the others are small, or move too freely about each other."""
 
 PLURAL = {"arm": "arms", "hand": "hands", "leg": "legs", "foot": "feet"}
 """Names of both sides of a part."""
@@ -62,12 +60,15 @@ def parts_in_words(segments: Collection[str]) -> tuple[str, str]:
     return ", ".join(seen), ", ".join(bare)
 
 
-def upper_body_only(markers: Mapping[str, int]) -> dict[str, int]:
+def upper_body_only(markers: Mapping[str, int], roles: Roles) -> dict[str, int]:
     """The number of markers by segment of the upper body alone, empty where pelvis, legs or feet carry some as well.
+
+    The lower body has to carry markers: head and hands are small, and arms move too freely about the trunk.
 
     Args:
         markers: Number of markers by segment; a few of the lower body may be misread names.
+        roles: Roles of the body's segments.
     """
-    lower = tuple(end for part in LOWER for end in PARTS[part])
-    upper = {segment: count for segment, count in markers.items() if not segment.endswith(lower)}
+    lower = roles.lower_body
+    upper = {segment: count for segment, count in markers.items() if segment not in lower}
     return upper if sum(upper.values()) >= (1.0 - MISREAD) * sum(markers.values()) else {}

@@ -140,6 +140,11 @@ class Roles:
     steady: tuple[str, ...]
     knees: tuple[tuple[str, str], ...]
 
+    @property
+    def lower_body(self) -> frozenset[str]:
+        """The root, and the segments of legs, feet and toes."""
+        return frozenset((self.root, *self.legs, *self.feet, *self.toes))
+
 
 @dataclass(frozen=True)
 class SegmentShape:

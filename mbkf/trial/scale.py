@@ -14,7 +14,7 @@ from mbkf.errors import InvalidInput, MbkfError, NotConverged, NotObservable
 from mbkf.io.records import Capture
 from mbkf.io.static_exchanges import STATIC_EXCHANGED_KEY
 from mbkf.io.subject import Subject
-from mbkf.marker_sets.parts import parts_in_words, upper_body_only
+from mbkf.marker_sets.parts import upper_body_only
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, load_protocol
@@ -192,7 +192,7 @@ def _scaled(
         extra[REPORT_KEY] = axes
     doubts = [
         *_others_in_view(checked, use),
-        *_upper_body(subject),
+        *_upper_body(subject, protocol.body),
         *stature_doubts(height_m, subject, protocol.body),
     ]
     if doubts:
@@ -214,15 +214,18 @@ def _others_in_view(captures: Sequence[Capture], use: MarkerUse) -> list[str]:
     return [f"{worst.sentence}: a second person is in view; scale from a capture of one"]
 
 
-def _upper_body(subject: Subject) -> list[str]:
-    """A sentence on a person without markers on pelvis and legs."""
+def _upper_body(subject: Subject, body: BodyDescription) -> list[str]:
+    """A sentence on a person without markers on pelvis and legs; it names the body's own segments."""
     seen = subject.report["markers"]
     assert isinstance(seen, dict)
-    upper = upper_body_only(Counter(one.segment for one in subject.markers if one.name in seen))
+    counts = Counter(one.segment for one in subject.markers if one.name in seen)
+    upper = upper_body_only(counts, body.roles)
     if not upper:
         return []
-    parts, bare = parts_in_words(upper)
-    return [f"markers are on {parts} alone; {bare} keep the reference body's proportions"]
+    return [
+        f"markers are on {', '.join(upper)} alone; pelvis, legs and feet keep the reference body's proportions: add "
+        "markers there"
+    ]
 
 
 def _rarely_seen(captures: Sequence[Capture], protocol: Protocol, subject: Subject) -> dict[str, str]:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
+from mbkf.model.body_file import load_body
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY
-from mbkf.trial.scale import scale
+from mbkf.trial.scale import _upper_body, scale
 from tests.motions import capture_of, marker_positions, moderate_pose, protocol_sensor, random_model
 
 MODEL = random_model(np.random.default_rng(1), spread=0.05)
@@ -59,6 +60,21 @@ def test_some_points_of_a_second_person_and_a_contradicted_height_are_doubts_of_
     found = scale(both, mass_kg=70.0, height_m=1.3, protocol="reference36")
     second, height = found.report[DOUBTS_KEY][-2:]
     assert "a second person is in view" in second and "1.30 m" in height
+
+
+def test_a_body_without_markers_on_pelvis_and_legs_is_doubtful_and_one_with_other_names_is_not(subject):
+    body = load_body()
+    upper = tuple(one for one in subject.markers if one.segment in ("torso", "head"))
+    assert _upper_body(subject, body) == []
+    (found,) = _upper_body(replace(subject, markers=upper), body)
+    assert "torso" in found and "pelvis, legs and feet keep" in found
+    legs = tuple(replace(one, segment="femur_r") for one in upper)
+    assert (
+        _upper_body(
+            replace(subject, markers=legs), replace(body, roles=replace(body.roles, legs=("femur_r",)))
+        )
+        == []
+    )
 
 
 def test_a_protocol_may_be_named_or_given():

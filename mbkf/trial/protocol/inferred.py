@@ -176,7 +176,7 @@ def _inferred_set(
 
 def _partial_body(readings: Mapping[str, NameReading]) -> str:
     """Message on names of the upper body, hands or a head alone, "" for others."""
-    upper = upper_body_only(segments_named(readings))
+    upper = upper_body_only(segments_named(readings), load_body().roles)
     if not upper:
         return ""
     seen, bare = parts_in_words(upper)
