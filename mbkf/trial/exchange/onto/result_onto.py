@@ -11,10 +11,13 @@ from __future__ import annotations
 import csv
 import io
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
+from mbkf.errors import ProtectedFile
+from mbkf.io.atomic import remove_file
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.loose_xml import xml_text
 from mbkf.io.osim import read_osim
@@ -61,7 +64,10 @@ RESERVE, RESIDUAL = "_reserve", "_residual"
 RESERVE_NM, RESIDUAL_N = 1.0, 100.0
 """Force or moment of an actuator at full control; the cost is the sum of squared controls."""
 
-_DECLARATION = re.compile(r"\s*<\?xml.*?\?>", re.DOTALL)
+_OF_MUSCLES = frozenset((TASKS, SETUP_CMC, SETUP_MOCO))
+"""Files of models with muscles."""
+
+_DECLARATION = re.compile(r"\A\s*<\?xml\s.*?\?>", re.DOTALL)
 _MUSCLE = re.compile(r"<\w+Muscle(_Deprecated)?\s+name=")
 """Start of a file that states its encoding, and of an element that is a muscle."""
 
@@ -70,6 +76,8 @@ _SPREADSHEET = ("segment", "body", "markers", "place_mm", "turn_deg")
 
 def export_onto(r: Reconstruction, model: str | Path, folder: str | Path) -> OntoMotion:
     """Writes the folder: all of its files, or the earlier ones stay.
+
+    Set-ups for muscles that mbkf wrote for another model are removed where this one has no muscles.
 
     Args:
         r: The result.
@@ -113,6 +121,9 @@ def export_onto(r: Reconstruction, model: str | Path, folder: str | Path) -> Ont
         (partial / RESIDUALS).write_text(_residuals(found), encoding="utf-8")
         for name, element in elements.items():
             (partial / name).write_text(document(element), encoding="utf-8")
+    for name in _OF_MUSCLES - elements.keys():
+        with suppress(ProtectedFile):
+            remove_file(Path(folder) / name)
     return found
 
 

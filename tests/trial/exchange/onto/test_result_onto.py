@@ -2,6 +2,7 @@
 
 import csv
 from dataclasses import replace
+from shutil import copytree
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -44,12 +45,16 @@ def muscular(text):
 
 @pytest.fixture(scope="module")
 def written(result, model, muscular, tmp_path_factory):
-    """The motion, the folder, and texts of the folder for the model with a muscle, in UTF-16."""
+    """The motion, the folder, and texts of the folder for the model with a muscle, in UTF-16.
+
+    The folder held those of the model with a muscle before.
+    """
     folder, wide = tmp_path_factory.mktemp("onto") / "walk", model.with_name("wide.osim")
     wide.write_text(f'<?xml version="1.0" encoding="UTF-16"?>\n{muscular}', encoding="utf-16")
     other = folder.with_name("wide")
     export_onto(result, wide, other)
     first = {path.name: path.read_text("utf-8") for path in other.iterdir()}
+    copytree(other, folder)
     return export_onto(result, model, folder), folder, first
 
 
@@ -114,7 +119,7 @@ def test_a_model_in_utf_16_is_written_in_utf_8(written, muscular):
     assert ET.fromstring(written[2]["model.osim"].encode()).findtext(".//credits") == "Müller, Ångström"
 
 
-def test_set_ups_of_muscle_control_stand_beside_muscles_alone(written):
+def test_set_ups_of_muscle_control_stand_beside_muscles_alone_and_earlier_ones_are_removed(written):
     found, folder, first = written
     new = {"setup_cmc.xml", "cmc_tasks.xml", "setup_moco.xml"}
     assert set(first) - {path.name for path in folder.iterdir()} == new
