@@ -25,6 +25,8 @@ from mbkf.trial.exchange.onto.result_onto import JOINTS_OUT, MUSCLES_OUT
 from mbkf.trial.exchange.opensim_setups import LOADS, LOADS_DATA, MODEL, MOTION, NAME
 
 SHARE = 0.01
+"""Largest difference, as a share of the largest force: the spline of the motion is not OpenSim's."""
+
 FRAMES = 40
 """Most frames that are compared, spread over the trial."""
 
@@ -47,7 +49,7 @@ def joint_force_rows(name: str, folder: Path) -> Iterator[Check]:
         state = model.initSystem()
     motion = read_storage(folder / MOTION)
     reactions = read_storage(folder / JOINTS_OUT / f"{NAME}_JointReaction_ReactionLoads.sto")
-    step = max(1, len(reactions.times_s) // FRAMES)
+    step = -(-len(reactions.times_s) // FRAMES)
     rows = np.searchsorted(motion.times_s, reactions.times_s[::step] - 1e-6)
     for joint, parts in BEYOND.items():
         shares = []
@@ -75,22 +77,31 @@ def _newton(folder: Path, model: Any, state: Any, names: list[str], rows: NDArra
     tensions = read_storage(folder / MUSCLES_OUT / f"{NAME}_StaticOptimization_force.sto")
     muscles = [model.getMuscles().get(k) for k in range(model.getMuscles().getSize())]
     pulls = {one: np.interp(times, tensions.times_s, tensions.column(one.getName())) for one in muscles}
-    moments, wanted = np.zeros((len(motion.times_s), 3)), {int(row): k for k, row in enumerate(rows)}
-    force = np.zeros((len(rows), 3))
+    first_moments, wanted = np.zeros((len(motion.times_s), 3)), {int(row): k for k, row in enumerate(rows)}
+    others = _ground(folder, names, times)
     for row, values in enumerate(motion.columns):
         _pose(model, state, motion.names, values)
         for body in bodies:
             place = body.findStationLocationInGround(state, body.getMassCenter())
-            moments[row] += body.getMass() * _vector(place)
+            first_moments[row] += body.getMass() * _vector(place)
         if row in wanted:
-            force[wanted[row]] -= sum(
+            others[wanted[row]] += sum(
                 pulls[one][wanted[row]] * _direction(one, state, names) for one in muscles
             )
-    accelerations = make_interp_spline(motion.times_s, moments, 5)(times, 2)
-    mass = sum(body.getMass() for body in bodies)
-    return np.asarray(
-        force + accelerations - mass * _vector(model.getGravity()) - _ground(folder, names, times)
-    )
+    weight = sum(body.getMass() for body in bodies) * _vector(model.getGravity())
+    return missing_force(motion.times_s, first_moments, rows, others + weight)
+
+
+def missing_force(times_s: Array, first_moments: Array, rows: NDArray[np.intp], others: Array) -> Array:
+    """(R, 3) force, N, that bodies need beside others to move as they do: Σ m a − F.
+
+    Args:
+        times_s: (T,) times.
+        first_moments: (T, 3) Σ m x of the bodies, kg m.
+        rows: (R,) rows of these.
+        others: (R, 3) all other forces F on the bodies, weight included, N.
+    """
+    return np.asarray(make_interp_spline(times_s, first_moments, 5)(times_s[rows], 2) - others)
 
 
 def _direction(muscle: Any, state: Any, names: list[str]) -> Array:
