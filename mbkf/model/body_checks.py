@@ -76,7 +76,10 @@ def _joint(segment: Segment) -> Iterator[str]:
     if len(axes) != _AXES[segment.joint] or len(set(axes)) != len(axes) or set(axes) - set("xyz"):
         yield f"a {kind} has {_AXES[segment.joint]} axes out of x, y and z, not '{axes}'"
     if segment.axis is not None and (segment.joint != "hinge" or not _is_nearest(segment.axis, axes)):
-        yield f"axis is the unit vector of an oblique hinge, nearest to the axis '{axes}'"
+        yield (
+            f"axis {segment.axis.tolist()} of a {kind} is not the unit vector of a hinge whose largest component is "
+            f"along +{axes}; give such a vector, or leave axis out"
+        )
     for name in ("origin_m", "com_m", "inertia_kg_m2", "products_kg_m2"):
         values = getattr(segment, name)
         if values.shape != (3,) or not np.isfinite(values).all():

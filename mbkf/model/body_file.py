@@ -179,10 +179,17 @@ def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Seg
             acceleration_sd=read_only(entry["acceleration_sd"]),
             movement_sd=read_only(entry["movement_sd"]),
             limits_rad=_limits(entry),
-            axis=read_only(entry["axis"]) if "axis" in entry else None,
+            axis=_axis(entry["axis"]) if "axis" in entry else None,
         )
     except (TypeError, ValueError) as error:
         raise FileFormatError(path, f"segment {entry['name']}: {error}") from error
+
+
+def _axis(entry: list[float]) -> Array:
+    axis = read_only(entry)
+    if axis.shape != (3,):
+        raise ValueError(f"axis needs three numbers, not {entry}")
+    return axis
 
 
 def _limits(entry: dict[str, Any]) -> Array:

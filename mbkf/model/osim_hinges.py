@@ -58,8 +58,8 @@ def with_fixed_hinges(
     unknown = sorted(set(ranges_deg) - {one.name for one in curved.values()})
     if unknown:
         raise InvalidInput(
-            f"fitted_deg names {', '.join(unknown)}, of which a joint with curves has none; its coordinates are "
-            f"{', '.join(one.name for one in curved.values()) or 'absent'}"
+            f"fitted_deg names {', '.join(unknown)}; only coordinates that lead joints with curves have a fitted "
+            f"range, which here are: {', '.join(one.name for one in curved.values()) or 'no coordinates'}"
         )
     fixed, notes = _with_fixed_followers(model)
     joints = []
@@ -119,12 +119,17 @@ def _with_fixed_followers(model: OsimModel) -> tuple[OsimModel, list[Approximati
 
 
 def _range(coordinate: OsimCoordinate, ranges_deg: Mapping[str, Sequence[float]]) -> Array:
+    """(2,) least and greatest angle over which a hinge is fitted."""
     if coordinate.name in ranges_deg:
         found = np.deg2rad(np.array(ranges_deg[coordinate.name], dtype=float))
-        if found.shape != (2,) or not found[0] < found[1]:
-            raise InvalidInput(f"fitted_deg of {coordinate.name} needs two angles, the least one first")
-        return found
-    return np.clip([coordinate.lowest, coordinate.highest], -BEND_RAD, BEND_RAD)
+    else:
+        found = np.clip([coordinate.lowest, coordinate.highest], -BEND_RAD, BEND_RAD)
+    if found.shape != (2,) or not np.isfinite(found).all() or not found[0] < found[1]:
+        raise InvalidInput(
+            f"a hinge of {coordinate.name} is fitted from {np.rad2deg(found).round(1).tolist()}°; fitted_deg of "
+            f"{coordinate.name} needs two angles, the least one first"
+        )
+    return found
 
 
 def _points(model: OsimModel, joint: OsimJoint) -> Array:

@@ -146,10 +146,8 @@ def _of_model(path: Path, body: BodyDescription) -> Protocol:
     for one in (one for one in model.markers if one.name in body.landmarks):
         place = body.landmarks[one.name]
         kind = "technical" if one.fixed is False else "anatomical"
-        spread, noise = (
-            DEFAULT_PLACEMENT_SD_M[kind],
-            math.hypot(DEFAULT_NOISE_M[kind], displaced.get(place.segment, 0.0)),
-        )
+        spread = DEFAULT_PLACEMENT_SD_M[kind]
+        noise = math.hypot(DEFAULT_NOISE_M[kind], displaced.get(place.segment, 0.0))
         markers.append(ProtocolMarker(one.name, place.segment, place.position_m, kind, spread, noise))
     if not markers:
         raise FileFormatError(

@@ -114,8 +114,8 @@ def read_side(path: Path, required: tuple[str, ...] = REQUIRED, kind: str = "URD
     missing = [key for key in required if key not in table]
     if missing:
         raise FileFormatError(side, f"lacks {', '.join(missing)}")
-    if not isinstance(table.get("roles", {}), dict) or not isinstance(table.get("names", {}), dict):
-        raise FileFormatError(side, "roles and names are tables: [roles], [names]")
+    if not all(isinstance(table.get(key, {}), dict) for key in ("roles", "names", "fitted_deg")):
+        raise FileFormatError(side, "roles, names and fitted_deg are tables: [roles], [names], [fitted_deg]")
     return table
 
 

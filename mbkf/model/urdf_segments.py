@@ -195,7 +195,7 @@ def _axis(joint: UrdfJoint, turn: Array, hinges: int) -> tuple[str, int]:
 
 def _is_along(axis: Array) -> bool:
     """True for an axis of the root."""
-    return bool(np.sort(np.abs(axis))[:2] @ np.sort(np.abs(axis))[:2] <= SAME_AXIS_RAD**2)
+    return bool(np.linalg.norm(np.sort(np.abs(axis))[:2]) <= SAME_AXIS_RAD)
 
 
 def _limits(chain: list[UrdfJoint], axes: str, signs: list[int]) -> list[list[float]]:

@@ -117,8 +117,8 @@ def test_hinges_about_any_axis():
 def test_an_oblique_axis_is_a_unit_vector_nearest_to_its_letter(axis):
     check_body(with_segment("right_toes", axis=np.array([0.6, 0.8, 0.0])))
     with pytest.raises(
-        ValueError, match="right_toes: axis is the unit vector of an oblique hinge, nearest to"
+        ValueError, match=r"right_toes: axis .* of a hinge joint is not the unit vector .* \+y"
     ):
         check_body(with_segment("right_toes", axis=np.array(axis)))
-    with pytest.raises(ValueError, match="axis is the unit vector of an oblique hinge"):
+    with pytest.raises(ValueError, match=r"axis .* is not the unit vector of a hinge"):
         check_body(with_segment("neck", axis=np.array([0.6, 0.8, 0.0])))

@@ -98,9 +98,10 @@ def test_the_range_may_be_stated(tmp_path):
     osim = model(tmp_path, sliding(squared(0.004)))
     narrow, wide = (with_fixed_hinges(osim, one)[1][0] for one in ({"knee": [0.0, 30.0]}, {}))
     assert narrow.rms_m < 0.2 * wide.rms_m and "from 0 to 30°" in narrow.text
-    with pytest.raises(InvalidInput, match="fitted_deg of knee needs two angles"):
-        with_fixed_hinges(osim, {"knee": [30.0, 0.0]})
-    with pytest.raises(InvalidInput, match=r"fitted_deg names hip, .*its coordinates are knee"):
+    for wrong in ([30.0, 0.0], [10.0], [0.0, np.inf]):
+        with pytest.raises(InvalidInput, match="fitted_deg of knee needs two angles"):
+            with_fixed_hinges(osim, {"knee": wrong})
+    with pytest.raises(InvalidInput, match=r"fitted_deg names hip; only .* are: knee"):
         with_fixed_hinges(osim, {"hip": [0.0, 30.0]})
 
 
