@@ -15,6 +15,7 @@ from mbkf.study.session.norm_selection import NormSelection, norm_selection
 from mbkf.study.session.norms import norms_from
 from mbkf.study.session.records import Session
 from mbkf.trial.gait.convention import BY_CLINIC, CONVENTIONS, MOMENTS, Convention
+from mbkf.viz.language import filled, words
 from mbkf.viz.page import COLOURS
 from mbkf.viz.session.document import session_page
 
@@ -87,22 +88,25 @@ def read_whole(workspace: Workspace, session: str, convention: Convention) -> Se
     return session_from(workspace.results(session), heading, notes, convention)
 
 
-def norms_selection(workspace: Workspace, session: str) -> Plain:
+def norms_selection(workspace: Workspace, session: str, language: str) -> Plain:
     """Persons that norms for a session would be built of, and who is left out and why, in words.
 
     Args:
         workspace: The sessions.
         session: Name of the session that the norms are for; empty for norms of all.
+        language: Code of the page's language; verdicts and remarks are in English.
 
     Raises:
         FileFormatError: A file is damaged.
+        InvalidInput: The language does not exist.
     """
-    found = _selection(workspace, session)
+    found, reasons = _selection(workspace, session), words(language, "left_out_of_norms")
     persons = [
         f"{one.facts.name}: {one.facts.sex}, {one.facts.age:g}, {one.facts.speed_m_s:.2f} m/s, {one.facts.cycles}"
         for one in found.persons
     ]
-    return {"persons": persons, "left_out": [one.sentence for one in found.left_out], "cycles": found.cycles}
+    left_out = [f"{one.who}: {filled(reasons[one.why], *one.details)}" for one in found.left_out]
+    return {"persons": persons, "left_out": left_out, "cycles": found.cycles}
 
 
 def build(workspace: Workspace, session: str, convention: Convention) -> Plain:

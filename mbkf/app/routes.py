@@ -123,6 +123,9 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
             workspace, query["session"], query["before"], query["norms"], language, charts
         )
 
+    def selection(query: Query) -> object:
+        return reports.norms_selection(workspace, query["session"], query["language"] or ENGLISH)
+
     def norms(query: Query, _body: bytes) -> object:
         return reports.build(workspace, query["session"], workspace.charts.chosen(query).read)
 
@@ -137,7 +140,7 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
         page("/report", report),
         data("/report/choices", lambda query: reports.choices(workspace, query["session"])),
         download("/report/curves", curves),
-        data("/norms/selection", lambda query: reports.norms_selection(workspace, query["session"])),
+        data("/norms/selection", selection),
         action("/norms", norms),
     ]
 

@@ -9,8 +9,10 @@ from mbkf.errors import InvalidInput
 from mbkf.io.norms import read_norms
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import SessionNotes, TrialNotes
+from mbkf.study.session.norm_selection import REASONS
 from mbkf.trial.gait.convention import BY_CLINIC, BY_MODEL
 from mbkf.trial.results.summary import summarise
+from mbkf.viz.language import words
 from tests.studies import study
 from tests.study.session.sessions import walks
 
@@ -32,11 +34,15 @@ def test_a_report_alone_compared_and_with_norms(workspace):
     shown = reports.choices(workspace, "P1")
     assert (shown["sessions"], shown["norms"]) == (["P2", "P3"], [])
     assert shown["charts"]["convention"] == "clinical", "the page's default"
-    chosen = reports.norms_selection(workspace, "P3")
+    chosen = reports.norms_selection(workspace, "P3", "en")
     assert [one.split(",")[0] for one in chosen["persons"]] == ["P1: female", "P2: female"] and chosen[
         "cycles"
     ] > 4
     assert chosen["left_out"] == ["P3: the person in view is compared with others alone"]
+    assert reports.norms_selection(workspace, "P3", "es")["left_out"] == [
+        "P3: la persona en vista solo se compara con otras"
+    ]
+    assert words("en", "left_out_of_norms") == REASONS, "the command line and the page say alike"
     assert reports.build(workspace, "P3", BY_CLINIC) == {"norms": "norms.toml", "persons": 2}
     assert reports.choices(workspace, "P2")["norms"] == ["norms.toml"]
     assert read_norms(workspace.root / "norms.toml").name == "lab"

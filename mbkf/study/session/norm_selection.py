@@ -18,6 +18,21 @@ SPEED = "Speed"
 """Measure that states the walking speed."""
 
 
+REASONS = {
+    "in_view": "the person in view is compared with others alone",
+    "unknown_kind": "movement not recognised; state its kind in the session",
+    "other_kind": "no walk ({0})",
+    "verdict": "{0}: {1}",
+    "no_walk": "no walk that may be used",
+    "age_and_sex": "age and sex not stated; write them into the session",
+    "age": "age not stated; write it into the session",
+    "sex": "sex not stated; write it into the session",
+    "one_foot": "no whole cycle of both feet",
+    "no_speed": "walking speed not known",
+}
+"""Reasons to leave a person or a trial out, with places for details."""
+
+
 @dataclass(frozen=True)
 class LeftOut:
     """A person or a trial that norms leave out.
@@ -25,17 +40,29 @@ class LeftOut:
     Attributes:
         person: The person.
         trial: The trial; empty for the whole person.
-        reason: In words.
+        why: One of :data:`REASONS`.
+        details: Its details.
     """
 
     person: str
     trial: str
-    reason: str
+    why: str
+    details: tuple[str, ...] = ()
+
+    @property
+    def reason(self) -> str:
+        """In English."""
+        return REASONS[self.why].format(*self.details)
+
+    @property
+    def who(self) -> str:
+        """The person, and the trial."""
+        return f"{self.person}, {self.trial}" if self.trial else self.person
 
     @property
     def sentence(self) -> str:
         """Who, and why."""
-        return f"{self.person}{f', {self.trial}' if self.trial else ''}: {self.reason}"
+        return f"{self.who}: {self.reason}"
 
 
 @dataclass(frozen=True)
@@ -82,11 +109,11 @@ def norm_selection(sessions: Iterable[Session], in_view: Collection[str] = ()) -
             raise UnknownName("person", name, names)
     for session in sessions:
         if session.name in in_view:
-            left_out.append(LeftOut(session.name, "", "the person in view is compared with others alone"))
+            left_out.append(LeftOut(session.name, "", "in_view"))
             continue
-        reasons = {trial.name: _against(session, trial) for trial in session.trials}
-        left_out += [LeftOut(session.name, name, reason) for name, reason in reasons.items() if reason]
-        found = _person(session, {name for name, reason in reasons.items() if not reason})
+        against = {trial.name: _against(session, trial) for trial in session.trials}
+        left_out += [one for one in against.values() if one is not None]
+        found = _person(session, {name for name, one in against.items() if one is None})
         if isinstance(found, str):
             left_out.append(LeftOut(session.name, "", found))
         else:
@@ -94,36 +121,36 @@ def norm_selection(sessions: Iterable[Session], in_view: Collection[str] = ()) -
     return NormSelection(tuple(persons), tuple(left_out))
 
 
-def _against(session: Session, trial: SessionTrial) -> str:
-    """Why a trial is left out; empty for one that counts."""
+def _against(session: Session, trial: SessionTrial) -> LeftOut | None:
+    """The reason to leave a trial out; None for one that counts."""
+    if trial.kind == TrialKind.UNKNOWN:
+        return LeftOut(session.name, trial.name, "unknown_kind")
     if trial.kind != TrialKind.WALK:
-        kind = trial.kind.value.replace("_", " ")
-        return (
-            "movement not recognised; state its kind in the session"
-            if kind == "unknown"
-            else f"no walk ({kind})"
-        )
+        return LeftOut(session.name, trial.name, "other_kind", (trial.kind.value.replace("_", " "),))
     if trial.verdict != "use":
-        return f"{trial.verdict}: {trial.remarks[0] if trial.remarks else 'see its report'}"
+        remark = trial.remarks[0] if trial.remarks else "see its report"
+        return LeftOut(session.name, trial.name, "verdict", (trial.verdict, remark))
     doubt = next((one for one in session.disagreements if trial.name in one.trials), None)
-    return "" if doubt is None else f"{doubt.word}: {doubt.sentence}"
+    if doubt is None:
+        return None
+    return LeftOut(session.name, trial.name, "verdict", (doubt.word, doubt.sentence))
 
 
 def _person(session: Session, trials: Collection[str]) -> ChosenPerson | str:
-    """The walks of a person in some trials, or why there are none."""
+    """The walks of a person in some trials, or the key of the reason that there are none."""
     walk = session.gait(TrialKind.WALK)
     if walk is None or not trials:
-        return "no walk that may be used"
+        return "no_walk"
     lacking = [word for word, value in (("age", session.age), ("sex", session.sex)) if value is None]
     if session.age is None or session.sex is None:
-        return f"{' and '.join(lacking)} not stated; write them into the session"
+        return "_and_".join(lacking)
     gait = of_trials(walk, trials)
     counts = [len(side.cycles) for side in gait.sides]
     if not all(counts):
-        return "no whole cycle of both feet"
+        return "one_foot"
     speed = speed_of(gait)
     if not np.isfinite(speed):
-        return "walking speed not known"
+        return "no_speed"
     facts = NormPerson(session.name, session.sex, session.age, speed, sum(counts))
     return ChosenPerson(facts, gait, (session.convention.name, *session.axes))
 

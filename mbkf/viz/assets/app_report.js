@@ -17,7 +17,7 @@ async function sessionReport(session, act) {
   const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
   for (const one of [chosenBefore, chosenNorms, ...picked.map(([, one]) => one)]) one.select.onchange = () => { show(); link(); };
   const build = element("button", { type: "button", onclick: async () => {
-    const chosen = await ask("norms/selection?" + query({ session }));
+    const chosen = await ask("norms/selection?" + query({ session, language }));
     const parts = [word("norms_of", chosen.persons.length, chosen.cycles), ...chosen.persons];
     if (chosen.left_out.length) parts.push("", word("norms_without"), ...chosen.left_out);
     if (!window.confirm(parts.join("\n"))) return;

@@ -45,7 +45,7 @@ def test_trials_that_do_not_belong_are_named(changes, reason):
 def test_persons_that_do_not_belong_are_named():
     assert reasons(session()) == (["session 5: age and sex not stated; write them into the session"], 0)
     assert reasons(replace(person(), sex=None)) == (
-        ["session 5: sex not stated; write them into the session"],
+        ["session 5: sex not stated; write it into the session"],
         0,
     )
     assert reasons(replace(person(), gaits=()))[0] == ["session 5: no walk that may be used"]
