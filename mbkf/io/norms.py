@@ -250,6 +250,8 @@ def read_norms(path: str | Path) -> Norms:
     for one in read.list_of_tables(_CURVES, CURVE) or ():
         key = one.need(_KIND), one.need(_QUANTITY), one.need(_NAME)
         speeds = one.get(_SPEEDS)
+        if speeds is not None and not speeds[0] < speeds[1]:
+            raise one.fault(f"speed_m_s {speeds.tolist()} needs the lower speed first")
         here = curves if speeds is None else by_speed.setdefault((float(speeds[0]), float(speeds[1])), {})
         _refuse_second(one, key, here)
         here[key] = _band(one, _CURVE_MEAN, _CURVE_SD)

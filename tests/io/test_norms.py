@@ -1,5 +1,7 @@
 """Files of norms: what is written comes back, and what is damaged is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -66,3 +68,14 @@ def test_damaged_files_are_refused(tmp_path, old, new, fragment):
 def test_no_file():
     with pytest.raises(FileFormatError):
         read_norms("nothing.toml")
+
+
+@pytest.mark.parametrize("speeds", [(1.4, 1.0), (1.0, 1.0)])
+def test_a_range_of_speeds_begins_with_the_lower_one(tmp_path, speeds):
+    one = norms()
+    file = tmp_path / "norms.toml"
+    write_norms(replace(one, by_speed={(1.0, 1.4): one.curves}), file)
+    assert list(read_norms(file).by_speed) == [(1.0, 1.4)]
+    write_norms(replace(one, by_speed={speeds: one.curves}), file)
+    with pytest.raises(FileFormatError, match="needs the lower speed first"):
+        read_norms(file)

@@ -36,13 +36,13 @@ LEAST_S, LEAST_RUN_S = 0.5, 0.25
 PART_S, PARTS_PERCENT = 0.5, 4.0
 """Parts of a trial, of about this duration, agree on the mass to this; else something besides the feet carries load."""
 
-
 UNLOADED_SHARE = 0.02
 """Share of the body's weight below which plates read no load."""
 
 SUPPORTED_SHARE = 0.5
 """Share of the weight that something else has to carry, on average over a stretch in which plates read no load, for
-the person to stand beside them (on a box, say): in flight it is 0, on a support 1. Speeds may err by two sd each."""
+the person to stand beside them (on a box, say): in flight it is 0, on a support 1. Speeds may err by two sd each.
+Set on a landing from a box (landings)."""
 
 
 @dataclass(frozen=True)
