@@ -2,15 +2,20 @@
 
 import json
 import re
+from dataclasses import fields
 
+from mbkf.app.charts import Charts
 from mbkf.app.pages import SCRIPTS, SECTIONS, start_page
 from mbkf.study.survey.problems import TEXTS
+from mbkf.trial.gait.convention import CONVENTIONS, MOMENTS
 from mbkf.viz.language import words
-from mbkf.viz.page import asset
+from mbkf.viz.page import COLOURS, asset
 
 SAID_BY_THE_SERVER = {
     *("done", "unchanged", "failed", "static", "walk", "squat", "jump", "unknown"),
     *(f"{say}_{key}" for say in ("problem", "todo") for key in TEXTS),
+    *(one.name for one in fields(Charts)),
+    *(one.replace("-", "_") for one in (*CONVENTIONS, *MOMENTS, *COLOURS)),
 }
 """Words that the server's answers choose."""
 

@@ -31,7 +31,9 @@ def test_a_report_and_its_curves(done, cookie):
 
 
 def test_what_is_missing_is_told(done, cookie):
-    assert plain(done, cookie, "/report/choices?session=P1") == (200, {"sessions": [], "norms": []})
+    status, found = plain(done, cookie, "/report/choices?session=P1")
+    assert status == 200 and found["sessions"] == found["norms"] == []
+    assert all(found["charts"][name] in offered for name, offered in found["chart_choices"].items())
     assert asked(done, "/report?session=P9", Cookie=cookie)[0].status == 404
     assert asked(done, "/report?session=P1&language=xx", Cookie=cookie)[0].status == 404
     assert plain(done, cookie, "/report/curves?session=P9")[0] == 400
