@@ -175,7 +175,7 @@ def angle_cells(r: Reconstruction, joints: Sequence[str], read: Reading | None =
         values, spreads = read.angles.of(name)
         return curve_of(r, words.factor * values, words.factor * spreads)
 
-    return _cells(r, joints, "", curve, read, lambda _, title: title)
+    return _cells(r, joints, "", curve, read.caption, lambda _, title: title)
 
 
 def torque_cells(r: Reconstruction, joints: Sequence[str], read: Reading | None = None) -> list[list[Cell]]:
@@ -193,7 +193,7 @@ def torque_cells(r: Reconstruction, joints: Sequence[str], read: Reading | None 
         spreads = [per_kg * r.moment_sd(name, part) for part in CURVE_PARTS]
         return curve_of(r, convention.moment_sign(name[:-2]) * per_kg * r.moment(name), spreads)
 
-    return _cells(r, joints, "N m/kg", curve, read, partial(moment_title, ENGLISH, convention))
+    return _cells(r, joints, "N m/kg", curve, read.moment_caption, partial(moment_title, ENGLISH, convention))
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
@@ -251,7 +251,7 @@ def _cells(
     joints: Sequence[str],
     unit: str,
     curve: Callable[[str, Wording], Curve],
-    read: Reading,
+    caption: str,
     title: Callable[[str, str], str],
 ) -> list[list[Cell]]:
     known_joints = reference_body(r.subject).clinical_joints
@@ -271,7 +271,7 @@ def _cells(
                 base = angle.name.removesuffix("_r")
                 shown = title(base, w.title)
                 positive = w.positive if shown == w.title else ""
-                row.append(Cell(shown, unit or w.unit, positive, curves, base, read.caption))
+                row.append(Cell(shown, unit or w.unit, positive, curves, base, caption))
         if row:
             rows.append(row)
     return rows

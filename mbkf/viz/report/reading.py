@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction, varying_sd
-from mbkf.trial.gait.convention import Convention
+from mbkf.trial.gait.convention import MODEL, Convention
 from mbkf.trial.gait.convention_angles import ConventionAngles, convention_angles
 from mbkf.viz.convention_words import statement
 from mbkf.viz.language import ENGLISH
@@ -40,6 +40,11 @@ class Reading:
     def caption(self) -> str:
         """The convention in short."""
         return statement(ENGLISH, self.convention, (self.angles.axes,))
+
+    @property
+    def moment_caption(self) -> str:
+        """The convention of moments in short; they are about the body's own axes."""
+        return statement(ENGLISH, self.convention, (MODEL,))
 
 
 def curve_of(r: Reconstruction, values: Array, spreads: Sequence[Array] | Array) -> Curve:

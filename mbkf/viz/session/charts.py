@@ -120,7 +120,7 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
 
 def _caption(shown: Shown, terms: Terms) -> str:
     """The convention on charts of angles and torques; others have it from neither."""
-    return terms.statement if shown.key.quantity in (ANGLE, TORQUE) else ""
+    return {ANGLE: terms.statement, TORQUE: terms.moment_statement}.get(shown.key.quantity, "")
 
 
 def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms: Terms) -> list[str]:

@@ -29,6 +29,11 @@ class Terms:
         return statement(self.language, self.convention, self.axes)
 
     @property
+    def moment_statement(self) -> str:
+        """The convention of moments in short; they are about the body's own axes."""
+        return statement(self.language, self.convention, (MODEL,))
+
+    @property
     def convention_notes(self) -> list[str]:
         """The convention in sentences."""
         return notes(self.language, self.convention, self.axes)

@@ -27,7 +27,11 @@ def test_clinical_torques_are_positive_in_extension():
     r = walk()
     ((knee, *_),) = torque_cells(r, ("knee",), Reading.of(r, BY_CLINIC))
     np.testing.assert_allclose(knee.curves["l"].values, -r.moment("knee_angle_l") / r.subject.mass_kg)
-    assert (knee.title, knee.positive) == ("Knee extensor moment", "")
+    assert (knee.title, knee.positive, knee.caption) == (
+        "Knee extensor moment",
+        "",
+        "clinical, the body's own axes",
+    )
 
 
 def test_the_varying_part_needs_a_known_offset():

@@ -1,6 +1,7 @@
 """A report's words: of the language, or the body's own."""
 
 from mbkf.model.body_file import load_body
+from mbkf.trial.gait.convention import BY_CLINIC
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.wording import wordings
 
@@ -23,3 +24,8 @@ def test_english_titles_are_the_bodys():
             assert Terms("en").coordinate(base, "missing") == own.title
             assert Terms("es").coordinate(base, "missing") != "missing"
             assert Terms("es").positive(base, "missing") != "missing" != Terms("en").positive(base, "missing")
+
+
+def test_charts_of_moments_state_the_axes_that_moments_are_about():
+    terms = Terms("en", BY_CLINIC, ("pig",))
+    assert terms.moment_statement == "clinical, the body's own axes" != terms.statement
