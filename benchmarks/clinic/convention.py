@@ -94,7 +94,7 @@ class Compared:
         return cls(float((ours - theirs)[known].mean()), float((y - x).std()), correlation, float(x.std()))
 
     def sign_shows(self, least: float) -> bool:
-        """Whether Plug-in Gait's curve moves enough, and both go together or against each other."""
+        """True where Plug-in Gait's curve moves enough and correlates with ours, of either sign."""
         return self.moved > least and abs(self.correlation) > LEAST_CORRELATION
 
 

@@ -122,7 +122,7 @@ def _check(args: argparse.Namespace, source: Path, is_result: bool) -> None:
         raise InvalidInput("give a format by --to, or a model of OpenSim by --onto MODEL.osim: one of them")
     if args.onto and not is_result:
         raise InvalidInput(
-            f"{source} is no result; --onto needs a motion: name the folder that 'mbkf reconstruct' wrote"
+            f"{source} is no result: --onto exports a result's motion; name the folder that 'mbkf reconstruct' wrote"
         )
     formats = _OF_RESULT if is_result else _OF_SUBJECT
     if args.to and args.to not in formats:

@@ -133,7 +133,7 @@ class NormPerson:
 
 @dataclass(frozen=True)
 class GdiBasis:
-    """What the gait deviation index needs of the controls (M. H. Schwartz and A. Rozumalski, Gait Posture 28 (2008)).
+    """Basis of the gait deviation index, of controls (M. H. Schwartz and A. Rozumalski, Gait Posture 28 (2008)).
 
     Attributes:
         variables: Coordinates without their side, in the order of a feature.

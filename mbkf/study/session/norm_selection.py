@@ -96,11 +96,11 @@ def norm_selection(sessions: Iterable[Session], in_view: Collection[str] = ()) -
     """The persons of norms among sessions, one session for each.
 
     Args:
-        sessions: They.
+        sessions: The sessions, in any order.
         in_view: Names of persons that the norms are for, and that are never among them.
 
     Raises:
-        UnknownName: There is no session of a person in view.
+        UnknownName: The folder holds no session of that person.
     """
     sessions, persons, left_out = list(sessions), [], []
     names = [session.name for session in sessions]

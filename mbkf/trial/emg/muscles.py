@@ -19,7 +19,7 @@ from mbkf.trial.emg.settings import EmgSettings
 def muscles_of(
     channels: Sequence[AnalogChannel], start_s: float, times_s: Array, settings: EmgSettings
 ) -> tuple[Muscles, tuple[str, ...]]:
-    """The muscles that channels show, and remarks; no muscles where there is no electromyogram.
+    """Muscles of the electromyographic channels, and remarks; empty where a capture has no such channel.
 
     Args:
         channels: Channels of the capture.

@@ -35,7 +35,7 @@ def session(count=2, first=5):
 
 @cache
 def person(count=2, first=5, age=30.0):
-    """The same session of a person whose age and sex are stated, so that norms may hold it."""
+    """A session with the person's age and sex, which norms ask for."""
     return replace(session(count, first), sex="female", age=age)
 
 
