@@ -14,7 +14,7 @@ import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 from websockets.exceptions import WebSocketException
@@ -75,6 +75,35 @@ class Run:
     pauses_ms: Array
 
 
+class Wire(NamedTuple):
+    """How a capture is sent and received.
+
+    Attributes:
+        receive: Options of ``mbkf live``.
+        send: The module that plays it, and its command.
+        send_options: Options of that.
+    """
+
+    receive: tuple[str, ...]
+    send: tuple[str, ...]
+    send_options: tuple[str, ...]
+
+
+def wire_of(protocol: str) -> Wire:
+    """A stream of a protocol on this computer, with a name and a port of its own."""
+    port, replay = str(_free_port()), ("mbkf", "replay")
+    if protocol == "lsl":
+        name = f"mbkf-benchmark-{uuid.uuid4().hex[:8]}"
+        return Wire(("--from", "lsl", "--stream", name), replay, ("--to", "lsl", "--name", name))
+    if protocol == "natnet":
+        return Wire(("--from", "natnet", "--port", port), replay, ("--to", "natnet", "--port", port))
+    if protocol == "udp":
+        return Wire(("--from", f"udp:{port}"), replay, ("--to", "udp", "--port", port))
+    simulator = ("benchmarks.streams.serve", protocol)
+    place = port if protocol == "xsens" else f"127.0.0.1:{port}"
+    return Wire(("--from", f"{protocol}:{place}"), simulator, ("--port", port))
+
+
 class Pauses:
     """A thread that does nothing but wake every few milliseconds, and notes how late it does."""
 
@@ -112,7 +141,7 @@ def play(
 
     Args:
         trial: The capture and its subject.
-        protocol: "lsl" or "natnet".
+        protocol: "lsl", "natnet", "udp", or that of a simulator in :mod:`benchmarks.streams`.
         folder: Folder for the results.
         view: Whether a live page is open, too.
         speed: Times real time.
@@ -122,26 +151,14 @@ def play(
         InvalidInput: One of the commands failed.
     """
     shutil.rmtree(folder, ignore_errors=True)
-    name = f"mbkf-benchmark-{uuid.uuid4().hex[:8]}"
-    port = str(_free_port())
-    receive, send = (
-        (["--stream", name], ["--name", name]) if protocol == "lsl" else (["--port", port], ["--port", port])
-    )
-    words: list[str | Path] = [
-        "live",
-        "--from",
-        protocol,
-        "--subject",
-        trial.subject,
-        "--filter",
-        *filter_words,
-    ]
-    words += ["--seconds", f"{trial.seconds:.6f}", "--keep-log", "--out", folder, *receive]
+    wire = wire_of(protocol)
+    words: list[str | Path] = ["mbkf", "live", *wire.receive, "--subject", trial.subject]
+    words += ["--filter", *filter_words, "--seconds", f"{trial.seconds:.6f}", "--keep-log", "--out", folder]
     words += ["--view"] if view else []
     live = _start(words)
     watching = threading.Thread(target=_watch, args=(live.stderr, view), daemon=True)
     watching.start()
-    played: list[str | Path] = ["replay", trial.path, "--to", protocol, "--speed", f"{speed:g}", *send]
+    played: list[str | Path] = [*wire.send, trial.path, "--speed", f"{speed:g}", *wire.send_options]
     played += [] if trial.forces is None else ["--forces", trial.forces]
     played += ["--unlabelled"] if trial.unlabelled else []
     replay = _start(played)
@@ -190,7 +207,7 @@ def _difference(one: Array, other: Array) -> float:
 
 def _start(words: Sequence[str | Path]) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-m", "mbkf", *map(str, words)],
+        [sys.executable, "-m", *map(str, words)],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,

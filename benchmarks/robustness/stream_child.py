@@ -13,13 +13,13 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.robustness.stream_kinds import KINDS, LSL
+from benchmarks.robustness.stream_kinds import KINDS, LSL, Fault
 from benchmarks.robustness.stream_schedule import Packet, Schedule, Sent
 from benchmarks.robustness.stream_wire import LslWire, NatNetWire, Wire
 from mbkf.io.capture import read_capture
@@ -36,6 +36,8 @@ PATIENCE_S, LINGER_S = 20.0, 0.5
 
 END_FRAMES = 10
 """Of so many frames at the end one has to be tracked."""
+
+MakeWire = Callable[[str, Played, str, bool], Wire]
 
 ACCOUNTS = ("frames_written", "frames_not_written", "frames_unanswered", "frames_late", "frames_overwritten")
 
@@ -84,22 +86,30 @@ class Sender(threading.Thread):
             self._stop_run.set()
 
 
-def outcome(protocol: str, fault: str, seed: int, walk: Played, folder: Path) -> dict[str, object]:
+def wire_of(protocol: str, walk: Played, name: str, counted: bool) -> Wire:
+    """The player of a protocol, "lsl" or "natnet"."""
+    return LslWire(walk, name, counted) if protocol == LSL else NatNetWire(walk)
+
+
+def outcome(
+    protocol: str, fault: Fault, seed: int, walk: Played, folder: Path, make: MakeWire = wire_of
+) -> dict[str, object]:
     """What becomes of a run with a fault.
 
     Args:
-        protocol: "lsl" or "natnet".
-        fault: Its name.
+        protocol: Of the stream.
+        fault: Alters what is sent.
         seed: Which of its kind.
         walk: What is played.
         folder: Holds the subject; the run's own folder is made in it.
+        make: Makes the player: (protocol, capture, name, whether frames are counted) -> the player.
     """
     died: list[str] = []
     threading.excepthook = lambda args: died.append(f"{args.thread and args.thread.name}: {args.exc_value!r}")
     schedule = Schedule(walk, seed)
-    KINDS[fault].fault(schedule)
+    fault(schedule)
     own = f"{protocol}-{os.getpid()}-{seed}"
-    wire: Wire = LslWire(walk, f"mbkf-{own}", schedule.counted) if protocol == LSL else NatNetWire(walk)
+    wire = make(protocol, walk, f"mbkf-{own}", schedule.counted)
     go, stop = threading.Event(), threading.Event()
     sender = Sender(wire, schedule, go, stop)
     settings = ReconstructSettings(correct_markers=False)
@@ -149,8 +159,14 @@ def _told(
     }
 
 
-def main(words: Iterable[str]) -> None:
-    """Follows what the words name, a line before and after each."""
+def main(words: Iterable[str], faults: Mapping[str, Fault], make: MakeWire = wire_of) -> None:
+    """Follows what the words name, a line before and after each.
+
+    Args:
+        words: Folder, protocol, and ``FAULT:SEED`` of each run.
+        faults: Faults by name.
+        make: Makes the player, as for :func:`outcome`.
+    """
     warnings.simplefilter("ignore")
     place, protocol, *asked = words
     folder = Path(place)
@@ -160,7 +176,7 @@ def main(words: Iterable[str]) -> None:
         fault, seed = word.rsplit(":", 1)
         print(json.dumps({"begin": word}), flush=True)
         try:
-            told = outcome(protocol, fault, int(seed), walk, folder)
+            told = outcome(protocol, faults[fault], int(seed), walk, folder, make)
         except Exception as error:
             told = {"died": [f"the run: {error!r}"], "unaccounted": 0}
         print(json.dumps({"end": word, **told}), flush=True)
@@ -169,4 +185,4 @@ def main(words: Iterable[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(sys.argv[1:], {name: kind.fault for name, kind in KINDS.items()})

@@ -31,12 +31,11 @@ from typing import TYPE_CHECKING
 
 from mbkf.cli.following import (
     add_following_options,
-    add_speed_option,
-    file_named,
     follow,
     report_outcome,
     say,
 )
+from mbkf.cli.live_source import SOURCES, add_source_options, source_of
 from mbkf.cli.options import (
     add_out,
     add_preset_options,
@@ -44,7 +43,6 @@ from mbkf.cli.options import (
     asked_spreads,
     body_mass,
     lag_seconds,
-    port,
     strict_exit,
     with_chosen,
 )
@@ -53,7 +51,6 @@ if TYPE_CHECKING:
     from mbkf.io.subject import Subject
     from mbkf.stream.run.session import LiveSession
     from mbkf.stream.run.standing import KnownPerson, ScaledPerson, StandingStart
-    from mbkf.stream.source import FrameSource
     from mbkf.viz.live.standing_page import StandingPage
 
 NO_STREAM = "stopped before a stream appeared; nothing was written"
@@ -61,7 +58,7 @@ NO_STREAM = "stopped before a stream appeared; nothing was written"
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("--from", dest="source", metavar="lsl|natnet|file:TRIAL", help="source of the frames")
+    parser.add_argument("--from", dest="source", metavar=SOURCES, help="source of the frames")
     parser.add_argument(
         "--subject",
         metavar="SUBJECT.toml",
@@ -85,23 +82,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--recover", metavar="DIR", help="make the results of a run that broke off, from its log in DIR"
     )
-    stream = parser.add_argument_group("the stream")
-    stream.add_argument(
-        "--stream", metavar="NAME", help="LSL: name of the marker stream (default: the first)"
-    )
-    stream.add_argument("--plates-stream", metavar="NAME", help="LSL: name of the plate stream")
-    stream.add_argument("--server", default="127.0.0.1", metavar="ADDRESS", help="NatNet: camera computer")
-    stream.add_argument("--local", default="127.0.0.1", metavar="ADDRESS", help="NatNet: this computer")
-    stream.add_argument("--port", type=port, default=1510, metavar="N", help="NatNet: command port")
-    stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")
-    stream.add_argument("--up", metavar="AXIS", help="NatNet and files: vertical axis (NatNet: y)")
-    stream.add_argument("--forces", metavar="FILE", help="file: its ground reactions, as for reconstruct")
-    stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
-    stream.add_argument(
-        "--person", metavar="NAME", help="file: of several persons in it the one to follow: name or number"
-    )
-    stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
-    add_speed_option(stream)
+    add_source_options(parser)
     add_following_options(parser)
 
 
@@ -134,7 +115,7 @@ def run(args: argparse.Namespace) -> int:
         spreads=asked_spreads(args),
     )
     settings = with_chosen(settings, args)
-    source, name = _source(args), args.source.partition(":")[0]
+    source, name = source_of(args), args.source.partition(":")[0]
 
     def begin(stop: threading.Event, patience_s: float | None) -> LiveSession:
         if isinstance(person, Subject):
@@ -215,24 +196,6 @@ def _standing(
     if found is None:
         raise InvalidInput("stopped before a person was scaled; live.json lists the attempts")
     return found
-
-
-def _source(args: argparse.Namespace) -> FrameSource:
-    if args.source == "lsl":
-        from mbkf.stream.lsl.source import LslSource
-
-        return LslSource(args.stream, args.plates_stream)
-    if args.source == "natnet":
-        from mbkf.stream.natnet.source import NatNetSource
-
-        return NatNetSource(args.server, args.local, args.port, args.multicast, args.up or "y")
-    path = file_named(args.source, "file:TRIAL.c3d", "lsl", "natnet")
-    from mbkf.io.capture import read_capture
-    from mbkf.stream.file_source import FileSource
-    from mbkf.stream.played import played
-
-    capture = read_capture(path, forces=args.forces, up=args.up, unit=args.unit, person=args.person)
-    return FileSource(played(capture, args.unlabelled), args.speed)
 
 
 def _recover(folder: Path) -> int:

@@ -1,10 +1,11 @@
 """Play a capture as a live stream.
 
-Plays markers and plates as Lab Streaming Layer or OptiTrack NatNet, in real time, as a camera system sends them.
+Plays markers and plates as Lab Streaming Layer, OptiTrack NatNet or JSON over UDP, in real time, as cameras send them.
 
 Examples:
   mbkf replay walk.c3d --to lsl
   mbkf replay walk.trc --forces grf.mot --to natnet --speed 2
+  mbkf replay walk.c3d --to udp --port 15100
   mbkf replay raw.c3d --unlabelled --to lsl --jitter 5 --loss 0.1
 
 Playing starts when a receiver connects, e.g. 'mbkf live --from lsl --subject subject.toml --out result'.
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
     from mbkf.stream.played import Played
     from mbkf.stream.replay import Player
 
+NATNET_PORT = 1510
+"""Motive's command port."""
+
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
@@ -37,7 +41,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--forces", metavar="FILE", help=f"ground reactions ({FORCE_FILES}); a C3D brings its own plates"
     )
-    parser.add_argument("--to", required=True, choices=("lsl", "natnet"), help="kind of the stream")
+    parser.add_argument("--to", required=True, choices=("lsl", "natnet", "udp"), help="kind of the stream")
     add_playing_options(parser)
     parser.add_argument(
         "--unlabelled",
@@ -45,13 +49,16 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="drop the markers' names and shuffle the points (raw captures always are)",
     )
     parser.add_argument(
-        "--port", type=port, default=1510, metavar="N", help="NatNet: command port (default: 1510)"
+        "--port",
+        type=port,
+        metavar="N",
+        help="NatNet: command port (default: 1510); udp: the receiver's port (default: 15100)",
     )
     parser.add_argument(
         "--address",
         default="127.0.0.1",
         metavar="ADDRESS",
-        help="NatNet: where to listen (default: this computer)",
+        help="NatNet: where to listen; udp: where to send (default: this computer)",
     )
     add_axes_options(parser)
 
@@ -81,7 +88,14 @@ def run(args: argparse.Namespace) -> int:
     if args.to == "natnet":
         from mbkf.stream.natnet.player import NatNetPlayer
 
-        return play(args, stream, NatNetPlayer(stream, args.address, args.port), args.trial)
+        command = NATNET_PORT if args.port is None else args.port
+        return play(args, stream, NatNetPlayer(stream, args.address, command), args.trial)
+    if args.to == "udp":
+        from mbkf.stream.udp.messages import DEFAULT_PORT
+        from mbkf.stream.udp.player import UdpPlayer
+
+        to = DEFAULT_PORT if args.port is None else args.port
+        return play(args, stream, UdpPlayer(stream, args.address, to), args.trial)
     from mbkf.stream.lsl.player import LslPlayer
 
     return play(args, stream, LslPlayer(stream, args.name, args.speed), args.trial)

@@ -1,0 +1,13 @@
+"""A process that follows disturbed streams of one protocol, one after the other, and reports the fate of each.
+
+python -m benchmarks.streams.child FOLDER PROTOCOL FAULT:SEED …
+"""
+
+import sys
+
+from benchmarks.robustness.stream_child import main
+from benchmarks.streams.faults import FAULTS
+from benchmarks.streams.wires import wire_of
+
+if __name__ == "__main__":
+    main(sys.argv[1:], FAULTS[sys.argv[2]], wire_of)

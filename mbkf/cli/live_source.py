@@ -1,0 +1,102 @@
+"""Sources of live frames by name, as ``--from`` names them, and their options."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from mbkf.cli.following import add_speed_option, file_named
+from mbkf.cli.options import port
+
+if TYPE_CHECKING:
+    from mbkf.stream.source import FrameSource
+
+SOURCES = "lsl|natnet|udp[:PORT]|file:TRIAL"
+"""Values of ``--from``, for help."""
+
+
+def add_source_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options of streams."""
+    stream = parser.add_argument_group("the stream")
+    stream.add_argument(
+        "--stream", metavar="NAME", help="LSL: name of the marker stream (default: the first)"
+    )
+    stream.add_argument("--plates-stream", metavar="NAME", help="LSL: name of the plate stream")
+    stream.add_argument("--server", default="127.0.0.1", metavar="ADDRESS", help="NatNet: camera computer")
+    stream.add_argument(
+        "--local", default="127.0.0.1", metavar="ADDRESS", help="NatNet, udp: address of this computer"
+    )
+    stream.add_argument("--port", type=port, default=1510, metavar="N", help="NatNet: command port")
+    stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")
+    stream.add_argument("--up", metavar="AXIS", help="NatNet and files: vertical axis (NatNet: y)")
+    stream.add_argument("--forces", metavar="FILE", help="file: its ground reactions, as for reconstruct")
+    stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
+    stream.add_argument(
+        "--person", metavar="NAME", help="file: of several persons in it the one to follow: name or number"
+    )
+    stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
+    add_speed_option(stream)
+
+
+def source_of(args: argparse.Namespace) -> FrameSource:
+    """The source that ``--from`` names, not connected yet.
+
+    Raises:
+        UnknownName: There is no such source.
+        InvalidInput: An option is wrong, or the source cannot be listened to.
+    """
+    name, colon, detail = args.source.partition(":")
+    if name in _STREAMS and (not colon or name in _WITH_PLACE):
+        return _STREAMS[name](args, detail)
+    path = file_named(args.source, "file:TRIAL.c3d", *_STREAMS)
+    from mbkf.io.capture import read_capture
+    from mbkf.stream.file_source import FileSource
+    from mbkf.stream.played import played
+
+    capture = read_capture(path, forces=args.forces, up=args.up, unit=args.unit, person=args.person)
+    return FileSource(played(capture, args.unlabelled), args.speed)
+
+
+def _lsl(args: argparse.Namespace, _: str) -> FrameSource:
+    from mbkf.stream.lsl.source import LslSource
+
+    return LslSource(args.stream, args.plates_stream)
+
+
+def _natnet(args: argparse.Namespace, _: str) -> FrameSource:
+    from mbkf.stream.natnet.source import NatNetSource
+
+    return NatNetSource(args.server, args.local, args.port, args.multicast, args.up or "y")
+
+
+def _udp(args: argparse.Namespace, detail: str) -> FrameSource:
+    from mbkf.stream.udp.messages import DEFAULT_PORT
+    from mbkf.stream.udp.source import UdpSource
+
+    return UdpSource(_port(detail, DEFAULT_PORT, "udp"), args.local)
+
+
+def _port(detail: str, default: int, source: str) -> int:
+    """The port behind a source's name.
+
+    Raises:
+        InvalidInput: It is not one.
+    """
+    from mbkf.errors import InvalidInput
+
+    if not detail:
+        return default
+    try:
+        return port(detail)
+    except argparse.ArgumentTypeError as error:
+        raise InvalidInput(f"--from {source}:{detail}: {error}; write {source}:{default}") from error
+
+
+_STREAMS: Mapping[str, Callable[[argparse.Namespace, str], FrameSource]] = {
+    "lsl": _lsl,
+    "natnet": _natnet,
+    "udp": _udp,
+}
+_WITH_PLACE = ("udp",)
+"""Sources whose name may be followed by a colon and a port or an address."""

@@ -1,0 +1,1 @@
+"""JSON lines over UDP: the protocol's messages, player and source."""

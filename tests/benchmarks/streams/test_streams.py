@@ -1,0 +1,65 @@
+"""Disturbed streams are the same from the same seed; rows of latency subtract an idle process's delay."""
+
+import numpy as np
+import pytest
+
+from benchmarks import streams
+from benchmarks.live.runs import Run, wire_of
+from benchmarks.robustness.stream_schedule import Schedule
+from benchmarks.streams.faults import FAULTS
+from benchmarks.streams.wires import wire_of as player_of
+from mbkf.stream.played import played
+from tests.captures import made_capture
+from tests.stream.reading import connected, read
+
+WALK = played(made_capture(140))
+
+
+@pytest.mark.parametrize("protocol", FAULTS)
+def test_there_are_twenty_faults_and_each_disturbs_alike_from_one_seed(protocol):
+    assert len(FAULTS[protocol]) >= 20
+    plain = [(one.at_s, one.frame, one.number) for one in Schedule(WALK, 5).frames]
+    for fault in FAULTS[protocol].values():
+        once, again = Schedule(WALK, 5), Schedule(WALK, 5)
+        fault(once)
+        fault(again)
+        assert len(once.items()) == len(again.items())
+        sent = [(one.at_s, one.frame, one.number) for one in once.frames]
+        values = [np.nansum(one.markers_m) for one in once.frames] != [
+            np.nansum(one.markers_m) for one in Schedule(WALK, 5).frames
+        ]
+        loads = any(one.load is not None or not one.plates for one in once.frames)
+        assert sent != plain or once.others or values or loads
+
+
+@pytest.mark.parametrize("protocol", FAULTS)
+def test_a_wire_and_its_source_know_each_other(protocol):
+    wire = player_of(protocol, WALK, "x", True)
+    source = wire.source()
+    wire.listening()
+    stream = connected(source)
+    assert not wire.listening()
+    source.read(0.0)
+    assert wire.listening()
+    assert wire.send(Schedule(WALK, 0).frames[7])
+    (frame,) = read(source, 1)
+    assert frame.number == 7 and len(frame.markers_m) == len(stream.marker_names)
+    wire.half()
+    wire.packet(b"\0" * 10, stranger=False)
+    wire.packet(b"\0" * 10, stranger=True)
+    wire.close()
+    assert not wire.send(Schedule(WALK, 0).frames[8])
+    source.close()
+
+
+def test_an_idle_process_is_subtracted(tmp_path):
+    run = Run({"latency_ms_median": 1.5, "latency_ms_p99": 4.0}, tmp_path, np.array([0.2] * 98 + [2.0] * 2))
+    rows = [row for row in streams.latency("x", run) if row.bounded]
+    np.testing.assert_allclose([row.value for row in rows], [1.3, 2.0])
+    assert [row.passed for row in rows] == [False, True]
+
+
+def test_each_protocol_has_a_receiver_and_a_sender():
+    for protocol in ("lsl", "natnet", *FAULTS):
+        wire = wire_of(protocol)
+        assert wire.receive[1].startswith(protocol) and protocol in " ".join([*wire.send, *wire.send_options])

@@ -1,0 +1,44 @@
+"""``--from`` names a source and, for some, its port or address."""
+
+import argparse
+import socket
+
+import pytest
+
+from mbkf.cli.live_source import add_source_options, source_of
+from mbkf.errors import MbkfError
+
+
+def source(text, *options):
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--from", dest="source")
+    add_source_options(parser)
+    made = source_of(parser.parse_args(["--from", text, *options]))
+    made.close()
+    return made
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def test_udp_listens_at_its_port():
+    port = free_port()
+    assert source(f"udp:{port}").port == port
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("udp:70000", "write udp:15100"),
+        ("udp:abc", "write udp:15100"),
+        ("lsl:3", "unknown source 'lsl:3'"),
+        ("serial", "unknown source"),
+        ("file:", "names no file"),
+    ],
+)
+def test_anything_else_is_refused(text, words):
+    with pytest.raises(MbkfError, match=words):
+        source(text)
