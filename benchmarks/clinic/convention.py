@@ -164,18 +164,18 @@ def _moment_signs(walk: str, capture: Capture, found: Reconstruction) -> Iterato
 
 
 def _trunk(walk: str, capture: Capture, found: Reconstruction) -> Iterator[Check]:
-    """Attitude of the trunk; the thorax of Plug-in Gait has axes of its own markers, so that the zero is not judged."""
+    """Attitude of the trunk, in the axes that C7, T10, CLAV and STRN define; none of a walk without these outputs."""
     sides = [_curves(found, side, BY_CLINIC) for side in range(2)]
-    for column, name in enumerate(TRUNK):
+    for (column, name), plane in zip(enumerate(TRUNK), MOST_OFFSET_DEG, strict=True):
         both = [
             Compared.of(_ours(curves, ANGLE, name), column_of(capture, f"{side}ThoraxAngles", column))
             for side, curves in zip("RL", sides, strict=True)
         ]
         if all(np.isfinite(one.offset) for one in both):
             most = max(abs(one.offset) for one in both)
-            yield information(f"{walk}, {name.replace('_', ' ')}: mean difference", most, "°")
-            least = min(one.correlation for one in both)
-            yield information(f"{walk}, {name.replace('_', ' ')}: least correlation", least)
+            title = f"{walk}, {name.replace('_', ' ')}"
+            yield Check(f"{title}: mean difference", most, MOST_OFFSET_DEG[plane], "<=", "°")
+            yield from _sign(title, both, LEAST_MOVED_DEG)
 
 
 def followed(walk: Archive, data: Path) -> tuple[Capture, Reconstruction]:

@@ -86,10 +86,12 @@ class AngleReading:
     Attributes:
         name: "model" for the body file's own axes, or the convention's name.
         joints: Axes by the name of the joint; others are read in the body file's axes.
+        trunk: (3, 3) axes of the trunk in its segment's frame, for its attitude in the world; None: that frame's.
     """
 
     name: str = "model"
     joints: Mapping[str, JointAxes] = field(default_factory=dict)
+    trunk: Array | None = None
 
 
 def _about_y_and_z(a: Array, b: Array) -> Array:

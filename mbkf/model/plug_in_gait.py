@@ -1,4 +1,4 @@
-"""Plug-in Gait's axes on a body: pelvis, thighs, shanks and feet from the places of its markers.
+"""Plug-in Gait's axes on a body: pelvis, thighs, shanks, feet and thorax from the places of its markers.
 
 R. B. Davis et al., Hum. Mov. Sci. 10 (1991) 575-587 (hip centres); M. P. Kadaba et al., J. Orthop. Res. 8 (1990)
 383-392 (wands); Vicon's Plug-in Gait reference guide (offsets). With the markers of a frame in place of a posture's,
@@ -29,6 +29,9 @@ ANGLE_NAMES = (
     "THIGHROTATION", "SHANKROTATION", "TIBIALTORSION", "ANKLEABADD", "STATICPLANTFLEX", "STATICROTOFF",
 )  # fmt: skip
 """Angles of a file's PROCESSING group, without their sides."""
+
+THORAX = ("c7", "t10", "jugular_notch", "xiphoid")
+"""Places of the thorax's markers C7, T10, CLAV and STRN."""
 
 JOINT_SIDES = {"r": ("R", "right"), "l": ("L", "left")}
 
@@ -103,8 +106,8 @@ def plug_in_gait(places: Mapping[str, Array], measured: Measured) -> AngleReadin
     Args:
         places: (3,) places in the body's neutral posture, in which all segments' frames are the world's, m:
             ``asis``, ``knee``, ``knee_medial``, ``ankle``, ``ankle_medial``, ``heel``, ``toe``, ``knee_centre`` and
-            ``ankle_centre`` with ``right_`` and ``left_`` before them, ``sacrum``, and where there are wands
-            ``thigh_wand`` and ``shank_wand``.
+            ``ankle_centre`` with ``right_`` and ``left_`` before them, ``sacrum``, where there are wands
+            ``thigh_wand`` and ``shank_wand``, and for the thorax all of :data:`THORAX`.
         measured: Measurements of the person.
     """
     pelvis, hips = _pelvis(places, measured)
@@ -121,7 +124,13 @@ def plug_in_gait(places: Mapping[str, Array], measured: Measured) -> AngleReadin
         joints[f"hip_{suffix}"] = JointAxes(pelvis, thigh)
         joints[f"knee_{suffix}"] = JointAxes(thigh, shank)
         joints[f"ankle_{suffix}"] = JointAxes(torsioned, foot, "yzx", Line(shank, line))
-    return AngleReading("pig", joints)
+    return AngleReading("pig", joints, _thorax(places) if places.keys() >= set(THORAX) else None)
+
+
+def _thorax(places: Mapping[str, Array]) -> Array:
+    """Axes of the thorax: up between the lower and the upper pair of markers, forward from the back to the front."""
+    c7, t10, notch, xiphoid = (places[name] for name in THORAX)
+    return axes_from("z", c7 + notch - t10 - xiphoid, "x", notch + xiphoid - c7 - t10)
 
 
 def _pelvis(places: Mapping[str, Array], measured: Measured) -> tuple[Array, tuple[Array, Array]]:

@@ -22,6 +22,9 @@ RIGHT = {
 }
 PLACES = {f"right_{name}": np.array(place) for name, place in RIGHT.items()}
 PLACES |= {f"left_{name}": MIRROR * place for name, place in RIGHT.items()}
+THORAX = {
+    "c7": (-0.09, 0.01, 1.5), "t10": (-0.1, 0.0, 1.25), "jugular_notch": (0.05, 0.0, 1.42), "xiphoid": (0.1, 0.0, 1.2),
+}  # fmt: skip
 PLACES["sacrum"] = np.array([-0.11, 0.0, 1.02])
 STORED = {"RKNEEWIDTH": 100.0, "LKNEEWIDTH": 100.0, "RLEGLENGTH": 880.0, "LLEGLENGTH": 880.0}
 JOINTS = ("hip_r", "knee_r", "ankle_r", "hip_l", "knee_l", "ankle_l")
@@ -54,6 +57,17 @@ def test_the_pelvis_is_that_of_its_four_markers():
     np.testing.assert_allclose(pelvis[:, 1], [0, 1, 0], atol=1e-12)
     back_to_front = 0.5 * (PLACES["right_asis"] + PLACES["left_asis"]) - PLACES["sacrum"]
     np.testing.assert_allclose(pelvis[:, 0], back_to_front / np.linalg.norm(back_to_front), atol=1e-12)
+
+
+def test_the_thorax_leans_as_the_line_between_its_pairs_of_markers():
+    """Vicon's definition by hand: z between the middles of both pairs, y square to it and to the line to the front."""
+    places = PLACES | {name: np.array(place) for name, place in THORAX.items()}
+    found = plug_in_gait(places, measured_of(STORED)).trunk
+    upper, lower = (0.5 * (places[a] + places[b]) for a, b in (("c7", "jugular_notch"), ("t10", "xiphoid")))
+    np.testing.assert_allclose(found[:, 2], (upper - lower) / np.linalg.norm(upper - lower), atol=1e-12)
+    front, back = (0.5 * (places[a] + places[b]) for a, b in (("jugular_notch", "xiphoid"), ("c7", "t10")))
+    assert abs(found[:, 1] @ (front - back)) < 1e-12 and found[:, 0] @ (front - back) > 0
+    assert plug_in_gait(PLACES, measured_of(STORED)).trunk is None
 
 
 def hip_centre():

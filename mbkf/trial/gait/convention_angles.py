@@ -144,7 +144,8 @@ def _in_progression(
     chain = _chain(model, trunk) if trunk else None
     if chain is not None:
         turns = _world_turns(model, chain, r.q)
-        angles, rates = _from_ahead(turns[-1], heading_rad)
+        R = turns[-1] if reading.trunk is None else turns[-1] @ reading.trunk
+        angles, rates = _from_ahead(R, heading_rad)
         sds = [_spread(model, chain, turns, rates, one) for one in variances]
         signs = np.array([1.0, -1.0, 1.0])  # forward, the right side up, turned to the left
         for k, name in enumerate(TRUNK):

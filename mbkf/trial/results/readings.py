@@ -14,7 +14,7 @@ from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
 from mbkf.model.description import Landmark
 from mbkf.model.isb_axes import isb_axes
-from mbkf.model.plug_in_gait import measured_of, plug_in_gait
+from mbkf.model.plug_in_gait import THORAX, measured_of, plug_in_gait
 from mbkf.model.protocol import load_protocol, protocol_names
 
 MODEL, ISB, PIG = "model", "isb", "pig"
@@ -36,12 +36,14 @@ class Point:
         marker: Name of Plug-in Gait's marker on it, without the side; "": no marker.
         landmark: The body's landmark, "" for a wand, which stands nowhere in particular.
         sided: Whether there are two.
+        needed: Whether a body without the landmark has no such axes at all.
     """
 
     name: str
     marker: str
     landmark: str
     sided: bool = True
+    needed: bool = True
 
 
 POINTS = (
@@ -59,6 +61,10 @@ POINTS = (
     Point("ankle_centre", "", "ankle_centre"),
     Point("heel", "HEE", "heel"),
     Point("toe", "TOE", "metatarsal_2"),
+    *(
+        Point(landmark, marker, landmark, sided=False, needed=False)
+        for landmark, marker in zip(THORAX, ("C7", "T10", "CLAV", "STRN"), strict=True)
+    ),
 )
 
 WANDS = {"thigh_wand": "thigh", "shank_wand": "shank"}
@@ -136,6 +142,8 @@ def anatomical_places(model: Body, subject: Subject) -> dict[str, Array]:
     worn: set[str] = set()
     for point in POINTS:
         for letter, side in SIDES if point.sided else UNPAIRED:
+            if not point.needed and side + point.landmark not in model.description.landmarks:
+                continue
             landmark = _landmark(model, side + point.landmark) if point.landmark else None
             segment = side + WANDS[point.name] if landmark is None else landmark.segment
             named = by_name.get(letter + point.marker) if point.marker else None

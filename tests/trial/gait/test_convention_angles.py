@@ -11,7 +11,7 @@ from mbkf.trial.gait.convention import BY_CLINIC, BY_ISB, BY_MODEL, TRUNK
 from mbkf.trial.gait.convention_angles import convention_angles
 from mbkf.trial.gait.curves import side_views
 from mbkf.trial.results.progression import progression_of
-from mbkf.trial.results.readings import angle_reading
+from mbkf.trial.results.readings import anatomical_places, angle_reading
 from tests.recordings import walk
 
 STEP = 1e-6
@@ -80,6 +80,20 @@ def test_feet_and_trunk_are_read_where_the_person_goes():
         key = f"foot_progression_{'rl'[side]}"
         change = after.of(key)[0] - first.of(key)[0]
         assert 0.05 < np.median(change) < 0.12
+
+
+def test_the_trunk_is_that_of_plug_in_gaits_thorax():
+    """The line between the thorax's pairs of landmarks, seen from the side of a person who goes straight on."""
+    r = walk()
+    model = HumanModel.of(r.subject)
+    places = anatomical_places(model, r.subject)
+    up = places["c7"] + places["jugular_notch"] - places["t10"] - places["xiphoid"]
+    torso = model.joint("torso").joint_id
+    lines = np.array([model.placements(q)[0][torso] @ up for q in r.q])
+    heading = progression_of(model, r.q, r.times_s).heading_rad
+    ahead = lines[:, 0] * np.cos(heading) + lines[:, 1] * np.sin(heading)
+    found = convention_angles(r, BY_CLINIC).of("trunk_tilt")[0]
+    np.testing.assert_allclose(found, np.arctan2(ahead, lines[:, 2]), atol=1e-9)
 
 
 def test_the_left_sees_the_midline_mirrored():
