@@ -1,8 +1,9 @@
-"""Reference bands of gait, from the laboratory's own sessions.
+"""Reference bands of gait, from the laboratory's own sessions, or of other tools.
 
 Examples:
   mbkf norms build results --out norms.toml
+  mbkf norms import adults.csv --out adults.toml
 """
 
-SUBCOMMANDS = ("build",)
+SUBCOMMANDS = ("build", "import", "export")
 """Each is the module ``mbkf.cli.norms_<name>``."""

@@ -73,6 +73,10 @@ _LN_MEAN = fields.number("ln_mean", "mean of the logarithm of the controls' dist
 _LN_SD = fields.number("ln_sd", "standard deviation of these", (1e-9, LARGEST), required=True)
 GDI = fields.record("gdi", _VARIABLES, _FEATURES, _CENTRE, _LN_MEAN, _LN_SD)
 _GDI = fields.part("gdi", "the gait deviation index of walks", "[gdi]")
+_AGES = fields.numbers("age_years", "ages of the persons, the least and the greatest", 2, 130.0, "years")
+_RANGE = fields.numbers(
+    "speed_m_s", "walking speeds of the persons, the least and the greatest", 2, 20.0, "m/s"
+)
 _PERSON_LIST = fields.part("person", "a person that the bands are of", "[[person]]")
 _CURVES = fields.part("curve", "a band over the cycle", "[[curve]]")
 _MEASURES = fields.part("measure", "a band of a spatiotemporal parameter", "[[measure]]")
@@ -84,6 +88,8 @@ NORMS = fields.record(
     _CONVENTION,
     _AXES,
     _SOURCE,
+    _AGES,
+    _RANGE,
     _PERSON_LIST,
     _CURVES,
     _MEASURES,
@@ -153,7 +159,10 @@ class GdiBasis:
         object.__setattr__(self, "centre", read_only(self.centre))
 
 
-Speeds = tuple[float, float]
+Span = tuple[float, float]
+"""Least and greatest of ages or speeds."""
+
+Speeds = Span
 """Speeds that a band is for, m/s: from the first to below the second."""
 
 
@@ -171,6 +180,7 @@ class Norms:
         gdi: For the gait deviation index; None without.
         convention: Of the curves: "clinical", "isb" or "model".
         axes: Axes that angles are read in: "pig", "isb" or "model".
+        ages, speeds: Of the persons, in years and m/s; None where not stated.
     """
 
     name: str
@@ -182,6 +192,8 @@ class Norms:
     gdi: GdiBasis | None = None
     convention: str = "model"
     axes: str = "model"
+    ages: Span | None = None
+    speeds: Span | None = None
 
     @property
     def read(self) -> tuple[str, str]:
@@ -218,6 +230,9 @@ def write_norms(norms: Norms, path: str | Path) -> None:
     head: dict[str, object] = {"format": FORMAT, "format_version": FORMAT_VERSION, "name": norms.name}
     if norms.source:
         head["source"] = norms.source
+    for field_, span in ((_AGES, norms.ages), (_RANGE, norms.speeds)):
+        if span is not None:
+            head[field_.key] = list(span)
     by_speed = [one for speeds, curves in norms.by_speed.items() for one in tables(curves, speeds)]
     measures = [
         {"kind": kind, "name": name, **_band_table(band)} for (kind, name), band in norms.measures.items()
@@ -271,7 +286,19 @@ def read_norms(path: str | Path) -> Norms:
         _gdi(read.table_of(_GDI, GDI)),
         read.get(_CONVENTION) or "model",
         read.get(_AXES) or "model",
+        _span(read, _AGES),
+        _span(read, _RANGE),
     )
+
+
+def _span(read: Entries, field_: Field[Array]) -> Span | None:
+    """Two numbers in order; None without the entry."""
+    found = read.get(field_)
+    if found is None:
+        return None
+    if found[0] > found[1]:
+        raise read.fault("the lesser number comes first", field_.key)
+    return float(found[0]), float(found[1])
 
 
 def _refuse_second(read: Entries, key: tuple[str, ...], known: Container[object]) -> None:
