@@ -12,10 +12,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 import mbkf
 from benchmarks.checks import Check
 from mbkf.cli.main import main
-from mbkf.io.norms import read_norms
+from mbkf.conventions import Array
+from mbkf.io.norms import Norms, read_norms
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import SESSION_FILE, SessionNotes, write_session
 from mbkf.trial.results.summary import summarise
@@ -30,6 +33,11 @@ REASONS = {
 """A part of the reason by person."""
 
 SECONDS = 3.5
+
+STATED = "# source: made\n# convention: model\n# persons: 4\n# age: 20-30\n# speed: 1.0-1.4\n"
+
+MOST_BETWEEN_DEG = 0.1
+"""Of a curve between points at each 2 % of the cycle."""
 
 
 def norms_rows(out: Path) -> Iterator[Check]:
@@ -57,6 +65,52 @@ def norms_rows(out: Path) -> Iterator[Check]:
         for name, reason in REASONS.items()
     ]
     yield Check("persons left out and named with the reason", sum(named), len(REASONS), ">=")
+    yield from _import_rows(out, norms)
+
+
+def _import_rows(out: Path, built: Norms) -> Iterator[Check]:
+    """Norms as tables of other tools: read back, with other signs and units, and without their convention."""
+    own = _imported(out, "own.csv", None)
+    apart = [
+        max(np.abs(band.mean - own.curves[key].mean).max(), np.abs(band.sd - own.curves[key].sd).max())
+        for key, band in built.curves.items()
+    ]
+    yield Check(
+        "norms exported and imported: largest difference of 6 printed digits", float(max(apart)), 0, "<="
+    )
+    knee = built.curves["walk", "angle", "knee_angle"]
+    wide = _wide("knee extension (rad)", -np.deg2rad(knee.mean), np.deg2rad(knee.sd))
+    found = _imported(out, "wide.csv", STATED + wide).curves["walk", "angle", "knee_angle"]
+    name = "knee extension in rad, every 2 %, decimal commas: largest difference"
+    yield Check(name, float(np.abs(found.mean - knee.mean).max()), MOST_BETWEEN_DEG, "<=", "°")
+    refused = 0
+    for line in STATED.splitlines(keepends=True):
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            (out / "lacks.csv").write_text(STATED.replace(line, "") + wide, encoding="utf-8")
+            code = main(["norms", "import", str(out / "lacks.csv"), "--out", str(out / "lacks.toml")])
+        refused += code == 2 and line.split(":")[0] in said.getvalue()
+    yield Check("imports without one statement refused with its line", refused, STATED.count("#"), ">=")
+
+
+def _imported(out: Path, name: str, text: str | None) -> Norms:
+    """Norms of a table; None: of the built ones' export."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        if text is None:
+            assert main(["norms", "export", str(out / "norms.toml"), "--out", str(out / name)]) == 0
+        else:
+            (out / name).write_text(text, encoding="utf-8")
+        assert main(["norms", "import", str(out / name), "--out", str(out / f"{name}.toml")]) == 0
+    return read_norms(out / f"{name}.toml")
+
+
+def _wide(title: str, mean: Array, sd: Array) -> str:
+    """A wide table with semicolons and decimal commas, every 2 % of the cycle."""
+    percent = np.arange(0, 101, 2)
+    rows = [
+        ";".join(f"{one:.6f}" for one in row).replace(".", ",")
+        for row in np.column_stack([percent, mean[::2], sd[::2]])
+    ]
+    return "\n".join([f"% gait cycle;{title} mean;{title} SD", *rows]) + "\n"
 
 
 def _person(folder: Path, name: str, seed: int) -> None:

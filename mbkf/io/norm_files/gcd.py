@@ -43,10 +43,10 @@ def gcd_norms(path: Path, text: str) -> RawNorms:
                 raise FileFormatError(path, f"{name} stands twice; keep one of both", line)
             rows = found.setdefault(name, [])
         elif words and rows is not None and not content.startswith(("#", "$")):
-            values = numbers(words, path, line)
-            if len(values) != 2:
-                raise FileFormatError(path, f"{len(values)} numbers for mean and spread", line)
-            rows.append(values)
+            pair = numbers(words, path, line)
+            if len(pair) != 2:
+                raise FileFormatError(path, f"{len(pair)} numbers for mean and spread", line)
+            rows.append(pair)
     bands = []
     for name, values in found.items():
         if len(values) > 1:

@@ -117,7 +117,8 @@ def curve_of(label: str, component: str = "", quantity: str = "") -> NamedCurve 
         component: "X", "Y" or "Z", where the name has three curves.
         quantity: The quantity, where it is known from elsewhere.
     """
-    label, component = GCD_VARIABLES.get(label, (label, component))
+    if not component:
+        label, component = GCD_VARIABLES.get(label, (label, ""))
     output = _OUTPUT.fullmatch(label)
     if output is not None and (component or output[2] == "Power"):
         return _plug_in_gait(_OUTPUTS[output[1]], output[2], component)

@@ -35,7 +35,7 @@ def workbook_norms(path: Path, sheets: dict[str, Sheet]) -> RawNorms:
     """
     if SHEET in sheets:
         return RawNorms(POLYGON, tuple(_polygon(path, sheets[SHEET])))
-    bands = []
+    bands: list[RawBand] = []
     for rows in sheets.values():
         if rows and is_table_of_bands(rows[0]):
             kept = tuple((n, tuple(row)) for n, row in enumerate(rows[1:], start=2) if any(row))

@@ -12,6 +12,10 @@ MEASURE = "measure"
 """Quantity of a band that is one number."""
 
 
+NAMES, OWN = "names", "mbkf"
+"""Statement of a table whose curves have mbkf's names, units and signs."""
+
+
 @dataclass(frozen=True)
 class RawBand:
     """A band under the file's own name.

@@ -17,10 +17,13 @@ from mbkf.io.norm_files.table import Table, bands_of_table, is_table_of_bands
 from mbkf.io.norm_files.workbook import read_workbook
 from mbkf.io.text import decoded
 
-TABLE = "table"
+TABLE, PERCENT = "table", "percent"
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".json", ".gcd", ".xlsx")
 """Endings of files that norms are imported from."""
+
+_HEAD = re.compile(r"^\s*%")
+"""A head or unit, where other tables have comments."""
 
 _STATEMENT = re.compile(r"[#%/]+\s*([A-Za-z_ ]+?)\s*:\s*(.*\S)\s*")
 
@@ -46,7 +49,10 @@ def read_foreign_norms(path: Path) -> RawNorms:
 
 
 def _table(path: Path, text: str) -> RawNorms:
-    found = split_table(path, text)
+    lines = [
+        line if _STATEMENT.fullmatch(line.strip()) else _HEAD.sub(PERCENT, line) for line in text.splitlines()
+    ]
+    found = split_table(path, "\n".join(lines))
     heads, first = found.rows[0][1], 1
     units: Sequence[str] = ()
     if len(found.rows) > 2 and not any(_begins_number(cell) for cell in found.rows[1][1]):
@@ -58,7 +64,7 @@ def _table(path: Path, text: str) -> RawNorms:
             "hip flexion sd",
         )
     named = [
-        f"{head} [{unit}]" if unit.strip(" %") else head
+        f"{head} [{unit}]" if unit not in ("", PERCENT) else head
         for head, unit in zip(heads, [*units, *[""] * len(heads)], strict=False)
     ]
     rows = tuple((line, tuple(cells)) for line, cells in found.rows[first:])

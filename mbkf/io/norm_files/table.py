@@ -25,7 +25,7 @@ _STATISTICS = (
     (re.compile(r"mean\s*[-−]\s*(1\s*)?sd|lower|(?<![a-z])min(?![a-z])", re.IGNORECASE), LOWER),
     (re.compile(r"mean\s*\+\s*(1\s*)?sd|upper|(?<![a-z])max(?![a-z])", re.IGNORECASE), UPPER),
     (
-        re.compile(r"standard\s*deviation|(?<![a-z])(?:sd|std|stdev|stddev)(?![a-z])|(?<=[a-z])S[Dd]$"),
+        re.compile(r"(?i:standard\s*deviation|(?<![a-z])(?:sd|std|stdev|stddev)(?![a-z]))|(?<=[a-z])S[Dd]$"),
         SD,
     ),
     (re.compile(r"(?<![a-z])(?:mean|average|avg)(?![a-z])|(?<=[a-z])(?:Mean|Average)$", re.IGNORECASE), MEAN),

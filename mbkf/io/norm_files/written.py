@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.io.atomic import write_text
-from mbkf.io.norm_files.raw import MEASURE
+from mbkf.io.norm_files.raw import MEASURE, NAMES, OWN
 from mbkf.io.norms import POINTS, Band, Norms, Speeds
 from mbkf.io.written import MARK
 
@@ -50,6 +50,7 @@ def _statements(norms: Norms) -> Iterator[tuple[str, str]]:
     yield "source", norms.source or f"persons of {norms.name}"
     yield "convention", norms.convention
     yield "axes", norms.axes
+    yield NAMES, OWN
     yield "persons", str(persons)
     for key, span in (("age", norms.ages), ("speed", norms.speeds)):
         if span is not None:

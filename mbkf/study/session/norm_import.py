@@ -17,7 +17,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.io.norm_files.labels import ANGLE, EXTERNAL, INTERNAL, POWER, REACTION, TORQUE, NamedCurve, curve_of
-from mbkf.io.norm_files.raw import MEASURE, RawBand, RawNorms
+from mbkf.io.norm_files.raw import MEASURE, NAMES, OWN, RawBand, RawNorms
 from mbkf.io.norms import POINTS, Band, CurveName, Norms, Span, Speeds
 from mbkf.trial.gait.convention import (
     BY_CLINIC,
@@ -126,7 +126,7 @@ def imported(raw: RawNorms, stated: Statements) -> ImportedNorms:
                 band.unit, band.persons or facts.persons, band.mean, band.sd
             )
             continue
-        found = _curve(band, facts)
+        found = _own(band, facts) if raw.statements.get(NAMES) == OWN else _curve(band, facts)
         if isinstance(found, str):
             left_out.append(f"{title}: {found}")
             continue
@@ -231,6 +231,14 @@ def _count(text: str) -> int:
 
 def _span(text: str) -> Span | None:
     return span_of(text) if text else None
+
+
+def _own(band: RawBand, facts: _Facts) -> tuple[CurveName, Band, float] | str:
+    """Key and band of a curve that has mbkf's name, unit and sign, or the reason that it is left out."""
+    if len(band.mean) != POINTS or (band.sd < 0.0).any():
+        return f"it has {len(band.mean)} points of {POINTS}, or a negative standard deviation"
+    persons = band.persons or facts.persons
+    return (band.kind, band.quantity, band.label), Band(band.unit, persons, band.mean, band.sd), 1.0
 
 
 def _curve(band: RawBand, facts: _Facts) -> tuple[CurveName, Band, float] | str:

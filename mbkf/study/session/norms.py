@@ -11,7 +11,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.norms import Band, CurveName, GdiBasis, Norms, Speeds
+from mbkf.io.norms import Band, CurveName, GdiBasis, Norms, Span, Speeds
 from mbkf.io.session import SESSION_FILE, SessionNotes, read_session
 from mbkf.study.batch.inputs import RECORD, read_record
 from mbkf.study.session.chosen import chosen_curves
@@ -131,9 +131,15 @@ def norms_from(selection: NormSelection, name: str) -> Norms:
         gdi=_gdi(gaits),
         convention=convention,
         axes=axes,
+        ages=_span([one.facts.age for one in chosen]),
+        speeds=_span([one.facts.speed_m_s for one in chosen]),
     )
     scores = _bands(_score_means(gaits, norms))
     return replace(norms, measures={**norms.measures, **scores})
+
+
+def _span(values: Sequence[float]) -> Span:
+    return min(values), max(values)
 
 
 def _curve_bands(gaits: Sequence[MovementGroup]) -> dict[CurveName, Band]:

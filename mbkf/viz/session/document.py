@@ -13,10 +13,8 @@ from mbkf.study.session.cycles import Key
 from mbkf.study.session.emg import PEAK
 from mbkf.study.session.norm_selection import speed_of
 from mbkf.study.session.records import MovementGroup, Session
-from mbkf.trial.gait.convention import convention_of
 from mbkf.version import __version__
-from mbkf.viz.convention_words import statement
-from mbkf.viz.language import ENGLISH, filled, words
+from mbkf.viz.language import ENGLISH
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.motion import JointNames, joint_names
@@ -30,6 +28,7 @@ from mbkf.viz.session.charts import (
     session_chart,
 )
 from mbkf.viz.session.emg import emg_part
+from mbkf.viz.session.norms import norm_sentences, norms_in_report
 from mbkf.viz.session.scores import scores_part
 from mbkf.viz.session.tables import changes_table, measures_table, trials_table
 from mbkf.viz.session.terms import Terms
@@ -101,8 +100,8 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
     norms = None if norms is None else norms.at_speed(speed_of(gait))
     counts = [len(side.cycles) for side in gait.sides]
 
-    read = (session.convention.name, *session.axes)
-    alike = norms if norms is not None and norms.read == read else None
+    shown = norms_in_report(norms, session)
+    alike = None if shown is None else shown.norms
     known = {} if alike is None else alike.curves
 
     def draw(rows: list[list[Shown]]) -> str:
@@ -130,7 +129,7 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             scores_part(gait, alike, terms),
             f'<h3 class="sheet">{escape(terms.say("angles"))}</h3>',
             _key(gait, alike, terms),
-            *(paragraph(one) for one in (*terms.convention_notes, *_norms_apart(norms, session, terms))),
+            *(paragraph(one) for one in (*terms.convention_notes, *norm_sentences(norms, shown, terms))),
             paragraph(terms.say("midline_note")),
             draw(angle_rows(body, names.legs, terms)),
             f'<h3 class="sheet">{escape(terms.say("torques"))}</h3>',
@@ -145,14 +144,6 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f'<div class="sheet">{"".join(upper)}</div>' if upper else "",
         )
     )
-
-
-def _norms_apart(norms: Norms | None, session: Session, terms: Terms) -> list[str]:
-    """A sentence on norms that are in another convention than the session."""
-    if norms is None or norms.read == (session.convention.name, *session.axes):
-        return []
-    text = statement(terms.language, convention_of(norms.convention), (norms.axes,))
-    return [filled(words(terms.language, "convention")["norms_differ"], norms.name, text)]
 
 
 def _changes(before: Session, after: Session, names: JointNames, terms: Terms) -> str:
