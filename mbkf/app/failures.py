@@ -13,6 +13,8 @@ from starlette.types import ExceptionHandler
 
 from mbkf.errors import MbkfError
 from mbkf.io.utf8 import storable
+from mbkf.viz.language import ENGLISH, languages
+from mbkf.viz.sentences import said
 
 BAD_REQUEST, FORBIDDEN, NOT_FOUND, CONFLICT, OVERTAKEN = 400, 403, 404, 409, 412
 TOO_LARGE, WITHOUT_VERSION, SERVER_ERROR, UNAVAILABLE, DISK_FULL = 413, 428, 500, 503, 507
@@ -51,8 +53,19 @@ class Refused(MbkfError):
         super().__init__(text)
 
 
-def failure(error: MbkfError | OSError) -> tuple[int, str]:
-    """The status and the sentence for a foreseen error."""
+def language_of(request: Request) -> str:
+    """The language of the page that sends a request: in its address, or else in the header ``Accept-Language``."""
+    asked = (request.query_params.get("language"), request.headers.get("accept-language", "")[:2])
+    return next((one for one in asked if one and one in languages()), ENGLISH)
+
+
+def failure(error: MbkfError | OSError, language: str = ENGLISH) -> tuple[int, str]:
+    """The status and the sentence for a foreseen error, in a language."""
+    status, text = _failure(error)
+    return status, said(text, language)
+
+
+def _failure(error: MbkfError | OSError) -> tuple[int, str]:
     if isinstance(error, Refused):
         return error.status, sentence(error)
     if isinstance(error, MbkfError):
@@ -66,9 +79,9 @@ def failure(error: MbkfError | OSError) -> tuple[int, str]:
     return status, " ".join((f"{storable(name[:80])}: {text}" if name else text).split())
 
 
-def failed(error: MbkfError | OSError) -> Response:
-    """The reply for a foreseen error: its sentence under "trouble"."""
-    status, text = failure(error)
+def failed(error: MbkfError | OSError, language: str = ENGLISH) -> Response:
+    """The reply for a foreseen error: its sentence in a language under "trouble"."""
+    status, text = failure(error, language)
     return JSONResponse({"trouble": text}, status_code=status)
 
 
@@ -77,20 +90,24 @@ def sentence(error: Exception) -> str:
     return storable(" ".join(str(error).split()))
 
 
-async def _unforeseen(_request: Request, error: Exception) -> Response:
+async def _unforeseen(request: Request, error: Exception) -> Response:
     text = f"unforeseen {type(error).__name__} in mbkf; please report it with the steps that led here"
-    return JSONResponse({"trouble": text}, status_code=SERVER_ERROR)
+    return JSONResponse({"trouble": said(text, language_of(request))}, status_code=SERVER_ERROR)
 
 
-async def _unknown_address(_request: Request, error: Exception) -> Response:
+async def _unknown_address(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     headers = dict(error.headers or {})
     text = "this address does not exist" if error.status_code == NOT_FOUND else f"refused ({error.detail})"
-    return JSONResponse({"trouble": text}, status_code=error.status_code, headers=headers)
+    return JSONResponse(
+        {"trouble": said(text, language_of(request))}, status_code=error.status_code, headers=headers
+    )
 
 
-async def _left(_request: Request, _error: Exception) -> Response:
-    return JSONResponse({"trouble": "the request broke off"}, status_code=BAD_REQUEST)
+async def _left(request: Request, _error: Exception) -> Response:
+    return JSONResponse(
+        {"trouble": said("the request broke off", language_of(request))}, status_code=BAD_REQUEST
+    )
 
 
 HANDLERS: dict[int | type[Exception], ExceptionHandler] = {

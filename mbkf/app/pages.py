@@ -8,6 +8,7 @@ from mbkf.app.charts import Charts
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.session import FootEvent
 from mbkf.stream.loopback import LOOPBACK
+from mbkf.viz.language import ENGLISH
 from mbkf.viz.page import asset, embedded_words, fill, scripts
 from mbkf.viz.report.document import report_page
 
@@ -26,16 +27,20 @@ def start_page() -> str:
     return fill("app.html", style=asset("app.css"), words=embedded_words(*SECTIONS), scripts=scripts(SCRIPTS))
 
 
-def trial_report(folder: Path, charts: Charts, events: tuple[FootEvent, ...] | None = None) -> str:
+def trial_report(
+    folder: Path, charts: Charts, events: tuple[FootEvent, ...] | None = None, language: str = ENGLISH
+) -> str:
     """The report on a trial's result.
 
     Args:
         folder: The result.
         charts: Convention and colours.
         events: Strikes and toe-offs set by hand; None for the detected ones.
+        language: Code of its language.
 
     Raises:
         FileFormatError: The result is damaged.
+        InvalidInput: The language does not exist.
     """
     return report_page(
         read_reconstruction(folder),
@@ -43,6 +48,7 @@ def trial_report(folder: Path, charts: Charts, events: tuple[FootEvent, ...] | N
         by_hand=events,
         convention=charts.read,
         colours=charts.colours,
+        language=language,
     )
 
 

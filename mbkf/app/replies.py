@@ -17,14 +17,29 @@ from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 
 from mbkf.app.bodies import plain, read_body
-from mbkf.app.failures import BAD_REQUEST, CONFLICT, NOT_FOUND, WITHOUT_VERSION, Refused, failed, failure
+from mbkf.app.failures import (
+    BAD_REQUEST,
+    CONFLICT,
+    NOT_FOUND,
+    WITHOUT_VERSION,
+    Refused,
+    failed,
+    failure,
+    language_of,
+)
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.files_read import own_files_read
+from mbkf.viz.translation import translated_data
 
 T = TypeVar("T")
 
 Query = Mapping[str, str]
 """Words of a request's address, e.g. "P1" for ``session`` in ``?session=P1``; empty where a word is missing."""
+
+SPOKEN = frozenset(
+    {"line", "reasons", "reason", "scaled_why", "said", "left_out", "trouble", "values", "what", "todo"}
+)
+"""Entries of replies that hold texts of the library; they are said in the page's language."""
 
 NO_VERSION = "a change must name the version that it began from; load the page again"
 
@@ -33,7 +48,9 @@ def data(path: str, answer: Callable[[Query], object]) -> Route:
     """A GET request that is replied to with plain data."""
 
     async def endpoint(request: Request) -> Response:
-        return await replied(lambda: _json(answer(_query(request))))
+        return await replied(
+            lambda: _json(answer(_query(request)), language_of(request)), language_of(request)
+        )
 
     return Route(path, endpoint, methods=["GET"])
 
@@ -45,8 +62,10 @@ def action(path: str, answer: Callable[[Query, bytes], object]) -> Route:
         try:
             body = await read_body(request)
         except MbkfError as error:
-            return failed(error)
-        return await replied(lambda: _json(answer(_query(request), body)))
+            return failed(error, language_of(request))
+        return await replied(
+            lambda: _json(answer(_query(request), body), language_of(request)), language_of(request)
+        )
 
     return Route(path, endpoint, methods=["POST"])
 
@@ -64,8 +83,9 @@ def change(path: str, answer: Callable[[Query, object, str], object]) -> Route:
             if not version:
                 raise Refused(WITHOUT_VERSION, NO_VERSION)
         except MbkfError as error:
-            return failed(error)
-        return await replied(lambda: _json(answer(_query(request), plain(body), version)))
+            return failed(error, language_of(request))
+        language = language_of(request)
+        return await replied(lambda: _json(answer(_query(request), plain(body), version), language), language)
 
     return Route(path, endpoint, methods=["POST"])
 
@@ -77,7 +97,7 @@ def page(path: str, make: Callable[[Query], str]) -> Route:
         try:
             return HTMLResponse(await in_own_thread(lambda: make(_query(request))))
         except (MbkfError, OSError) as error:
-            status, text = failure(error)
+            status, text = failure(error, language_of(request))
             return PlainTextResponse(text, status_code=NOT_FOUND if status == BAD_REQUEST else status)
 
     return Route(path, endpoint, methods=["GET"])
@@ -92,7 +112,7 @@ def download(path: str, make: Callable[[Query], tuple[str, bytes]]) -> Route:
         return Response(content, media_type="application/octet-stream", headers=headers)
 
     async def endpoint(request: Request) -> Response:
-        return await replied(lambda: answer(_query(request)))
+        return await replied(lambda: answer(_query(request)), language_of(request))
 
     return Route(path, endpoint, methods=["GET"])
 
@@ -107,15 +127,16 @@ async def in_own_thread(work: Callable[[], T]) -> T:
     return await run_in_threadpool(alone)
 
 
-async def replied(answer: Callable[[], Response]) -> Response:
+async def replied(answer: Callable[[], Response], language: str) -> Response:
     """The reply of a function that runs in a thread; a foreseen failure as its sentence, under "trouble"."""
     try:
         return await in_own_thread(answer)
     except (MbkfError, OSError) as error:
-        return failed(error)
+        return failed(error, language)
 
 
-def _json(answer: object) -> Response:
+def _json(answer: object, language: str) -> Response:
+    answer = translated_data(answer, language, SPOKEN)
     entries = answer if isinstance(answer, Mapping) else {}
     headers = {"ETag": f'"{entries["version"]}"'} if "version" in entries else None
     return JSONResponse(answer, CONFLICT if entries.get("differences") else 200, headers)

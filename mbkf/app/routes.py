@@ -13,7 +13,7 @@ from starlette.routing import BaseRoute, Route
 from mbkf.app import answers, reports
 from mbkf.app.bodies import plain, stated_size, stream_body
 from mbkf.app.exports import export, session_curves
-from mbkf.app.failures import failed
+from mbkf.app.failures import failed, language_of
 from mbkf.app.foot_events import set_events
 from mbkf.app.live_command import live_offer, live_options, recording_folder
 from mbkf.app.live_run import LiveRun
@@ -71,7 +71,7 @@ def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         try:
             await stream_body(request, workspace.putting(name, stated_size(request)))
         except (MbkfError, OSError) as error:
-            return failed(error)
+            return failed(error, language_of(request))
         return JSONResponse({"put": name})
 
     return [
@@ -87,7 +87,8 @@ def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
 def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
     def shown(query: Query) -> dict[str, object]:
         session, trial = query["session"], query["trial"]
-        return viewer_data(workspace.result(session, trial), workspace.events(session, trial))
+        events = workspace.events(session, trial)
+        return viewer_data(workspace.result(session, trial), events, query["language"] or ENGLISH)
 
     def viewer(query: Query) -> str:
         session, trial = query["session"], query["trial"]
@@ -97,7 +98,8 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
     def report(query: Query) -> str:
         session, trial = query["session"], query["trial"]
         charts = workspace.charts.chosen(query)
-        return trial_report(workspace.result(session, trial), charts, workspace.events(session, trial))
+        events = workspace.events(session, trial)
+        return trial_report(workspace.result(session, trial), charts, events, query["language"] or ENGLISH)
 
     def events(query: Query, sent: object, version: str) -> object:
         return set_events(workspace, runs, query["session"], query["trial"], sent, version)

@@ -10,8 +10,10 @@ from mbkf.io.session import FootEvent, plain_events
 from mbkf.io.session_change import version_of
 from mbkf.trial.gait.events import foot_events, plain_found
 from mbkf.trial.verdict.judge import verdict_of
+from mbkf.viz.language import ENGLISH
 from mbkf.viz.page import asset, embedded, embedded_words, fill, scripts, viewer_script
 from mbkf.viz.scene.recording import recording
+from mbkf.viz.sentences import said
 
 SCRIPTS = (
     "element.js", "colours.js", "app_words.js", "scene.js", "plot.js", "panel.js", "player.js", "page.js",
@@ -20,12 +22,15 @@ SCRIPTS = (
 """The page's scripts, in the order they are needed."""
 
 
-def viewer_data(folder: Path, events: Iterable[FootEvent] | None = None) -> dict[str, object]:
+def viewer_data(
+    folder: Path, events: Iterable[FootEvent] | None = None, language: str = ENGLISH
+) -> dict[str, object]:
     """The drawing of a trial, as JSON can hold it.
 
     Args:
         folder: The trial's results.
         events: Strikes and toe-offs set by hand; None without.
+        language: Code of the language of the verdict.
 
     Returns:
         ``scene`` and ``rows`` (:func:`mbkf.viz.scene.recording.recording`), ``found``: the detected events,
@@ -47,7 +52,11 @@ def viewer_data(folder: Path, events: Iterable[FootEvent] | None = None) -> dict
         "version": version_of(by_hand),
         "frame_s": 1.0 / r.rate_hz,
         "span_s": [float(r.times_s[0]), float(r.times_s[-1])],
-        "verdict": {"word": verdict.overall, "line": verdict.line, "reasons": list(verdict.sentences)},
+        "verdict": {
+            "word": verdict.overall,
+            "line": said(verdict.line, language),
+            "reasons": [said(one, language) for one in verdict.sentences],
+        },
     }
 
 

@@ -42,10 +42,10 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="one trial: numbers of 'mbkf label' (default: TRIAL.json in DIR or beside it, if there is one)",
     )
     add_chart_options(parser)
+    parser.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
     session = parser.add_argument_group("for a session")
     session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
     session.add_argument("--norms", metavar="FILE.toml", help="reference bands of 'mbkf norms build'")
-    session.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
     session.add_argument(
         "--emg-reference",
         metavar="WORD",
@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.results_folder import MOTION_FILE
 
     folders = [Path(folder) for folder in args.folders]
-    for_session = [args.against, args.norms, args.language, args.curves, args.name, args.emg_reference]
+    for_session = [args.against, args.norms, args.curves, args.name, args.emg_reference]
     one = len(folders) == 1 and ((folders[0] / MOTION_FILE).is_file() or not folders[0].is_dir())
     if one and not any(option is not None for option in for_session):
         return _trial(args, folders[0])
@@ -86,13 +86,19 @@ def _convention(args: argparse.Namespace) -> Convention | None:
 def _trial(args: argparse.Namespace, folder: Path) -> int:
     from mbkf.io.atomic import write_text
     from mbkf.io.results_folder import read_reconstruction, read_summary
+    from mbkf.viz.language import ENGLISH
     from mbkf.viz.report.document import labels_of, read_labels, report_page
 
     result = read_reconstruction(folder)
     labels = labels_of(folder, result.trial) if args.labels is None else read_labels(args.labels)
     out = Path(args.out) if args.out else folder / "report.html"
     page = report_page(
-        result, read_summary(folder), labels, convention=_convention(args), colours=args.colours
+        result,
+        read_summary(folder),
+        labels,
+        convention=_convention(args),
+        colours=args.colours,
+        language=args.language or ENGLISH,
     )
     write_text(out, page)
     print(out)

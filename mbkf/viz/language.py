@@ -36,6 +36,17 @@ def words(language: str, section: str) -> Mapping[str, str]:
     return _read(language)[section]
 
 
+@cache
+def decimal_sign(language: str) -> str:
+    """The sign between whole and decimal places, e.g. "," in Spanish."""
+    return str(_read(language)["decimal"])
+
+
+def contractions(language: str) -> Mapping[str, str]:
+    """Words of a language that are written together, by themselves apart."""
+    return dict(_read(language)["contractions"])
+
+
 def filled(text: str, *values: object) -> str:
     """A text with values in the places of {0}, {1} and so on."""
     for k, value in enumerate(values):

@@ -11,12 +11,13 @@ from html import escape
 from pathlib import Path
 
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.viz.language import languages, words
+from mbkf.viz.language import decimal_sign, languages, words
+from mbkf.viz.translation import translated
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 
 SCRIPTS = (
-    "element.js", "colours.js", "scene.js", "plot.js", "panel.js", "player.js", "live.js", "page.js",
+    "element.js", "app_words.js", "colours.js", "scene.js", "plot.js", "panel.js", "player.js", "live.js", "page.js",
 )  # fmt: skip
 """Scripts of the 3-D page, in the order they are needed."""
 
@@ -28,13 +29,14 @@ def page(recording: dict[str, object] | None = None) -> str:
         connect="'self'" if recording is None else "'none'",
         style=asset("page.css"),
         recording="" if recording is None else embedded("recording", recording),
+        words=embedded_words("viewer", "live_page"),
         meshcat=viewer_script(),
         scripts=scripts(SCRIPTS),
     )
 
 
 def document(language: str, title: str, style: str, sections: Iterable[tuple[str, str]], body: str) -> str:
-    """A report: a page without scripts, with links to its sections.
+    """A report: a page without scripts, with links to its sections; texts of the library are said in its language.
 
     Args:
         language: Its code, e.g. "en".
@@ -44,7 +46,8 @@ def document(language: str, title: str, style: str, sections: Iterable[tuple[str
         body: Heading and sections, HTML.
     """
     links = "".join(f'<a href="#{name}">{escape(text)}</a>' for name, text in sections)
-    return fill("report.html", language=language, title=escape(title), style=style, links=links, body=body)
+    page = fill("report.html", language=language, title=escape(title), style=style, links=links, body=body)
+    return translated(page, language)
 
 
 BLUE_RED = "blue-red"
@@ -92,6 +95,7 @@ def embedded_words(*sections: str) -> str:
     known = {
         code: {
             "name": name,
+            "decimal": decimal_sign(code),
             "words": {key: text for one in sections for key, text in words(code, one).items()},
         }
         for code, name in languages().items()

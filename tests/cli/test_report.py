@@ -27,7 +27,7 @@ def test_labels_may_be_named(result, tmp_path):
     labels = tmp_path / "labels.json"
     labels.write_text(json.dumps({"ghosts_dropped": 4321, "assigned_fraction": 1.0}))
     assert main(["report", str(result), "--labels", str(labels), "--out", str(tmp_path / "r.html")]) == 0
-    assert "4321 ghost points" in (tmp_path / "r.html").read_text()
+    assert "4321 reflections" in (tmp_path / "r.html").read_text()
 
 
 @pytest.mark.parametrize(
@@ -61,10 +61,12 @@ def test_a_session_is_one_page(sessions, tmp_path, capsys):
     words = ["--against", str(before), "--language", "es", "--curves", str(curves), "--name", "Ana"]
     assert main(["report", str(after), *words, "--out", str(tmp_path / "r.html")]) == 0
     page = (tmp_path / "r.html").read_text()
-    assert 'id="change"' in page and "<h1>Ana</h1>" in page and "Antes" in page and curves.is_file()
+    assert 'id="change"' in page and ">Ana</h1>" in page and "Antes" in page and curves.is_file()
     single = str(after / "walk0")
-    assert main(["report", single, "--language", "en", "--out", str(tmp_path / "s.html")]) == 0
+    assert main(["report", single, "--name", "Ana", "--out", str(tmp_path / "s.html")]) == 0
     assert 'id="gait-walk"' in (tmp_path / "s.html").read_text()
+    assert main(["report", single, "--language", "es", "--out", str(tmp_path / "t.html")]) == 0
+    assert "Fotogramas seguidos" in (tmp_path / "t.html").read_text()
 
 
 @pytest.mark.parametrize(

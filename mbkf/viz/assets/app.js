@@ -82,8 +82,8 @@ const act = {
     const frame = (path, title) => element("iframe", { src: path, title });
     if (view === "session_report") sessionReport(chosen, act);
     else if (view === "live") new LiveDialog(chosen, act).open();
-    else if (view === "marker_set") act.dialog(word(view), frame("marker_set?" + query({ session: chosen }), word(view)));
-    else act.dialog(trial, frame(`trial/${view}?` + query({ session: chosen, trial }), `${trial}: ${word(view)}`));
+    else if (view === "marker_set") act.dialog(word(view), frame("marker_set?" + query({ session: chosen, language }), word(view)));
+    else act.dialog(trial, frame(`trial/${view}?` + query({ session: chosen, trial, language }), `${trial}: ${word(view)}`));
   },
   dialog(title, content, tools = []) {
     const dialog = element("dialog", { onclose: () => act.leave(dialog) });

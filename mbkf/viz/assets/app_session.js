@@ -16,23 +16,24 @@ function field(label, input) {
 function person(data, act) {
   const notes = data.notes;
   const form = element("form", { className: "person", noValidate: true });
-  const number = (name, step) => element("input", { name, type: "number", step, value: notes[name] ?? "" });
+  const number = (name) => element("input", { name, type: "text", inputMode: "decimal", className: "number", value: shownNumber(notes[name]) });
   const sex = element("select", { name: "sex" }, ...["", "female", "male", "other"].map((one) =>
     element("option", { value: one, selected: (notes.sex || "") === one }, word(one || "unknown_sex"))));
   const scaling = element("select", { name: "scaling" }, ...["", "static"].map((one) =>
     element("option", { value: one, selected: (notes.scaling === "static") === (one === "static") }, word(one ? "by_static" : "by_session"))));
   form.append(
     field(word("name"), element("input", { name: "name", type: "text", value: notes.name || "" })),
-    field(word("mass"), number("mass_kg", "0.1")), field(word("height"), number("height_m", "0.01")),
-    field(word("sex"), sex), field(word("age"), number("age", "1")), field(word("scaled_by"), scaling));
+    field(word("mass"), number("mass_kg")), field(word("height"), number("height_m")),
+    field(word("sex"), sex), field(word("age"), number("age")), field(word("scaled_by"), scaling));
   if (data.standing_kg) {
     const kg = data.standing_kg.toFixed(1);
     const take = element("button", { type: "button", onclick: () => act.person(data, { mass_kg: Number(kg) }) }, word("take"));
-    form.append(element("span", { className: "offer" }, word("bear", kg) + " ", take));
+    form.append(element("span", { className: "offer" }, word("bear", shownNumber(kg)) + " ", take));
   }
   form.onchange = (event) => {
-    const { name, value, type } = event.target;
-    act.person(data, { [name]: value === "" ? undefined : type === "number" ? Number(value) : value });
+    const { name, value, className } = event.target, number = className === "number" && value !== "";
+    if (number && Number.isNaN(numberIn(value))) return tell(word("no_number", value), true);
+    act.person(data, { [name]: value === "" ? undefined : number ? numberIn(value) : value });
   };
   form.onsubmit = (event) => event.preventDefault();
   return element("section", {}, element("h3", {}, word("person")), form);
@@ -40,7 +41,7 @@ function person(data, act) {
 
 function problemList(problems, act) {
   return element("ul", { className: "problems" }, ...problems.map((one) =>
-    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, word(`problem_${one.key}`, ...one.values)), ": " + word(`todo_${one.key}`), ...(one.marker_set ? [" ", markerSetButton(act)] : []))));
+    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, word(`problem_${one.key}`, ...one.values.map(shownNumber))), ": " + word(`todo_${one.key}`), ...(one.marker_set ? [" ", markerSetButton(act)] : []))));
 }
 
 function markerSetButton(act) {
@@ -121,7 +122,7 @@ function trialRow(data, one, act) {
   const seen = one.usable || one.seconds;
   return element("tr", { className: one.excluded ? "out" : "" },
     element("td", {}, one.file), element("td", {}, one.live ? word("live_recording") : kind),
-    element("td", { className: "number" }, seen ? word("seconds", one.seconds.toFixed(1)) : "–"),
+    element("td", { className: "number" }, seen ? word("seconds", numeral(one.seconds, 1)) : "–"),
     element("td", { className: "number" }, seen ? String(one.markers || one.unnamed) : "–"),
     element("td", { className: "number" }, seen ? String(one.plates ?? "–") : "–"), out,
     element("td", {}, one.problems.length ? problemList(one.problems, act) : ""), result);

@@ -6,6 +6,24 @@ const WORDS = JSON.parse(document.getElementById("words").textContent);
 const known = (name) => (name in WORDS ? name : null);
 let language = known(localStorage.getItem("mbkf language")) || known(navigator.language.slice(0, 2)) || "en";
 
+// Every request states the language that the page is read in, so that the server's sentences come in it.
+const fetchPlain = window.fetch.bind(window);
+window.fetch = (path, options = {}) => fetchPlain(path, { ...options, headers: { "Accept-Language": language, ...options.headers } });
+
+// A number with the language's decimal sign, and the number that a person wrote with either sign; NaN of another text.
+const numeral = (value, digits) => value.toFixed(digits).replace(".", WORDS[language].decimal).replace("-", "−");
+const numberIn = (text) => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".").replace("−", "-")));
+const shownNumber = (value) => (value === undefined || value === null || value === "" ? "" : String(value).replace(".", WORDS[language].decimal));
+
+// Sentences of the library in other languages, as the server sends them beside its data.
+const SAID = {};
+
+function learn(sentences = {}) {
+  for (const [code, known] of Object.entries(sentences)) SAID[code] = { ...SAID[code], ...known };
+}
+
+const spoken = (text) => SAID[language]?.[text] ?? text;
+
 function word(name, ...values) {
   return WORDS[language].words[name].replace(/\{(\d)\}/g, (_, k) => values[k]); // whatever signs the values hold
 }

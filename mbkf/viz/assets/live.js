@@ -32,10 +32,10 @@ class Live {
   }
 
   controls(bar) {
-    this.button = element("button", { className: "play", id: "pause", title: "Freeze the picture (space); the recording goes on" });
+    this.button = element("button", { className: "play", id: "pause", title: word("live_freeze") });
     this.button.onclick = () => this.pause(!this.paused);
-    this.spans = element("select", { id: "span", ariaLabel: "Seconds plotted" }, ...[5, 10, 20, 60].map((s) =>
-      element("option", { value: s, textContent: `last ${s} s`, selected: s === 10 })));
+    this.spans = element("select", { id: "span", ariaLabel: word("span") }, ...[5, 10, 20, 60].map((s) =>
+      element("option", { value: s, textContent: word("live_last", s), selected: s === 10 })));
     this.spans.onchange = () => { this.span = Number(this.spans.value); this.draw(); };
     const gauge = (id, label) => {
       const number = element("b", { id, textContent: "–" });
@@ -43,7 +43,7 @@ class Live {
       return number;
     };
     bar.append(this.button, this.spans);
-    this.gauges = { time: gauge("time", "time"), rate: gauge("rate", "rate"), latency: gauge("latency", "latency"), lost: gauge("lost", "frames lost") };
+    this.gauges = { time: gauge("time", word("live_time")), rate: gauge("rate", word("live_rate")), latency: gauge("latency", word("live_latency")), lost: gauge("lost", word("live_lost")) };
     this.state = bar.appendChild(element("span", { className: "state", id: "state" }));
     addEventListener("keydown", (event) => {
       if (event.key !== " " || /INPUT|SELECT|BUTTON/.test(event.target.tagName)) return;
@@ -51,12 +51,12 @@ class Live {
       this.pause(!this.paused);
     });
     this.pause(false);
-    this.tell("connecting", "wait");
+    this.tell(word("live_connecting"), "wait");
   }
 
   pause(on) {
     this.paused = on;
-    this.button.textContent = on ? "▶ Continue" : "❚❚ Pause";
+    this.button.textContent = word(on ? "live_continue" : "pause");
     this.button.setAttribute("aria-pressed", on);
   }
 
@@ -72,12 +72,13 @@ class Live {
     socket.onopen = () => { this.connected = true; };
     socket.onclose = () => {
       this.connected = false;
-      this.tell("not connected; trying again", "bad");
+      this.tell(word("live_unconnected"), "bad");
       setTimeout(() => this.connect(), 1000);
     };
   }
 
   read(message) {
+    learn(message.said);
     if (message.judgement) this.judge(message.judgement);
     else this.begin(message);
   }
@@ -88,10 +89,10 @@ class Live {
       this.judged = element("details", { id: "judgement" });
       document.querySelector("header").after(this.judged);
     }
-    const limbs = limb_doubts.map((one) => element("li", { className: "limb" }, one.sentence));
+    const limbs = limb_doubts.map((one) => element("li", { className: "limb" }, spoken(one.sentence)));
     this.judged.dataset.word = overall;
-    this.judged.replaceChildren(element("summary", { title: `judged after ${time_s.toFixed(1)} s` }, line),
-      element("ul", {}, ...[...sentences, ...notices].map((text) => element("li", {}, text)), ...limbs));
+    this.judged.replaceChildren(element("summary", { title: word("live_judged", numeral(time_s, 1)) }, spoken(line)),
+      element("ul", {}, ...[...sentences, ...notices].map((text) => element("li", {}, spoken(text))), ...limbs));
     this.judged.classList.toggle("bare", !this.judged.querySelector("li"));
   }
 
@@ -105,7 +106,7 @@ class Live {
       this.panel.onChange = () => this.draw();
     } else if (JSON.stringify(scene.parts) !== JSON.stringify(this.scene.parts)) location.reload();
     this.scene = scene;
-    this.tell("waiting for the first frame", "wait");
+    this.tell(word("live_first"), "wait");
   }
 
   take(row) {
@@ -121,17 +122,17 @@ class Live {
   watch() {
     if (!this.connected || !this.status || !this.arrived) return;
     const s = this.status;
-    this.gauges.time.textContent = `${s.time_s.toFixed(1)} s`;
+    this.gauges.time.textContent = `${numeral(s.time_s, 1)} s`;
     this.gauges.rate.textContent = `${s.rate_hz.toFixed(0)} Hz`;
-    this.gauges.latency.textContent = `${s.latency_ms.toFixed(1)} ms`;
+    this.gauges.latency.textContent = `${numeral(s.latency_ms, 1)} ms`;
     this.gauges.lost.textContent = s.lost.toFixed(0);
     this.gauges.lost.parentElement.classList.toggle("bad", s.lost > 0);
     const quiet = (performance.now() - this.arrived) / 1000;
-    if (quiet > 1) this.tell(`no frames for ${quiet.toFixed(0)} s`, "bad");
-    else if (this.paused) this.tell("paused", "wait");
-    else if (!s.tracked) this.tell("body not tracked", "bad");
-    else if (s.unexplained) this.tell("unexplained force: loads are not to be used", "bad");
-    else this.tell("live", "good");
+    if (quiet > 1) this.tell(word("live_quiet", quiet.toFixed(0)), "bad");
+    else if (this.paused) this.tell(word("live_paused"), "wait");
+    else if (!s.tracked) this.tell(word("live_untracked"), "bad");
+    else if (s.unexplained) this.tell(word("live_unexplained"), "bad");
+    else this.tell(word("live_now"), "good");
   }
 
   draw() {

@@ -1,7 +1,7 @@
 // Changing a marker set: a card for the chosen marker, choices by marker, and saving them by the server.
 "use strict";
 
-const REASONS = [["Leave out", "left out by hand"], ["Not known", "not known which marker this is"]];
+const REASONS = [["set_leave", "left out by hand"], ["set_not_known", "not known which marker this is"]]; // reasons as files hold them
 
 class MarkerEdit extends MarkerSet {
   constructor(data) {
@@ -16,13 +16,13 @@ class MarkerEdit extends MarkerSet {
 
   controls() {
     const bar = document.getElementById("bar");
-    this.state = element("span", { className: "state", id: "state", textContent: "nothing changed" });
+    this.state = element("span", { className: "state", id: "state", textContent: word("set_nothing_changed") });
     this.state.setAttribute("role", "status");
-    this.save = element("button", { type: "button", id: "save", className: "play", textContent: `Save ${this.data.out}` });
-    this.done = element("button", { type: "button", id: "done", textContent: "Done" });
+    this.save = element("button", { type: "button", id: "save", className: "play", textContent: word("set_save", this.data.out) });
+    this.done = element("button", { type: "button", id: "done", textContent: word("set_done") });
     this.save.onclick = () => this.keep();
     this.done.onclick = () => {
-      if (this.unsaved && !confirm("There are changes that are not saved. End all the same?")) return;
+      if (this.unsaved && !confirm(word("set_unsaved"))) return;
       this.ended = true; // the server may be gone before it answers
       this.send({ do: "done" });
     };
@@ -34,7 +34,7 @@ class MarkerEdit extends MarkerSet {
     this.socket = new WebSocket(`ws://${location.host}/frames${location.search}`);
     this.socket.onmessage = ({ data }) => { if (data) this.take(JSON.parse(data)); };
     this.socket.onclose = () => {
-      this.say(this.ended ? "done; this page can be closed" : "not connected: is mbkf still running?", this.ended ? "good" : "bad");
+      this.say(word(this.ended ? "set_closed" : "set_unconnected"), this.ended ? "good" : "bad");
       for (const button of [this.save, this.done]) button.disabled = true;
     };
   }
@@ -47,7 +47,7 @@ class MarkerEdit extends MarkerSet {
 
   send(word) {
     if (this.data.say) {
-      fetch(this.data.say, { method: "POST", body: JSON.stringify(word) }).then((answer) => answer.json()).then((said) => this.take(said), () => this.say("not connected: is mbkf still running?", "bad"));
+      fetch(this.data.say, { method: "POST", body: JSON.stringify(word) }).then((answer) => answer.json()).then((said) => this.take(said), () => this.say(word("set_unconnected"), "bad"));
       return;
     }
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(word));
@@ -55,23 +55,23 @@ class MarkerEdit extends MarkerSet {
 
   take({ trouble, saved, markers, done, differences }) {
     if (done && this.data.say) {
-      this.say("done; this page can be closed", "good");
+      this.say(word("set_closed"), "good");
       window.parent.postMessage("marker set done", location.origin);
     }
-    if (differences && confirm(`Somebody else has changed ${differences.join(", ")} meanwhile. OK keeps your choice, Cancel the other one.`)) {
+    if (differences && confirm(word("set_overtaken", differences.join(", ")))) {
       this.keep(true);
       return;
     }
-    if (differences) trouble = `The other choice for ${differences.join(", ")} is kept; open this page again to see it.`;
+    if (differences) trouble = word("set_other_kept", differences.join(", "));
     if (saved) this.kept = this.sent;
     if (trouble && !saved) {
       this.tell(trouble);
-      this.say("not saved", "bad");
+      this.say(word("set_not_saved"), "bad");
     }
     if (saved) {
       this.unsaved = false;
       this.tell(trouble || "");
-      this.say(`saved: ${markers} markers`, "good");
+      this.say(word("set_saved", markers), "good");
     }
   }
 
@@ -85,8 +85,8 @@ class MarkerEdit extends MarkerSet {
   head() {
     if (this.choices && this.chosen) return this.card(this.chosen);
     this.shown = null;
-    const said = [element("p", { className: "note", textContent: "Choose a marker, on the body or below, to move it or leave it out." })];
-    if (this.data.trouble) said.push(element("p", { className: "note bad", textContent: `The set does not fit this capture yet, so the body is laid beside it roughly: ${this.data.trouble}` }));
+    const said = [element("p", { className: "note", textContent: word("set_choose") })];
+    if (this.data.trouble) said.push(element("p", { className: "note bad", textContent: word("set_misfit", spoken(this.data.trouble)) }));
     this.header.replaceChildren(...said);
   }
 
@@ -94,14 +94,14 @@ class MarkerEdit extends MarkerSet {
   card(marker) {
     if (!this.shown || this.shown.marker !== marker) {
       const [swatch, said, segments, landmarks] = [element("i", { className: "swatch" }), element("p"), element("select", { id: "segment" }), element("select", { id: "landmark" })];
-      segments.append(element("option", { value: "", textContent: "(left out)" }));
-      for (const { name, title } of this.data.segments) segments.append(element("option", { value: name, textContent: title }));
+      segments.append(element("option", { value: "", textContent: word("set_out_option") }));
+      for (const { name, title } of this.data.segments) segments.append(element("option", { value: name, textContent: spoken(title) }));
       segments.onchange = () => (segments.value ? this.move(marker, { segment: segments.value }) : this.leave(marker, REASONS[0][1]));
       landmarks.onchange = () => this.move(marker, landmarks.value ? { landmark: landmarks.value } : { segment: marker.segment });
       const actions = element("div", { className: "actions" });
       this.shown = { marker, swatch, said, segments, landmarks, actions };
       this.header.replaceChildren(element("section", { id: "card" }, element("h2", {}, swatch, marker.name), said,
-        element("label", {}, "Segment", segments), element("label", {}, "Landmark", landmarks), actions));
+        element("label", {}, word("set_segment"), segments), element("label", {}, word("set_landmark"), landmarks), actions));
     }
     this.fill(this.shown);
   }
@@ -110,17 +110,17 @@ class MarkerEdit extends MarkerSet {
     swatch.style.setProperty("--own", this.colour(marker));
     said.textContent = this.told(marker);
     said.className = this.doubtful(marker) ? "doubtful" : "";
-    segments.options[0].textContent = marker.ignored === UNKNOWN ? "(not in the set)" : "(left out)";
+    segments.options[0].textContent = word(marker.ignored === UNKNOWN ? "set_unknown_option" : "set_out_option");
     if (segments.value !== marker.segment) segments.value = marker.segment;
-    const near = this.near(marker).map(({ name, mm }) => element("option", { value: name, textContent: name.replaceAll("_", " ") + (mm === null ? "" : `, ${mm} mm away`) }));
-    landmarks.replaceChildren(element("option", { value: "", textContent: marker.seen ? "(where the capture shows it)" : "(where the set has it)" }), ...near);
+    const near = this.near(marker).map(({ name, mm }) => element("option", { value: name, textContent: mm === null ? spoken(name.replaceAll("_", " ")) : word("set_away", spoken(name.replaceAll("_", " ")), mm) }));
+    landmarks.replaceChildren(element("option", { value: "", textContent: word(marker.seen ? "set_as_captured" : "set_as_set") }), ...near);
     landmarks.value = marker.landmark;
     actions.replaceChildren(...this.actions(marker));
   }
 
   told(marker) {
-    if (marker.ignored) return marker.ignored === UNKNOWN ? "Not in the set: choose what it is on, or leave it out." : `Left out: ${marker.ignored}`;
-    const off = marker.seen && marker.place ? `, ${Math.round(1000 * Math.hypot(...marker.at.map((x, k) => x - marker.place[k])))} mm from where the set has it` : "";
+    if (marker.ignored) return marker.ignored === UNKNOWN ? word("set_place_it") : word("set_is_out", spoken(marker.ignored));
+    const off = marker.seen && marker.place ? word("set_off", Math.round(1000 * Math.hypot(...marker.at.map((x, k) => x - marker.place[k])))) : "";
     return this.title(marker).slice(marker.name.length + 2) + off;
   }
 
@@ -139,12 +139,12 @@ class MarkerEdit extends MarkerSet {
       button.onclick = act;
       actions.push(button);
     };
-    if (this.doubtful(marker)) add("It is right", () => this.confirm(marker));
+    if (this.doubtful(marker)) add(word("set_right"), () => this.confirm(marker));
     for (const [name, odds] of marker.alternatives) {
       add(`${this.titles.get(name) || name} (${Math.round(100 * odds)} %)`, () => this.move(marker, { segment: name }));
     }
-    for (const [text, reason] of REASONS) if (marker.ignored !== reason) add(text, () => this.leave(marker, reason));
-    if (this.choices.has(marker.name)) add("As before", () => this.undo(marker));
+    for (const [text, reason] of REASONS) if (marker.ignored !== reason) add(word(text), () => this.leave(marker, reason));
+    if (this.choices.has(marker.name)) add(word("set_before"), () => this.undo(marker));
     return actions;
   }
 
@@ -152,7 +152,7 @@ class MarkerEdit extends MarkerSet {
     const landmark = choice.landmark ? this.landmarks.find(({ name }) => name === choice.landmark) : null;
     if (!landmark && !choice.segment) return this.refresh();
     if (!landmark && !marker.seen) {
-      this.tell(`The capture does not show ${marker.name}: choose a landmark for it, or leave it out.`);
+      this.tell(word("set_needs_landmark", marker.name));
       return this.refresh();
     }
     this.tell("");
@@ -188,7 +188,7 @@ class MarkerEdit extends MarkerSet {
 
   after() {
     this.unsaved = true;
-    this.say("changed, not saved", "");
+    this.say(word("set_changed"), "");
     this.refresh();
   }
 }

@@ -1,13 +1,13 @@
 // The page of a marker set: the body in the colours of its segments, the markers on it, and a list by segment.
 "use strict";
 
-const NEARER = 0.9, UNKNOWN = "not in the set";
+const NEARER = 0.9, UNKNOWN = "not in the set"; // the server's word for such a marker
 
 class MarkerSet {
   constructor(data) {
     [this.data, this.markers, this.chosen] = [data, data.markers, null];
     this.colours = new Map(data.segments.map(({ name, colour }) => [name, colour]));
-    this.titles = new Map(data.segments.map(({ name, title }) => [name, title]));
+    this.titles = new Map(data.segments.map(({ name, title }) => [name, spoken(title)]));
     this.column = document.getElementById("column");
     [this.header, this.listing] = [element("div", { id: "head" }), element("div")];
     this.column.append(this.header, this.listing);
@@ -53,17 +53,17 @@ class MarkerSet {
 
   // What is said of a marker where its name alone is not enough.
   title(marker) {
-    if (marker.ignored) return `${marker.name}: ${marker.ignored}`;
+    if (marker.ignored) return `${marker.name}: ${spoken(marker.ignored)}`;
     const words = [`${marker.name}: ${this.titles.get(marker.segment)}`];
-    if (marker.landmark) words.push(marker.landmark.replaceAll("_", " "));
-    words.push(marker.kind);
-    if (this.doubtful(marker)) words.push(`${Math.round(100 * marker.probability)} % sure${this.others(marker)}`);
-    if (this.data.captured && !marker.seen) words.push("not in this capture");
+    if (marker.landmark) words.push(spoken(marker.landmark.replaceAll("_", " ")));
+    words.push(spoken(marker.kind));
+    if (this.doubtful(marker)) words.push(word("set_sure", Math.round(100 * marker.probability)) + this.others(marker));
+    if (this.data.captured && !marker.seen) words.push(word("set_absent"));
     return words.join(", ");
   }
 
   others(marker) {
-    return marker.alternatives.map(([name, odds]) => `, or ${this.titles.get(name) || name} ${Math.round(100 * odds)} %`).join("");
+    return marker.alternatives.map(([name, odds]) => word("set_or", this.titles.get(name) || name, Math.round(100 * odds))).join("");
   }
 
   isChosen(marker) { return this.chosen === marker; }
@@ -81,7 +81,7 @@ class MarkerSet {
   buttons() {
     const views = document.getElementById("views");
     for (const from of ["oblique", "front", "right", "left", "back"]) {
-      const button = element("button", { type: "button", textContent: from });
+      const button = element("button", { type: "button", textContent: word(`from_${from}`) });
       button.onclick = () => this.look(from);
       views.append(button);
     }
@@ -90,28 +90,28 @@ class MarkerSet {
       box.onchange = () => { act(box.checked); this.labels.again(); };
       views.append(element("label", {}, box, text));
     };
-    toggle("names", (on) => { this.labels.named = on; });
-    toggle("body", (on) => { this.labels.body = on; this.view.toggle("body", on); });
+    toggle(word("set_names"), (on) => { this.labels.named = on; });
+    toggle(word("set_body"), (on) => { this.labels.body = on; this.view.toggle("body", on); });
   }
 
   // The list, segment by segment, and what is left out below it.
   list() {
     const own = this.markers.filter((marker) => !marker.ignored), doubts = own.filter((marker) => this.doubtful(marker));
     const computed = own.filter((marker) => marker.kind === "computed").length, held = this.column.scrollTop;
-    const count = [`${own.length - computed} markers`];
-    if (computed) count.push(`${computed} computed`);
+    const count = [word("set_markers", own.length - computed)];
+    if (computed) count.push(word("set_computed_count", computed));
     const unknown = this.markers.filter((marker) => marker.ignored === UNKNOWN);
-    if (unknown.length) count.push(`${unknown.length} not in the set`);
-    if (doubts.length) count.push(`${doubts.length} in doubt`);
+    if (unknown.length) count.push(word("set_unknown_count", unknown.length));
+    if (doubts.length) count.push(word("set_doubt_count", doubts.length));
     document.getElementById("count").textContent = count.join(", ");
     const focus = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.item : undefined;
-    const parts = unknown.length ? [this.part(UNKNOWN, "#fff", unknown)] : [];
+    const parts = unknown.length ? [this.part(word("set_unknown"), "#fff", unknown)] : [];
     for (const { name, title, colour } of this.data.segments) {
       const here = own.filter((marker) => marker.segment === name);
-      if (here.length || !this.data.captured) parts.push(this.part(title, colour, here));
+      if (here.length || !this.data.captured) parts.push(this.part(spoken(title), colour, here));
     }
     const out = this.markers.filter((marker) => marker.ignored && marker.ignored !== UNKNOWN);
-    if (out.length) parts.push(this.part("left out", "#b8c2cc", out));
+    if (out.length) parts.push(this.part(word("set_left_out"), "#b8c2cc", out));
     parts.push(this.legend(doubts.length, computed, out.length, unknown.length));
     this.head();
     this.listing.replaceChildren(...parts);
@@ -125,11 +125,11 @@ class MarkerSet {
   }
 
   head() {
-    if (this.data.source) this.header.replaceChildren(element("p", { className: "note", textContent: `From: ${this.data.source}` }));
+    if (this.data.source) this.header.replaceChildren(element("p", { className: "note", textContent: word("set_from", spoken(this.data.source)) }));
   }
 
   part(title, colour, markers) {
-    const part = element("section", { className: "part" }), head = element("h2", {}, element("i"), title, element("span", { textContent: markers.length || "none" }));
+    const part = element("section", { className: "part" }), head = element("h2", {}, element("i"), title, element("span", { textContent: markers.length || word("set_none") }));
     part.style.setProperty("--own", colour);
     part.append(head, element("ul", {}, ...markers.map((marker) => element("li", {}, this.item(marker)))));
     return part;
@@ -142,7 +142,7 @@ class MarkerSet {
     item.dataset.segment = marker.segment;
     item.style.setProperty("--own", this.colour(marker));
     if (this.doubtful(marker)) item.append(element("small", { textContent: `${Math.round(100 * marker.probability)} %${this.others(marker)}` }));
-    if (marker.ignored && marker.ignored !== UNKNOWN) item.append(element("small", { textContent: marker.ignored }));
+    if (marker.ignored && marker.ignored !== UNKNOWN) item.append(element("small", { textContent: spoken(marker.ignored) }));
     item.setAttribute("aria-pressed", this.isChosen(marker));
     item.onclick = () => this.choose(marker);
     return item;
@@ -155,13 +155,13 @@ class MarkerSet {
       sign.style.cssText = "position:static;margin:0 4px;--own:#6b7785";
       key.append(element("span", {}, sign, text));
     };
-    add("", this.data.captured ? "measured, in the colour of its segment" : "in the colour of its segment");
-    if (doubts) add("doubtful", `in doubt: less than ${Math.round(100 * this.data.sure)} % sure`);
-    if (computed) add("computed", "computed by software");
-    if (unknown) add("unknown", UNKNOWN);
-    if (out && this.data.captured) add("ignored", "left out");
-    if (this.markers.some((marker) => this.data.captured && !marker.seen && !marker.ignored)) add("absent", "not in this capture");
-    if (this.data.captured) key.append(element("span", { textContent: "thick line: from the marker to where the set has it" }));
+    add("", word(this.data.captured ? "set_measured" : "set_coloured"));
+    if (doubts) add("doubtful", word("set_doubtful", Math.round(100 * this.data.sure)));
+    if (computed) add("computed", word("set_computed"));
+    if (unknown) add("unknown", word("set_unknown"));
+    if (out && this.data.captured) add("ignored", word("set_left_out"));
+    if (this.markers.some((marker) => this.data.captured && !marker.seen && !marker.ignored)) add("absent", word("set_absent"));
+    if (this.data.captured) key.append(element("span", { textContent: word("set_line") }));
     return key;
   }
 
@@ -178,10 +178,12 @@ class MarkerSet {
 
 function begin() {
   const data = JSON.parse(document.getElementById("set").textContent);
+  document.documentElement.lang = language;
+  learn(data.said);
   window.mbkf = typeof MarkerEdit === "undefined" ? new MarkerSet(data) : new MarkerEdit(data);
 }
 
 addEventListener("error", (error) => {
-  document.getElementById("trouble").textContent = `Something went wrong: ${error.message}. A browser of 2023 or later with WebGL is needed.`;
+  document.getElementById("trouble").textContent = word("went_wrong", error.message);
 });
 addEventListener("DOMContentLoaded", begin);

@@ -55,12 +55,13 @@ async function start() {
     return;
   }
   const { scene, rows } = JSON.parse(held.textContent);
+  learn(scene.said);
   page.title(scene.title);
   window.mbkf = new Player(page, scene, await Recording.unpack(scene, rows));
 }
 
 function trouble(error) {
-  document.getElementById("trouble").textContent = `Something went wrong: ${error.message}. A browser of 2023 or later with WebGL is needed.`;
+  document.getElementById("trouble").textContent = word("went_wrong", error.message);
 }
 
 addEventListener("error", trouble);

@@ -39,16 +39,16 @@ class Panel {
     const choose = element("select", { title: phrase("quantity", "Quantity to plot"), ariaLabel: phrase("quantity", "Quantity to plot") });
     const groups = new Map();
     for (const q of this.quantities.values()) {
-      if (!groups.has(q.group)) groups.set(q.group, choose.appendChild(element("optgroup", { label: q.group })));
-      groups.get(q.group).append(element("option", { value: q.id, textContent: q.title, selected: q.id === id }));
+      if (!groups.has(q.group)) groups.set(q.group, choose.appendChild(element("optgroup", { label: spoken(q.group) })));
+      groups.get(q.group).append(element("option", { value: q.id, textContent: spoken(q.title), selected: q.id === id }));
     }
     card.value = element("output", { className: "value", title: phrase("two_sd", "± two standard deviations") });
     card.verdict = element("span", { className: "verdict" });
     card.canvas = element("canvas", { role: "img" });
     card.curve = new Curve(card.canvas);
     const bound = (name, label) => {
-      const input = element("input", { type: "number", step: "any", value: card[name], placeholder: "–", ariaLabel: label });
-      input.oninput = () => { card[name] = input.value; this.changed(); };
+      const input = element("input", { type: "text", inputMode: "decimal", value: shownNumber(card[name]), placeholder: "–", ariaLabel: label });
+      input.oninput = () => { card[name] = input.value.replace(",", "."); this.changed(); };
       return input;
     };
     card.unit = element("span", { className: "unit" });
@@ -76,15 +76,15 @@ class Panel {
     remember("mbkf-plots", this.cards.map(({ id, low, high }) => ({ id, low, high })));
     for (const card of this.cards) {
       const q = this.quantities.get(card.id);
-      card.unit.textContent = q.unit;
-      card.canvas.setAttribute("aria-label", q.title);
-      card.positive.textContent = q.positive ? phrase("positive", "positive: {0}", q.positive) : "";
+      card.unit.textContent = spoken(q.unit);
+      card.canvas.setAttribute("aria-label", spoken(q.title));
+      card.positive.textContent = q.positive ? phrase("positive", "positive: {0}", spoken(q.positive)) : "";
     }
     if (this.onChange) this.onChange();
   }
 
   target(card) {
-    const low = parseFloat(card.low), high = parseFloat(card.high);
+    const low = numberIn(String(card.low)), high = numberIn(String(card.high));
     if (Number.isNaN(low) || Number.isNaN(high)) return null;
     return low <= high ? [low, high] : [high, low];
   }
@@ -102,8 +102,8 @@ class Panel {
   tell(card, q, row, target) {
     const value = row ? row[q.column] * q.factor : NaN, sd = row && q.sd_column >= 0 ? row[q.sd_column] * q.factor : NaN;
     const digits = Math.abs(value) >= 100 ? 0 : q.unit === "m" ? 3 : 1;
-    const band = Number.isNaN(sd) ? "" : ` ± ${(2 * sd).toFixed(digits)}`, rounded = Number(value.toFixed(digits)) || 0;
-    const shown = Number.isNaN(value) ? "–" : `${rounded.toFixed(digits).replace("-", "−")}${band} ${q.unit}`;
+    const band = Number.isNaN(sd) ? "" : ` ± ${numeral(2 * sd, digits)}`, rounded = Number(value.toFixed(digits)) || 0;
+    const shown = Number.isNaN(value) ? "–" : `${numeral(rounded, digits)}${band} ${spoken(q.unit)}`;
     if (card.value.textContent !== shown) card.value.textContent = shown;
     const where = !target || Number.isNaN(value) ? "" : value < target[0] ? "below" : value > target[1] ? "above" : "inside";
     card.element.dataset.target = where;

@@ -66,7 +66,7 @@ class Player {
     this.slider.oninput = () => this.go(Number(this.slider.value));
     this.clock = element("span", { className: "clock", id: "clock" });
     this.speeds = element("select", { id: "speed", ariaLabel: phrase("speed", "Speed") }, ...[0.1, 0.25, 0.5, 1, 2, 4].map((s) =>
-      element("option", { value: s, textContent: `${s}×`, selected: s === 1 })));
+      element("option", { value: s, textContent: `${shownNumber(s)}×`, selected: s === 1 })));
     this.speeds.onchange = () => { this.speed = Number(this.speeds.value); };
     const length = this.recording.frames / this.rate;
     this.span = length > 15 ? 10 : 0;
@@ -128,7 +128,7 @@ class Player {
     this.view.show(row);
     this.panel.draw(recording, row, this.window(times[frame], times[0], end), times[frame]);
     this.slider.value = frame;
-    this.clock.textContent = phrase("clock", "{0} s of {1} s", times[frame].toFixed(2), end.toFixed(2));
+    this.clock.textContent = phrase("clock", "{0} s of {1} s", numeral(times[frame], 2), numeral(end, 2));
     if (this.onDraw) this.onDraw(row, times[frame]);
   }
 }

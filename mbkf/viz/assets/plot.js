@@ -11,7 +11,7 @@ function ticks(low, high, wanted) {
 }
 
 function readable(value, step) {
-  return value.toFixed(Math.max(0, Math.min(3, step))).replace("-", "−");
+  return numeral(value, Math.max(0, Math.min(3, step)));
 }
 
 class Curve {

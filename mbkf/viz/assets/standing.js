@@ -6,7 +6,9 @@ const AGAIN_MS = 300, LOST_MS = 3000, LONG = 110, OWN = '<body id="standing">';
 class Standing {
   constructor() {
     const part = (id) => document.getElementById(id);
+    document.documentElement.lang = language;
     [this.trial, this.state, this.said, this.share] = ["trial", "state", "said", "share"].map(part);
+    this.share.setAttribute("aria-label", word("live_standing_still"));
     this.show(null);
     this.connect();
   }
@@ -21,7 +23,7 @@ class Standing {
     };
     socket.onclose = () => {
       this.gone ||= performance.now();
-      this.tell("connecting", "wait");
+      this.tell(word("live_connecting"), "wait");
       this.again();
     };
   }
@@ -43,10 +45,11 @@ class Standing {
     document.title = `${title} · mbkf`;
   }
 
-  take({ text, share }) {
-    this.say(text);
+  take({ text, share, said }) {
+    learn(said);
+    this.say(spoken(text));
     this.show(share);
-    this.tell(share === null ? "no frames" : "frames come", share === null ? "wait" : "good");
+    this.tell(word(share === null ? "live_no_frames" : "live_frames"), share === null ? "wait" : "good");
   }
 
   // The first clause stands out, so the sign after it need not be seen; all parts are the sentence as it was said.
@@ -68,10 +71,10 @@ class Standing {
   }
 
   lose() {
-    this.say("no answer from mbkf; trying again");
+    this.say(word("live_no_answer"));
     this.said.className = "lost";
     this.show(null);
-    this.tell("not connected", "bad");
+    this.tell(word("live_gone"), "bad");
   }
 }
 

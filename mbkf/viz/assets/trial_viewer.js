@@ -82,7 +82,7 @@ class TrialViewer {
     this.mode.disabled = !name;
     if (name) {
       try {
-        const answer = await fetch("recording?" + new URLSearchParams({ session: this.trial.session, trial: name })), said = await answer.json();
+        const answer = await fetch("recording?" + new URLSearchParams({ session: this.trial.session, trial: name, language })), said = await answer.json();
         if (!answer.ok) throw new Error(said.trouble);
         const ghost = await Ghost.of(this.player.view, this.player.recording, said);
         if (asked !== this.asked) return ghost.remove();

@@ -125,7 +125,7 @@ class Strip {
     button.style.left = this.at(time_s);
     button.tabIndex = stop ? 0 : -1;
     button.dataset.chosen = String(key === this.chosen);
-    const told = `${time_s.toFixed(3)} s, ${word(how === "hand" ? "by_hand" : "found")}`;
+    const told = `${numeral(time_s, 3)} s, ${word(how === "hand" ? "by_hand" : "found")}`;
     button.title = `${word(`${side}_${kind}`)}, ${told}`;
     const values = { valuemin: this.events.span[0], valuemax: this.events.span[1], valuenow: time_s, valuetext: told };
     for (const [name, value] of Object.entries(values)) button.setAttribute(`aria-${name}`, value);

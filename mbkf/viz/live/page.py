@@ -14,6 +14,7 @@ from mbkf.stream.results.judgement import Judgement
 from mbkf.viz.live.rows import DisplayRows
 from mbkf.viz.page import page
 from mbkf.viz.scene.description import scene_description
+from mbkf.viz.sentences import in_languages
 from mbkf.viz.server import PageServer
 
 
@@ -87,7 +88,7 @@ class LivePage:
             return None
         if self._judged is None or self._judged[0] is not frame.judgement:
             count = 0 if self._judged is None else self._judged[1] + 1
-            text = json.dumps({"judgement": frame.judgement.plain()}, ensure_ascii=False)
+            text = json.dumps(_spoken(frame.judgement), ensure_ascii=False)
             self._judged = (frame.judgement, count, text)
         return self._judged[1:]
 
@@ -100,3 +101,10 @@ class LivePage:
             count = 0 if self._sent is None else self._sent[1] + 1
             self._sent = (frame, count, self._rows.row(frame).astype("<f4").tobytes())
         return self._sent[1:]
+
+
+def _spoken(judgement: Judgement) -> dict[str, object]:
+    """A judgement as plain data, with its sentences in other languages."""
+    limbs = [one.sentence for one in judgement.limb_doubts]
+    texts = [judgement.verdict.line, *judgement.verdict.sentences, *judgement.notices, *limbs]
+    return {"judgement": judgement.plain(), "said": in_languages(texts)}

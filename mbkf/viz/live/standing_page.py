@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 
 from mbkf.stream.loopback import LOOPBACK
-from mbkf.viz.page import asset, fill, scripts
+from mbkf.viz.page import asset, embedded_words, fill, scripts
+from mbkf.viz.sentences import in_languages
 from mbkf.viz.server import PageServer
 
 
@@ -74,10 +75,17 @@ class StandingPage:
     def _packed(self) -> tuple[int, bytes]:
         """The newest sentence and share as a numbered row of JSON."""
         number, text, share = self._newest
-        return number, json.dumps({"text": text, "share": share}, ensure_ascii=False).encode("utf-8")
+        return number, json.dumps(
+            {"text": text, "share": share, "said": in_languages([text])}, ensure_ascii=False
+        ).encode("utf-8")
 
 
 def standing_page() -> str:
     """The page, in the style of the live page."""
     style = asset("page.css") + asset("standing.css")
-    return fill("standing.html", style=style, scripts=scripts(["standing.js"]))
+    return fill(
+        "standing.html",
+        style=style,
+        words=embedded_words("live_page"),
+        scripts=scripts(["app_words.js", "standing.js"]),
+    )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from mbkf.conventions import Array
@@ -10,13 +12,14 @@ from mbkf.model.protocol import Protocol
 from mbkf.model.segment_poses import segment_poses
 from mbkf.trial.protocol.editing import SURE
 from mbkf.trial.protocol.standing import Standing, faced_forward, neutral_on_floor
-from mbkf.viz.page import asset, embedded, fill, viewer_script
+from mbkf.viz.page import asset, embedded, embedded_words, fill, viewer_script
 from mbkf.viz.page import scripts as joined
 from mbkf.viz.protocol.colours import segment_colours
 from mbkf.viz.scene.channels import Layout
 from mbkf.viz.scene.description import scene_description
+from mbkf.viz.sentences import in_languages
 
-SCRIPTS = ("element.js", "colours.js", "scene.js", "marker_labels.js", "marker_set.js")
+SCRIPTS = ("element.js", "app_words.js", "colours.js", "scene.js", "marker_labels.js", "marker_set.js")
 EDIT_SCRIPTS = (*SCRIPTS, "marker_edit.js")
 
 UNKNOWN = "not in the set"
@@ -42,7 +45,8 @@ def page_text(data: dict[str, object], scripts: tuple[str, ...], connect: str) -
         "marker_set.html",
         connect=connect,
         style=asset("page.css") + asset("marker_set.css"),
-        data=embedded("set", data),
+        data=embedded("set", data | {"said": in_languages(_texts(data))}),
+        words=embedded_words("viewer", "marker_set_page"),
         meshcat=viewer_script(),
         scripts=joined(scripts),
     )
@@ -121,6 +125,18 @@ def _markers(protocol: Protocol, standing: Standing) -> list[dict[str, object]]:
                 }
             )  # fmt: skip
     return found
+
+
+def _texts(data: object) -> Iterator[str]:
+    """All texts of the page's data; names of landmarks as they are read."""
+    if isinstance(data, str):
+        yield data.replace("_", " ")
+    elif isinstance(data, dict):
+        for one in data.values():
+            yield from _texts(one)
+    elif isinstance(data, list | tuple):
+        for one in data:
+            yield from _texts(one)
 
 
 def _plain(point_m: Array) -> list[float]:

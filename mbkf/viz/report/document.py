@@ -19,7 +19,8 @@ from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.progression import LABORATORY
 from mbkf.trial.results.summary import progression_summary
 from mbkf.trial.verdict.judge import verdict_of
-from mbkf.viz.markup import folded, paragraph, section, table
+from mbkf.viz.language import ENGLISH
+from mbkf.viz.markup import Html, folded, paragraph, section, table
 from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.contacts import contact_section
 from mbkf.viz.report.gait import gait_section
@@ -47,6 +48,7 @@ def report_page(
     by_hand: Iterable[FootEvent] | None = None,
     convention: Convention | None = None,
     colours: str = BLUE_RED,
+    language: str = ENGLISH,
 ) -> str:
     """The report.
 
@@ -57,6 +59,7 @@ def report_page(
         by_hand: Strikes and toe-offs set by hand; None for the detected ones.
         convention: Axes and signs of curves; None: the one that the result was reconstructed with.
         colours: Of right and left, one of :data:`mbkf.viz.page.COLOURS`.
+        language: Code of the language; texts are written in English here, and said in it by the page.
     """
     r, convention = reconstruction, convention or convention_of_result(reconstruction)
     gait = find_gait(r, by_hand) if r.tracked.any() else None
@@ -67,7 +70,7 @@ def report_page(
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)
-    return document("en", f"{r.trial} · mbkf report", report_style(colours, "report.css"), there, body)
+    return document(language, f"{r.trial} · mbkf report", report_style(colours, "report.css"), there, body)
 
 
 def read_labels(path: str | Path) -> dict[str, object]:
@@ -108,7 +111,7 @@ def _heading(r: Reconstruction) -> str:
         f"{r.filter} filter, {r.later_frames}",
         f"mbkf {r.version}",
     )
-    return f"<h1>{escape(r.trial)}</h1><p class='facts'>{' · '.join(escape(fact) for fact in facts)}</p>"
+    return f"<h1 translate='no'>{escape(r.trial)}</h1><p class='facts'>{' · '.join(escape(fact) for fact in facts)}</p>"
 
 
 def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
@@ -126,8 +129,8 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
         "settings",
         "Settings",
         table(("this run", ""), run, "small"),
-        folded(f"Settings of the {r.filter} filter", table(("setting", "value"), _flat(chosen), "small")),
-        folded("Other settings", table(("setting", "value"), _flat(others), "small")),
+        folded(f"Settings of the {r.filter} filter", table(("setting", "value"), _code(chosen), "small")),
+        folded("Other settings", table(("setting", "value"), _code(others), "small")),
         folded("Subject", table(("scale factor", "value"), factors, "small") + scaled),
         paragraph(
             f"Files of the result: {ANGLES_READ[r.angles_read]}; pelvis: {_pelvis_frame(r)}; "
@@ -142,6 +145,14 @@ def _pelvis_frame(r: Reconstruction) -> str:
     if r.direction == LABORATORY:
         return "the laboratory's axes"
     return f"frame of progression ({frame['kind']}, {frame['heading_deg']:z.0f}° from the x axis)"
+
+
+def _code(value: Any) -> list[tuple[str, str]]:
+    """Settings as rows of name and value, as files and scripts spell them."""
+    return [
+        (Html(f"<code>{escape(name)}</code>"), Html(f"<code>{escape(text)}</code>"))
+        for name, text in _flat(value)
+    ]
 
 
 def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:

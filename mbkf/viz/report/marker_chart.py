@@ -72,7 +72,9 @@ def marker_chart(r: Reconstruction, ghosts: Array | None = None) -> str:
         parts.append(_ghosts(ghosts, per_frame))
     for m, name in enumerate(r.marker_names):
         y = top + ROW * m
-        parts.append(f'<text class="name" x="{NAME - 6:g}" y="{y + 9.5:g}">{escape(name)}</text>')
+        parts.append(
+            f'<text class="name" translate="no" x="{NAME - 6:g}" y="{y + 9.5:g}">{escape(name)}</text>'
+        )
         parts.append(
             f'<rect class="seen" x="{NAME:g}" y="{y + 1:g}" width="{CHART:g}" height="{ROW - 2:g}"/>'
         )

@@ -11,6 +11,7 @@ from mbkf.model.body import Body
 from mbkf.model.body_shapes import as_plain as plain_shapes
 from mbkf.model.body_shapes import segment_shapes
 from mbkf.viz.scene.channels import STATUS, Layout, quantities
+from mbkf.viz.sentences import in_languages
 from mbkf.viz.wording import part_wording
 
 
@@ -50,4 +51,7 @@ def scene_description(
         "parts": {name: list(place) for name, place in layout.parts.items()},
         "width": layout.width,
         "quantities": [asdict(one) for one in plotted],
+        "said": in_languages(
+            text for one in plotted for text in (one.title, one.group, one.positive, one.unit)
+        ),
     }

@@ -91,7 +91,7 @@ def _heading(session: Session, terms: Terms) -> str:
     if session.age is not None:
         facts.append(terms.say("years", f"{session.age:g}"))
     line = " · ".join(escape(fact) for fact in (terms.say("title"), *facts))
-    return f"<h1>{escape(session.name)}</h1><p class='facts'>{line}</p>"
+    return f"<h1 translate='no'>{escape(session.name)}</h1><p class='facts'>{line}</p>"
 
 
 def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms | None, terms: Terms) -> str:

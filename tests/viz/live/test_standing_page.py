@@ -14,6 +14,7 @@ from mbkf.errors import InvalidInput
 from mbkf.viz.live.page import LivePage
 from mbkf.viz.live.standing_page import StandingPage, standing_page
 from mbkf.viz.page import page
+from mbkf.viz.sentences import said
 from mbkf.viz.server import PageServer
 from tests import waiting
 from tests.recordings import PLATE, walk, walker
@@ -44,7 +45,11 @@ def socket_of(url):
 
 
 def row_of(connection):
-    return json.loads(connection.recv(PATIENCE_S).decode())
+    return {
+        name: value
+        for name, value in json.loads(connection.recv(PATIENCE_S).decode()).items()
+        if name != "said"
+    }
 
 
 def test_the_page_is_whole_and_connects_to_its_server_alone():
@@ -74,6 +79,12 @@ def test_what_was_said_before_it_opened_is_shown_then(standing):
         assert row_of(one)["share"] is None
 
 
+def test_a_sentence_comes_in_every_language(standing):
+    standing.say(SENTENCES[0])
+    said = json.loads(standing._packed()[1])["said"]
+    assert said["es"] == {SENTENCES[0]: "quédese quieto 1 s, erguido y a la vista de las cámaras"}
+
+
 @given(st.lists(st.one_of(st.sampled_from(("a", "b", "é\n")), st.none(), st.floats(0.0, 1.0)), min_size=1))
 def test_rows_are_numbered_by_what_they_show(steps):
     standing, text, share = StandingPage(), "", None
@@ -86,7 +97,7 @@ def test_rows_are_numbered_by_what_they_show(steps):
             share = step
             standing.progress(step)
         number, row = standing._packed()
-        assert json.loads(row) == {"text": text, "share": share}
+        assert json.loads(row) == {"text": text, "share": share, "said": {"en": {}, "es": {}}}
         assert (number == before[0]) == (row == before[1])
 
 
@@ -132,7 +143,9 @@ def test_a_browser_shows_every_sentence_and_becomes_the_live_page(opened, standi
     with opened(standing.open("visit")) as shown:
         for sentence in SENTENCES:
             standing.say(sentence)
-            until(shown, f"document.getElementById('said').textContent === {json.dumps(sentence)}")
+            until(
+                shown, f"document.getElementById('said').textContent === {json.dumps(said(sentence, 'en'))}"
+            )
             assert shown.evaluate("document.documentElement.scrollHeight <= innerHeight")
         assert shown.text_content("#trial") == "visit"
         assert not shown.is_visible("#share")
