@@ -11,12 +11,15 @@ STILL_MS = 400.0
 """Time between two looks that see the same, ms."""
 
 
-def every_page(user: Visit, every_trial: bool = False) -> Iterator[tuple[str, list[Any]]]:
+def every_page(
+    user: Visit, every_trial: bool = False, close: str = "Close"
+) -> Iterator[tuple[str, list[Any]]]:
     """Opens each page of a session that was run; yields its name and its frames, the outer one first.
 
     Args:
         user: A visit that shows a session with results.
         every_trial: Whether to open the pages of all trials that were run, not of the first alone.
+        close: Text of the button that closes a page.
     """
     yield "session", [user.page.main_frame]
     for button in _dialogs(user, every_trial):
@@ -25,7 +28,7 @@ def every_page(user: Visit, every_trial: bool = False) -> Iterator[tuple[str, li
         user.page.locator("dialog[open]").wait_for()
         _wait_until_still(user.page)
         yield name, list(user.page.frames)
-        user.page.locator("dialog .bar button", has_text="Close").last.click()
+        user.page.locator("dialog .bar button", has_text=close).last.click()
         user.page.locator("dialog").wait_for(state="detached")
 
 

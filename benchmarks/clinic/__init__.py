@@ -12,6 +12,7 @@ from benchmarks.clinic.convention import convention_rows
 from benchmarks.clinic.emg import emg_rows
 from benchmarks.clinic.norms import norms_rows
 from benchmarks.clinic.scores import score_rows
+from benchmarks.clinic.words import words_rows
 from benchmarks.parts import Part, part_rows
 
 PARTS: Mapping[str, Part] = {
@@ -19,6 +20,7 @@ PARTS: Mapping[str, Part] = {
     "emg": lambda context: emg_rows(context.require_data(), context.quick),
     "norms": lambda context: norms_rows(context.out),
     "scores": lambda _: score_rows(),
+    "words": lambda context: words_rows(context.require_data(), context.out),
 }
 """Rows by the part's name."""
 

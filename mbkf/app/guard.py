@@ -13,8 +13,10 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp
 
+from mbkf.app.failures import language_of
 from mbkf.stream.loopback import own_request
 from mbkf.viz.admission import ADMITTED, Admission
+from mbkf.viz.sentences import said
 
 Next = Callable[[Request], Awaitable[Response]]
 
@@ -54,5 +56,6 @@ class Guard(BaseHTTPMiddleware):
         if request.url.path == "/" and self._admission.is_token(words.get("token", "")):
             return RedirectResponse("/", 303, headers={"Set-Cookie": self._admission.set_cookie()})
         if not self._admission.has_cookie(request.headers.get("cookie", "")):
-            return PlainTextResponse("Open the address that mbkf app printed.\n", status_code=403)
+            text = said("Open the address that mbkf app printed.", language_of(request))
+            return PlainTextResponse(f"{text}\n", status_code=403)
         return await call_next(request)

@@ -29,6 +29,7 @@ FEW_LETTERS = 4
 
 _PLACE = re.compile(r"\{(\d)\}")
 _NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?=(?:e[+-]?\d+)?(?![\w.]*\w))")
+_FOLDERS = re.compile(r"""(?:^|(?<=[\s'"(]))/(?:[^/:;\n]+/)+(?=[^/\s])""")
 _PLAIN = re.compile(r"[\W\d_]*")
 _SIZE = re.compile(r"[\W\d_]*(?:[\d.]+ \S+)?")
 _SEPARATOR = re.compile(r"; |: |\. | · ")
@@ -49,13 +50,15 @@ class Sentence(NamedTuple):
 def said(text: str, language: str) -> str:
     """A text of the library in the words of a page; what is not recognised stays, with the language's decimals.
 
+    Files are named without their folders.
+
     Args:
         text: A sentence, or several one after another.
         language: Code of the page's language.
     """
     if _PLAIN.fullmatch(text):
         return with_decimals(text, language)
-    return _said(text, language)
+    return _said(_FOLDERS.sub("", text), language)
 
 
 def in_languages(texts: Iterable[str]) -> dict[str, dict[str, str]]:
@@ -83,6 +86,10 @@ def with_decimals(text: str, language: str) -> str:
 def _said(text: str, language: str) -> str:
     found = _recognised(text)
     if found is not None:
+        head, mark, rest = text.partition(": ")
+        own = _recognised(rest) if mark and found.key.startswith("{0}") and mark in found.values[0] else None
+        if own is not None and _letters(own.key) > _letters(found.key):
+            return _said(head, language) + mark + _said(rest, language)
         return _filled(found, language)
     if text.endswith(".") and not text.endswith(".."):
         return _said(text[:-1], language) + "."

@@ -50,7 +50,7 @@ def test_texts_become_no_markup():
 
 def test_every_word_is_used_and_every_used_one_known():
     text = "\n".join(asset(name) for name in SCRIPTS if name != "app_words.js")
-    known, asked = set(words("en", "viewer")), set(re.findall(r"(?:word|phrase|button)\(\s*\"(\w+)\"", text))
+    known, asked = set(words("en", "viewer")), set(re.findall(r"(?:word|button)\(\s*\"(\w+)\"", text))
     made = {f"{side}_{kind}" for side in ("right", "left") for kind in ("strike", "off")}
     made |= {f"{what}_{how}" for what in ("contact", "pressure") for how in ("measured", "estimated")}
     made |= {f"from_{view}" for view in ("oblique", "front", "right", "left", "back", "top")} | {
@@ -58,7 +58,10 @@ def test_every_word_is_used_and_every_used_one_known():
         "side_l",
     }
     page = asset("page.js")
-    made |= {f"legend_{what}" for what in re.findall(r"\[\"(\w+)\", \"[A-Z]", page)} | {"by_cycle", "by_time"}
+    made |= {f"legend_{what}" for what in re.findall(r"\[\"(\w+)\", \"\S\", ", page)} | {
+        "by_cycle",
+        "by_time",
+    }
     assert asked <= known and made <= known
     assert known <= set(re.findall(r"\b(\w+)\b", OWN + asset("panel.js"))) | made | asked
 

@@ -91,3 +91,11 @@ def test_every_sentence_is_recognised_as_itself():
 
 def test_languages_hold_what_differs():
     assert in_languages(["pelvis", "trunk", "trunk"]) == {"en": {}, "es": {"trunk": "tronco"}}
+
+
+def test_files_are_named_without_their_folders():
+    text = "/home/Ana Lab/S1/m51.c3d: cut short inside its parameters (3000 bytes); export it again"
+    assert (
+        said(text, "es") == "m51.c3d: está cortado dentro de sus parámetros (3000 bytes); expórtelo de nuevo"
+    )
+    assert said("power in W/kg", "en") == "power in W/kg"

@@ -31,6 +31,7 @@ from mbkf.trial.gait.convention_angles import convention_angles
 from mbkf.trial.gait.cycles import Gait, find_gait
 from mbkf.trial.verdict.judge import verdict_of
 from mbkf.trial.verdict.parts import LEGS, PELVIS
+from mbkf.trial.verdict.restated import unstated
 
 GAIT_KINDS = (TrialKind.WALK, TrialKind.RUN, TrialKind.UNKNOWN)
 """Kinds whose cycles are looked at; feet of jumps and squats strike, too."""
@@ -169,7 +170,7 @@ def trial_summary(r: Reconstruction, kind: TrialKind | None = None) -> SessionTr
         kind,
         seconds,
         verdict.overall,
-        (*verdict.sentences, *r.warnings),
+        (*verdict.sentences, *unstated(r.warnings, verdict)),
         f"{r.filter}, {r.later_frames}",
         listed(out),
         trial_emg(r),

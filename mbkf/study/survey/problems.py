@@ -12,7 +12,7 @@ TEXTS: Mapping[str, tuple[str, str]] = {
     "gaps": ("{0} % of the marker samples are missing", "intervals are wider there"),
     "unknown_set": ("its marker set is not known", "it is inferred; check it in the marker editor"),
     "partly_known_set": (
-        "protocol {0} knows only {1} % of its markers",
+        "marker set {0} knows only {1} % of its markers",
         "the set is inferred; check it in the marker editor",
     ),
     "axes": ("{0}", "check the trial in 3-D"),
@@ -27,8 +27,8 @@ TEXTS: Mapping[str, tuple[str, str]] = {
         "{0}",
         "correct that line of the file in a text editor, or rename the file and enter person and trials here again",
     ),
-    "strange_trial": ("{0}", "correct its name in session.toml, or remove it where the capture is gone"),
-    "frames_lost": ("{0} of {1} frames were lost", "live.json lists the times"),
+    "strange_trial": ("{0}", "add the capture again; without it this entry has no effect"),
+    "frames_lost": ("{0} of {1} frames were lost", "their times are kept with the recording"),
 }
 """Problem and remedy by key; {0} and {1} stand for values."""
 

@@ -246,6 +246,7 @@ function chooseLanguage() {
 
 function start() {
   document.documentElement.lang = language;
+  place("sessions").setAttribute("aria-label", word("sessions"));
   chooseLanguage();
   arrive();
 }

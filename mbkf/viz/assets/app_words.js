@@ -13,7 +13,7 @@ window.fetch = (path, options = {}) => fetchPlain(path, { ...options, headers: {
 // A number with the language's decimal sign, and the number that a person wrote with either sign; NaN of another text.
 const numeral = (value, digits) => value.toFixed(digits).replace(".", WORDS[language].decimal).replace("-", "−");
 const numberIn = (text) => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".").replace("−", "-")));
-const shownNumber = (value) => (value === undefined || value === null || value === "" ? "" : String(value).replace(".", WORDS[language].decimal));
+const shownNumber = (value) => String(value ?? "").replace(/^(-?\d+)\.(\d+)$/, `$1${WORDS[language].decimal}$2`);
 
 // Sentences of the library in other languages, as the server sends them beside its data.
 const SAID = {};

@@ -2,9 +2,9 @@
 "use strict";
 
 const LEGEND = [
-  ["body", "Body", "■", "#8fa0b0"], ["seen", "Measured", "●", COLOURS.measured], ["predicted", "On the body", "○", COLOURS.predicted],
-  ["hidden", "Not seen, predicted", "◆", COLOURS.hidden], ["refused", "Refused", "■", COLOURS.refused],
-  ["unlabelled", "Without a name", "▲", COLOURS.unlabelled], ["reactions", "Force, measured", "↑", COLOURS.axis], ["estimated", "Force, estimated", "⇡", COLOURS.axis],
+  ["body", "■", "#8fa0b0"], ["seen", "●", COLOURS.measured], ["predicted", "○", COLOURS.predicted],
+  ["hidden", "◆", COLOURS.hidden], ["refused", "■", COLOURS.refused],
+  ["unlabelled", "▲", COLOURS.unlabelled], ["reactions", "↑", COLOURS.axis], ["estimated", "⇡", COLOURS.axis],
 ];
 
 class Page {
@@ -21,30 +21,30 @@ class Page {
 
   legend(view) {
     const legend = document.getElementById("legend");
-    for (const [what, label, sign, colour] of LEGEND) {
+    for (const [what, sign, colour] of LEGEND) {
       if (what === "unlabelled" && !view.parts.unlabelled[1]) continue;
       const box = element("input", { type: "checkbox", checked: true });
       box.onchange = () => view.toggle(what, box.checked);
       const mark = element("i", { textContent: sign });
       mark.style.color = colour;
-      legend.append(element("label", {}, box, mark, phrase(`legend_${what}`, label)));
+      legend.append(element("label", {}, box, mark, word(`legend_${what}`)));
     }
     const sides = element("span", { className: "sides" });
-    for (const [side, name] of [["r", "right"], ["l", "left"]]) {
+    for (const side of ["r", "l"]) {
       const mark = element("i", { textContent: "■" });
       mark.style.color = COLOURS[side];
-      sides.append(mark, `${phrase(`side_${side}`, name)} `);
+      sides.append(mark, `${word(`side_${side}`)} `);
     }
     legend.append(sides);
     const views = document.getElementById("views");
     for (const from of ["oblique", "front", "right", "left", "back", "top"]) {
-      const button = element("button", { textContent: phrase(`from_${from}`, from) });
+      const button = element("button", { textContent: word(`from_${from}`) });
       button.onclick = () => view.look(from);
       views.append(button);
     }
     const follow = element("input", { type: "checkbox", checked: true });
     follow.onchange = () => { view.follow = follow.checked; };
-    views.append(element("label", {}, follow, phrase("follow", "follow")));
+    views.append(element("label", {}, follow, word("follow")));
   }
 }
 

@@ -26,7 +26,7 @@ class Panel {
     this.other = null; // gives a quantity's times and values in another trial, drawn dashed
     this.marks = []; // instants to mark: time, colour, dashed
     this.list = column.appendChild(element("div", { className: "plots" }));
-    const add = element("button", { className: "add", textContent: phrase("add_plot", "+ Add a plot") });
+    const add = element("button", { className: "add", textContent: word("add_plot") });
     add.onclick = () => this.add({ id: quantities[0].id });
     column.append(add);
     const kept = (remembered("mbkf-plots") || []).filter((choice) => this.quantities.has(choice.id));
@@ -36,13 +36,13 @@ class Panel {
 
   add({ id, low = "", high = "" }) {
     const card = { id, low, high };
-    const choose = element("select", { title: phrase("quantity", "Quantity to plot"), ariaLabel: phrase("quantity", "Quantity to plot") });
+    const choose = element("select", { title: word("quantity"), ariaLabel: word("quantity") });
     const groups = new Map();
     for (const q of this.quantities.values()) {
       if (!groups.has(q.group)) groups.set(q.group, choose.appendChild(element("optgroup", { label: spoken(q.group) })));
       groups.get(q.group).append(element("option", { value: q.id, textContent: spoken(q.title), selected: q.id === id }));
     }
-    card.value = element("output", { className: "value", title: phrase("two_sd", "± two standard deviations") });
+    card.value = element("output", { className: "value", title: word("two_sd") });
     card.verdict = element("span", { className: "verdict" });
     card.canvas = element("canvas", { role: "img" });
     card.curve = new Curve(card.canvas);
@@ -52,13 +52,13 @@ class Panel {
       return input;
     };
     card.unit = element("span", { className: "unit" });
-    const remove = element("button", { className: "remove", textContent: "×", title: phrase("remove_plot", "Remove this plot") });
+    const remove = element("button", { className: "remove", textContent: "×", title: word("remove_plot") });
     card.positive = element("span", { className: "positive" });
     card.element = element("section", { className: "card" },
       element("div", { className: "head" }, choose, card.value, remove),
       card.canvas,
       element("div", { className: "foot" }, card.positive,
-        element("label", { className: "target", title: phrase("band", "Target band") }, phrase("target", "target") + " ", bound("low", phrase("target_from", "Target from")), ` ${phrase("to", "to")} `, bound("high", phrase("target_to", "Target to")), " ", card.unit), card.verdict));
+        element("label", { className: "target", title: word("band") }, word("target") + " ", bound("low", word("target_from")), ` ${word("to")} `, bound("high", word("target_to")), " ", card.unit), card.verdict));
     choose.onchange = () => { card.id = choose.value; card.low = card.high = ""; card.element.querySelectorAll("input").forEach((i) => { i.value = ""; }); this.changed(); };
     remove.onclick = () => { this.cards.splice(this.cards.indexOf(card), 1); card.element.remove(); this.changed(); };
     if (this.onSeek) {
@@ -78,7 +78,7 @@ class Panel {
       const q = this.quantities.get(card.id);
       card.unit.textContent = spoken(q.unit);
       card.canvas.setAttribute("aria-label", spoken(q.title));
-      card.positive.textContent = q.positive ? phrase("positive", "positive: {0}", spoken(q.positive)) : "";
+      card.positive.textContent = q.positive ? word("positive", spoken(q.positive)) : "";
     }
     if (this.onChange) this.onChange();
   }
@@ -107,7 +107,7 @@ class Panel {
     if (card.value.textContent !== shown) card.value.textContent = shown;
     const where = !target || Number.isNaN(value) ? "" : value < target[0] ? "below" : value > target[1] ? "above" : "inside";
     card.element.dataset.target = where;
-    const words = where && phrase(where, { below: "▼ below target", above: "▲ above target", inside: "✓ in target" }[where]);
+    const words = where && word(where);
     if (card.verdict.textContent !== words) card.verdict.textContent = words;
   }
 }

@@ -60,18 +60,18 @@ class Player {
   }
 
   controls(bar) {
-    this.button = element("button", { className: "play", id: "play", title: phrase("play_title", "Play or pause (space)") });
+    this.button = element("button", { className: "play", id: "play", title: word("play_title") });
     this.button.onclick = () => this.play(!this.playing);
-    this.slider = element("input", { type: "range", id: "scrub", min: 0, max: this.recording.frames - 1, value: this.frame, ariaLabel: phrase("time", "Time") });
+    this.slider = element("input", { type: "range", id: "scrub", min: 0, max: this.recording.frames - 1, value: this.frame, ariaLabel: word("time") });
     this.slider.oninput = () => this.go(Number(this.slider.value));
     this.clock = element("span", { className: "clock", id: "clock" });
-    this.speeds = element("select", { id: "speed", ariaLabel: phrase("speed", "Speed") }, ...[0.1, 0.25, 0.5, 1, 2, 4].map((s) =>
+    this.speeds = element("select", { id: "speed", ariaLabel: word("speed") }, ...[0.1, 0.25, 0.5, 1, 2, 4].map((s) =>
       element("option", { value: s, textContent: `${shownNumber(s)}×`, selected: s === 1 })));
     this.speeds.onchange = () => { this.speed = Number(this.speeds.value); };
     const length = this.recording.frames / this.rate;
     this.span = length > 15 ? 10 : 0;
-    this.spans = element("select", { id: "span", ariaLabel: phrase("span", "Seconds plotted") }, ...[0, 5, 10, 20, 60].filter((s) => s < length).map((s) =>
-      element("option", { value: s, textContent: s ? phrase("plot_seconds", "plot {0} s", s) : phrase("plot_all", "plot all"), selected: s === this.span })));
+    this.spans = element("select", { id: "span", ariaLabel: word("span") }, ...[0, 5, 10, 20, 60].filter((s) => s < length).map((s) =>
+      element("option", { value: s, textContent: s ? word("plot_seconds", s) : word("plot_all"), selected: s === this.span })));
     this.spans.onchange = () => { this.span = Number(this.spans.value); this.draw(); };
     bar.append(this.button, this.slider, this.clock, this.speeds, this.spans);
     this.play(false);
@@ -86,7 +86,7 @@ class Player {
 
   play(on) {
     this.playing = on;
-    this.button.textContent = on ? phrase("pause", "❚❚ Pause") : phrase("play", "▶ Play");
+    this.button.textContent = on ? word("pause") : word("play");
     this.last = null;
     if (on && this.frame >= this.recording.frames - 1) this.go(this.first);
   }
@@ -128,7 +128,7 @@ class Player {
     this.view.show(row);
     this.panel.draw(recording, row, this.window(times[frame], times[0], end), times[frame]);
     this.slider.value = frame;
-    this.clock.textContent = phrase("clock", "{0} s of {1} s", numeral(times[frame], 2), numeral(end, 2));
+    this.clock.textContent = word("clock", numeral(times[frame], 2), numeral(end, 2));
     if (this.onDraw) this.onDraw(row, times[frame]);
   }
 }

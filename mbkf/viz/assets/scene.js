@@ -37,7 +37,7 @@ class BodyScene {
     viewer.controls.maxDistance = 30;
     const canvas = viewer.renderer.domElement;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "3-D view of the person, markers and ground reactions");
+    canvas.setAttribute("aria-label", word("scene"));
     const draw = () => {
       requestAnimationFrame(draw);
       if (!viewer.needs_render) return;

@@ -6,18 +6,26 @@ from collections.abc import Sequence
 from html import escape
 
 from mbkf.io.findings import INSIDE_SD, Finding
+from mbkf.io.verdict import Verdict
+from mbkf.trial.verdict.restated import stated
 
 SIGNS = {"inside": "✓", "doubtful": "!", "outside": "✗", "not judged": "–"}
 KINDS = {"inside": "good", "doubtful": "care", "outside": "bad", "not judged": "none"}
+SEE_REASONS = "see the reasons of the verdict"
 ORDER = ("outside", "doubtful", "inside", "not judged")
 
 
-def findings_table(checks: Sequence[Finding]) -> str:
-    """The table, worst first; empty without checks."""
+def findings_table(checks: Sequence[Finding], verdict: Verdict) -> str:
+    """The table, worst first; empty without checks.
+
+    Args:
+        checks: The checks.
+        verdict: The verdict on the trial; what its reasons state is not repeated.
+    """
     if not checks:
         return ""
     ranked = sorted(checks, key=lambda one: ORDER.index(one.verdict))
-    rows = "".join(_row(one) for one in ranked)
+    rows = "".join(_row(one, stated(one.name, verdict)) for one in ranked)
     heads = "".join(
         f"<th>{text}</th>" for text in ("Check", "", "found", "noise explains", "bound", "meaning")
     )
@@ -28,10 +36,17 @@ def findings_table(checks: Sequence[Finding]) -> str:
     )
 
 
-def _row(one: Finding) -> str:
+def _row(one: Finding, known: bool) -> str:
     value = "–" if one.value is None else f"{one.value:.3g} {one.unit}"
     noise = "–" if one.expected_sd is None else f"± {INSIDE_SD * one.expected_sd:.2g} {one.unit}"
-    cells = (one.name, SIGNS[one.verdict], value, noise, f"{one.bound:g} {one.unit}", one.hint)
+    cells = (
+        one.name,
+        SIGNS[one.verdict],
+        value,
+        noise,
+        f"{one.bound:g} {one.unit}",
+        SEE_REASONS if known else one.hint,
+    )
     kind = KINDS[one.verdict]
     return (
         f'<tr class="{kind}" title="{escape(one.verdict)}">'

@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.io.contacts import ContactInterval, bearing
 from mbkf.io.results import Reconstruction
+from mbkf.trial.verdict.judge import verdict_of
 from mbkf.viz.markup import folded, key, paragraph, section, table
 from mbkf.viz.report.motion import Cell, charts, facing, force_cells, is_long, time_chart
 from mbkf.viz.report.spreads import Curve, band_key
@@ -89,6 +90,7 @@ def _unexplained(r: Reconstruction) -> list[str]:
     """The table of forces that no contact explains."""
     if not r.unexplained:
         return []
+    remedies = {one.do for one in verdict_of(r).reasons}  # stated above
     heads = ("direction", "from, s", "to, s", "mean, N", "± 2 standard deviations, N", "% of body weight", "")
     rows = [
         (
@@ -98,7 +100,7 @@ def _unexplained(r: Reconstruction) -> list[str]:
             number(one.force_n, 0),
             number(2.0 * one.sd_n, 0),
             number(100.0 * one.share, 0),
-            one.hint,
+            "" if one.hint in remedies else one.hint,
         )
         for one in r.unexplained
     ]

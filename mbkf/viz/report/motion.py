@@ -18,7 +18,7 @@ from mbkf.trial.gait.curves import CURVE_PARTS, side_views
 from mbkf.trial.gait.cycles import POINTS, Gait, over_cycle
 from mbkf.trial.gait.facing import facing
 from mbkf.viz.convention_words import angle_positive, angle_title, moment_note, moment_title, notes
-from mbkf.viz.language import ENGLISH
+from mbkf.viz.language import ENGLISH, words
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.report.reading import Reading, curve_of
 from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_known, spread_note
@@ -148,7 +148,8 @@ def leg_angle_cells(r: Reconstruction, joints: Sequence[str], read: Reading) -> 
         cells = []
         for name in row:
             title, positive = (
-                word(ENGLISH, read.convention, name, name) for word in (angle_title, angle_positive)
+                word(ENGLISH, read.convention, name, words(ENGLISH, section).get(name, ""))
+                for word, section in ((angle_title, "coordinates"), (angle_positive, "positive"))
             )
             curves = {
                 side: curve_of(r, one[name].value, one[name][4:])

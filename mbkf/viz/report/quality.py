@@ -10,6 +10,8 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, JsonTable
 from mbkf.io.results import Reconstruction
 from mbkf.numerics.printed import percent
+from mbkf.trial.verdict.judge import verdict_of
+from mbkf.trial.verdict.restated import unstated
 from mbkf.viz.markup import grid, key, paragraph, section, table
 from mbkf.viz.report.checks import findings_table
 from mbkf.viz.report.marker_chart import CLASSES, LABELS, longest_gap_s, marker_chart, states
@@ -81,7 +83,7 @@ def quality_section(r: Reconstruction, summary: JsonTable, labels: JsonTable | N
     return section(
         "quality",
         "Quality",
-        findings_table(r.checks),
+        findings_table(r.checks, verdict_of(r)),
         '<div class="tiles">' + "".join(_tile(v) for v in verdicts(r, summary)) + "</div>",
         f'<div class="beside"><div>{_flags(r)}</div>{_truth(summary)}</div>',
         grid(_curves(r), 3),
@@ -172,7 +174,7 @@ def _unexplained(r: Reconstruction) -> list[Verdict]:
         return [Verdict("Unexplained force", percent(share, 1), GOOD, remark)]
     largest = max(r.unexplained, key=lambda one: one.force_n)
     more = f"; {len(r.unexplained) - 1} more below" if len(r.unexplained) > 1 else ""
-    remark = f"{largest.direction}, {largest.from_s:.2f} to {largest.to_s:.2f} s: {largest.hint}{more}"
+    remark = f"{largest.direction}, {largest.from_s:.2f} to {largest.to_s:.2f} s{more}"
     return [Verdict("Unexplained force", f"{largest.force_n:.0f} N", BAD, remark)]
 
 
@@ -235,10 +237,11 @@ def _tile(v: Verdict) -> str:
 
 
 def _flags(r: Reconstruction) -> str:
-    if not r.warnings:
+    remarks = unstated(r.warnings, verdict_of(r))
+    if not remarks:
         return paragraph("No remarks.")
-    items = "".join(f"<li>{escape(text)}</li>" for text in r.warnings)
-    many = " many" if len(r.warnings) > MANY else ""
+    items = "".join(f"<li>{escape(text)}</li>" for text in remarks)
+    many = " many" if len(remarks) > MANY else ""
     return f'<h3>Remarks</h3><ul class="flags{many}">{items}</ul>'
 
 

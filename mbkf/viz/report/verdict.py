@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from html import escape
 
-from mbkf.io.verdict import TITLES, WORDS, Verdict
-from mbkf.viz.markup import folded, table
+from mbkf.io.verdict import TITLES, WORDS, Verdict, listed
+from mbkf.viz.markup import table
 
 KINDS = dict(zip(WORDS, ("good", "care", "bad"), strict=True))
 """CSS class of each word."""
 
 
 def verdict_banner(verdict: Verdict) -> str:
-    """The word, the gravest reason, the words on all parts, and all reasons.
+    """The word, the words on all parts, and all reasons, alike ones of several parts together.
 
     Args:
         verdict: The verdict.
@@ -23,10 +23,11 @@ def verdict_banner(verdict: Verdict) -> str:
         f"{'not shown' if part in hidden else word}</span>"
         for part, word in verdict.parts.items()
     )
-    shown = [one for one in verdict.reasons if one.part in verdict.shown]
-    shown = [one for one in verdict.reasons if one.part in verdict.shown]
-    rows = [(TITLES[one.part], one.word, one.found, one.means, one.do) for one in shown]
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for one in verdict.reasons:
+        if one.part in verdict.shown:
+            alike.setdefault((one.word, one.found, one.means, one.do), []).append(one.part)
+    rows = [(listed(parts_of), *texts) for texts, parts_of in alike.items()]
     reasons = table(("part", "word", "found", "meaning", "what to do"), rows, "reasons") if rows else ""
-    lines = f'<p class="line">{escape(verdict.line)}</p><p class="parts">{parts}</p>'
-    more = folded("All reasons", reasons) if reasons else ""
-    return f'<div id="verdict" class="verdict {KINDS[verdict.overall]}">{lines}{more}</div>'
+    lines = f'<p class="line">{escape(verdict.overall)}</p><p class="parts">{parts}</p>'
+    return f'<div id="verdict" class="verdict {KINDS[verdict.overall]}">{lines}{reasons}</div>'

@@ -50,9 +50,8 @@ def trials_table(session: Session, terms: Terms) -> str:
         )
     heads = ("trial", "kind", "length", "cycles", "measured_cycles", "verdict", "remarks")
     remarks = [
-        f"<h4>{escape(trial.name)}</h4><ul>{''.join(f'<li>{escape(r)}</li>' for r in trial.remarks)}</ul>"
-        for trial in session.trials
-        if trial.remarks
+        f"<h4 translate='no'>{escape(', '.join(names))}</h4><ul>{''.join(f'<li>{escape(r)}</li>' for r in texts)}</ul>"
+        for names, texts in _remarks(session).items()
     ]
     below = f'<div class="on-screen">{folded(terms.say("remarks"), *remarks)}</div>' if remarks else ""
     out = [
@@ -64,6 +63,18 @@ def trials_table(session: Session, terms: Terms) -> str:
         paragraph(f"{terms.say(one.word.replace(' ', '_'))}: {one.sentence}") for one in session.disagreements
     ]
     return "".join(against) + table([terms.say(one) for one in heads], rows, "trials") + "".join(out) + below
+
+
+def _remarks(session: Session) -> dict[tuple[str, ...], list[str]]:
+    """Remarks by the names of the trials that they concern; each stands once."""
+    concerned: dict[str, list[str]] = {}
+    for trial in session.trials:
+        for remark in trial.remarks:
+            concerned.setdefault(remark, []).append(trial.name)
+    found: dict[tuple[str, ...], list[str]] = {}
+    for remark, names in concerned.items():
+        found.setdefault(tuple(names), []).append(remark)
+    return found
 
 
 def measures_table(

@@ -1,6 +1,7 @@
 """The table of checks: worst first, a tick for what noise explains, numbers with units, text escaped."""
 
 from mbkf.io.findings import Finding, not_judged
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.viz.report.checks import findings_table
 
 FOUND = (
@@ -12,13 +13,13 @@ FOUND = (
 
 
 def test_the_worst_stands_first():
-    page = findings_table(FOUND)
+    page = findings_table(FOUND, Verdict())
     places = [page.index(f"<td>{name}</td>") for name in ("mass", "soles", "clocks", "gains")]
     assert places == sorted(places)
 
 
 def test_signs_and_numbers():
-    page = findings_table(FOUND)
+    page = findings_table(FOUND, Verdict())
     for cells in (
         "<td>mass</td><td>✗</td><td>30.4 %</td><td>± 2 %</td><td>5 %</td><td>weigh anew</td>",
         "<td>clocks</td><td>✓</td><td>1 ms</td><td>± 4 ms</td><td>8 ms</td>",
@@ -29,4 +30,12 @@ def test_signs_and_numbers():
 
 
 def test_nothing_checked_shows_nothing():
-    assert findings_table(()) == ""
+    assert findings_table((), Verdict()) == ""
+
+
+def test_what_a_reason_states_is_not_repeated():
+    clock = Finding("clocks of markers and plates", 21.5, 1.0, "ms", 12.0, "outside", "plates are late")
+    known = Verdict.of([Reason("trunk_loads", "look", "clocks of markers and plates +21.5 ms", "-", "-")])
+    assert "plates are late" in findings_table((clock,), Verdict())
+    assert "plates are late" not in findings_table((clock,), known)
+    assert "see the reasons of the verdict" in findings_table((clock,), known)
