@@ -66,13 +66,14 @@ def test_every_word_is_used_and_every_used_one_known():
     assert known <= set(re.findall(r"\b(\w+)\b", OWN + asset("panel.js"))) | made | asked
 
 
-def test_the_player_s_own_english_is_that_of_the_language_file():
-    """The words of pages that carry no language files, e.g. of a playback that was written to a file."""
-    text, english = (
-        "\n".join(asset(name) for name in ("page.js", "panel.js", "player.js")),
-        words("en", "viewer"),
-    )
-    told = re.findall(r"phrase\(\"(\w+)\", \"([^\"]+)\"", text)
-    assert len(told) > 15 and [(name, english[name]) for name, _ in told] == told
-    for what, label in re.findall(r"\[\"(\w+)\", \"([A-Z][^\"]+)\"", asset("page.js")):
-        assert english[f"legend_{what}"] == label
+@pytest.mark.parametrize(
+    ("section", "scripts"),
+    [("live_page", ("live.js", "standing.js")), ("marker_set_page", ("marker_set.js", "marker_edit.js"))],
+)
+def test_words_of_other_pages_are_used_and_known(section, scripts):
+    asked = set(re.findall(r"\"(\w+)\"", "\n".join(asset(name) for name in scripts)))
+    known = set(words("en", section))
+    prefix = {name.partition("_")[0] for name in known}
+    assert known <= asked
+    assert {one for one in asked if one.partition("_")[0] in prefix and "_" in one} <= known
+    assert not known & set(words("en", "viewer"))

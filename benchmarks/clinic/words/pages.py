@@ -129,7 +129,7 @@ def _read_session(user: Visit, session: str) -> Iterator[Read]:
 
 def _listed(frame: Any) -> list[str]:
     """Reasons and remarks of a page, each element of a list or row of a table."""
-    one = "ul.flags li, table.reasons tbody tr, ul.problems li, details.reasons li, section#trials li, #judgement li"
+    one = "ul.flags li, table.reasons tbody tr, ul.problems li, details.reasons li, section#trials li"
     return [text.strip() for text in frame.locator(one).all_text_contents()]
 
 

@@ -7,6 +7,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from mbkf.io.unexplained import UnexplainedLoad
+from mbkf.io.verdict import Reason, Verdict
 from mbkf.viz.report.contacts import MOST_ROWS, contact_chart, contact_section, support_cells
 from tests.motions import assert_near
 from tests.recordings import RAIL, SEAT, leaning_walk, walk
@@ -35,7 +36,10 @@ def test_every_contact_has_its_row():
 def test_forces_that_no_contact_explains_have_a_table():
     assert "no contact explains" not in contact_section(walk())
     seat = UnexplainedLoad(1.2, 9.8, (0.0, 0.0, 590.0), 8.0, 0.82, "", "a seat")
-    text = contact_section(replace(walk(), unexplained=(seat,)))
+    reason = Reason("trunk_loads", "look", "unexplained force", "left out", "a seat")
+    known = replace(walk(), unexplained=(seat,), verdict=Verdict.of([reason]))
+    assert rows_of(contact_section(known))[-1][-1] == "", "stated among the reasons"
+    text = contact_section(replace(walk(), unexplained=(seat,), verdict=Verdict()))
     assert rows_of(text)[-1] == ["upward", "1.20", "9.80", "590", "16", "82", "a seat"]
     assert rows_of(text[text.index("no contact explains") :]) == [rows_of(text)[-1]]
 

@@ -60,7 +60,7 @@ def test_an_unexplained_force_is_bad_and_none_is_good():
         "Unexplained force"
     ]
     assert (tile.kind, tile.value) == (BAD, "590 N")
-    assert tile.remark == "upward, 1.20 to 9.80 s: a seat; 1 more below"
+    assert tile.remark == "upward, 1.20 to 9.80 s; 1 more below"
 
 
 def test_only_a_filter_that_imposes_newtons_law_corrects():
