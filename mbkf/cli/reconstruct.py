@@ -64,6 +64,17 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--forces", metavar="FILE", help=f"ground reactions ({FORCE_FILES}); a C3D brings its own plates"
     )
     parser.add_argument(
+        "--emg",
+        metavar="FILE",
+        help="table of electromyograms (CSV, TSV, TXT, EMT, STO; default: TRIAL_emg.csv beside the trial)",
+    )
+    parser.add_argument(
+        "--emg-offset",
+        metavar="SECONDS",
+        type=float,
+        help="time to add to that of the EMG (default: as its line '# offset: 0.25' states, else 0)",
+    )
+    parser.add_argument(
         "--filter",
         choices=("kinematic", "torque", "dynamic"),
         help="the filter (default: that of the preset, or dynamic)",
@@ -148,7 +159,14 @@ def run(args: argparse.Namespace) -> int:
     hide = tuple(parse_hide(text) for text in args.hide)
     subject = read_subject(args.subject)
     without = tuple(args.without_plate)
-    capture = read_capture(args.trial, forces=args.forces, unneeded_plates=without, **axes_options(args))
+    capture = read_capture(
+        args.trial,
+        forces=args.forces,
+        unneeded_plates=without,
+        emg=args.emg,
+        emg_offset_s=args.emg_offset,
+        **axes_options(args),
+    )
     truth = truth_beside(args.trial)
     folder, imus = check_folder(args.out, RESULT_FILES), _imus(args)
     settings = ReconstructSettings(

@@ -16,6 +16,8 @@ from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import check_file
 from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.emg_file import read_emg
+from mbkf.io.emg_on_capture import emg_beside, with_emg
 from mbkf.io.files_read import check_regular, files_read
 from mbkf.io.persons import one_person
 from mbkf.io.plausible import plausible
@@ -131,6 +133,8 @@ def read_capture(
     axes: str | None = None,
     unneeded_plates: Sequence[str] = (),
     person: str | None = None,
+    emg: str | Path | None = None,
+    emg_offset_s: float | None = None,
 ) -> Capture:
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
@@ -149,6 +153,9 @@ def read_capture(
             cannot be read among them.
         person: Of a capture of several persons the one to take, by name ("Anna" of "Anna:LASI") or by number in the
             order of the file, from 1 on. Plates on which only others stand are left out, with a remark.
+        emg: Table of electromyograms (:mod:`mbkf.io.emg_file`); None: ``walk_emg.csv`` beside ``walk.c3d``, where there
+            is one.
+        emg_offset_s: Seconds to add to the table's times; None: as the table states, else 0.
 
     Returns:
         The capture in SI units and world axes. A plate that cannot be read is left out, with a remark.
@@ -182,6 +189,9 @@ def read_capture(
         capture = _with_forces(capture, Path(forces), kind, options)
     capture = plausible(_with_left_out(capture, options), None if forces is None else Path(forces))
     capture = without_others_plates(one_person(capture, person))
+    beside = emg_beside(path) if emg is None else Path(emg)
+    if beside is not None:
+        capture = with_emg(capture, read_emg(beside), emg_offset_s)
     if matrix is None:
         return capture
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)

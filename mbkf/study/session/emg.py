@@ -65,7 +65,7 @@ def trial_emg(r: Reconstruction) -> TrialEmg | None:
     """The electromyograms of a trial in short; None without."""
     if r.emg_envelope is None:
         return None
-    peaks = {name: float(r.emg_envelope[:, k].max()) for k, name in enumerate(r.muscle_names)}
+    peaks = {name: float(np.nanmax(r.emg_envelope[:, k])) for k, name in enumerate(r.muscle_names)}
     known = {one.name for one in fields(EmgSettings)}
     stated = r.settings.get("emg")
     own = {key: value for key, value in stated.items() if key in known} if isinstance(stated, Mapping) else {}

@@ -28,11 +28,13 @@ class Electromyogram:
         name: The muscle with its side at the end, e.g. "tibialis_anterior_r".
         volts: (S,) samples in V.
         rate_hz: Sample rate.
+        delay_s: Time of the first sample after that of the channel; a recording may begin later than the trial.
     """
 
     name: str
     volts: Array
     rate_hz: float
+    delay_s: float = 0.0
 
 
 def electromyograms(
@@ -46,7 +48,7 @@ def electromyograms(
         channels: Channels of a capture.
         settings: The least rate.
     """
-    found, remarks, slow, empty = [], [], [], []
+    found, remarks, slow, empty, short = [], [], [], [], []
     seen = Counter[Muscle]()
     for channel in channels:
         muscle, factor = muscle_of(channel.name), VOLTS.get(channel.unit.strip().lower())
@@ -54,16 +56,28 @@ def electromyograms(
             continue
         if channel.rate_hz < settings.least_rate_hz:
             slow.append(channel)
-        elif not _has_signal(channel.values):
+            continue
+        recorded = np.flatnonzero(np.isfinite(channel.values))
+        values = channel.values[recorded[0] : recorded[-1] + 1] if len(recorded) else channel.values
+        if not _has_signal(values):
             empty.append(channel.name)
-        elif len(channel.values) >= SHORTEST_S * channel.rate_hz:
+        elif len(values) < SHORTEST_S * channel.rate_hz:
+            short.append(channel.name)
+        else:
             seen[muscle] += 1
             again = f"_{seen[muscle]}" if seen[muscle] > 1 else ""
             name = f"{muscle.name}{again}" + (f"_{muscle.side}" if muscle.side else "")
-            found.append(Electromyogram(name, factor * channel.values, channel.rate_hz))
+            found.append(
+                Electromyogram(name, factor * values, channel.rate_hz, recorded[0] / channel.rate_hz)
+            )
     if empty:
         remarks.append(
             f"EMG: {', '.join(empty)} hold gaps or one value alone: their envelopes are not shown; check the electrodes"
+        )
+    if short:
+        remarks.append(
+            f"EMG: {', '.join(short)} last less than {SHORTEST_S:g} s, too short for the filters: their envelopes are "
+            "not shown; record longer trials"
         )
     if slow:
         remarks.append(

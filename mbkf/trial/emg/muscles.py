@@ -11,7 +11,7 @@ from mbkf.io.muscle_bursts import MuscleBurst
 from mbkf.io.records import AnalogChannel
 from mbkf.io.result_groups import Muscles
 from mbkf.trial.emg.bursts import bursts
-from mbkf.trial.emg.channels import electromyograms
+from mbkf.trial.emg.channels import Electromyogram, electromyograms
 from mbkf.trial.emg.envelope import envelope
 from mbkf.trial.emg.settings import EmgSettings
 
@@ -30,21 +30,23 @@ def muscles_of(
     found, remarks = electromyograms(channels, settings)
     if not found:
         return Muscles(), remarks
-    envelopes = [
-        np.interp(
-            times_s,
-            start_s + np.arange(len(one.volts)) / one.rate_hz,
-            envelope(one.volts, one.rate_hz, settings),
-        )
-        for one in found
-    ]
+    envelopes = [_at(times_s, start_s + one.delay_s, one, settings) for one in found]
     active = tuple(
-        MuscleBurst(one.name, start_s + float(begin), start_s + float(end))
+        MuscleBurst(one.name, *(start_s + one.delay_s + float(at) for at in burst))
         for one in found
-        for begin, end in bursts(one.volts, one.rate_hz, settings)
+        for burst in bursts(one.volts, one.rate_hz, settings)
     )
     rate_hz = min(one.rate_hz for one in found)
     names = tuple(one.name for one in found)
     return Muscles(
         muscle_names=names, emg_envelope=np.array(envelopes).T, muscle_bursts=active, emg_rate_hz=rate_hz
     ), remarks
+
+
+def _at(times_s: Array, first_s: float, one: Electromyogram, settings: EmgSettings) -> Array:
+    """(T,) the envelope at times; NaN where it was not recorded, but for half a frame at both ends."""
+    sampled_s = first_s + np.arange(len(one.volts)) / one.rate_hz
+    values = np.interp(times_s, sampled_s, envelope(one.volts, one.rate_hz, settings))
+    slack_s = 0.5 * float(np.median(np.diff(times_s))) if len(times_s) > 1 else 0.0
+    values[(times_s < sampled_s[0] - slack_s) | (times_s > sampled_s[-1] + slack_s)] = np.nan
+    return values

@@ -89,8 +89,8 @@ def analog_of(
     first = int(_frames_of(trial.markers, r)[0])
     cut = []
     for channel in trial.analog:
-        per_frame = round(channel.rate_hz / trial.markers.rate_hz)
-        values = channel.values[first * per_frame : (first + markers.frames) * per_frame]
+        per_frame = channel.rate_hz / trial.markers.rate_hz  # Delsys samples 19.26 times a frame
+        values = channel.values[round(first * per_frame) : round((first + markers.frames) * per_frame)]
         cut.append(replace(channel, values=values))
     return tuple(cut)
 

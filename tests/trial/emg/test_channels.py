@@ -34,7 +34,15 @@ def test_channels_by_name_unit_and_content():
     assert names(flat, broken, short, force, turned) == []
     assert electromyograms([replace(flat, name="R TA"), short], EmgSettings())[1] == (
         "EMG: R TA hold gaps or one value alone: their envelopes are not shown; check the electrodes",
+        "EMG: R_soleus last less than 0.5 s, too short for the filters: their envelopes are not shown; record longer "
+        "trials",
     )
+
+
+def test_a_recording_may_begin_and_end_inside_the_trial():
+    values = np.concatenate([np.full(300, np.nan), NOISE[:1000], np.full(200, np.nan)])
+    ((found,), remarks) = electromyograms([replace(SOLEUS, values=values)], EmgSettings())
+    assert found.delay_s == 300 / SOLEUS.rate_hz and len(found.volts) == 1000 and not remarks
 
 
 def test_two_channels_of_a_muscle_keep_a_name_each():
