@@ -63,17 +63,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--forces", metavar="FILE", help=f"ground reactions ({FORCE_FILES}); a C3D brings its own plates"
     )
-    parser.add_argument(
-        "--emg",
-        metavar="FILE",
-        help="table of electromyograms (CSV, TSV, TXT, EMT, STO; default: TRIAL_emg.csv beside the trial)",
-    )
-    parser.add_argument(
-        "--emg-offset",
-        metavar="SECONDS",
-        type=float,
-        help="time to add to that of the EMG (default: as its line '# offset: 0.25' states, else 0)",
-    )
+    _add_emg(parser)
     parser.add_argument(
         "--filter",
         choices=("kinematic", "torque", "dynamic"),
@@ -142,6 +132,20 @@ def options(parser: argparse.ArgumentParser) -> None:
     add_axes_options(parser)
     add_strict(parser)
     add_out(parser, "DIR", "folder to write", required=True)
+
+
+def _add_emg(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--emg",
+        metavar="FILE",
+        help="table of electromyograms (CSV, TSV, TXT, EMT, STO; default: TRIAL_emg.csv beside the trial)",
+    )
+    parser.add_argument(
+        "--emg-offset",
+        metavar="SECONDS",
+        type=float,
+        help="time to add to that of the EMG (default: as its line '# offset: 0.25' states, else 0)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
