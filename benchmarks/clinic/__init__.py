@@ -17,7 +17,7 @@ from benchmarks.parts import Part, part_rows
 
 PARTS: Mapping[str, Part] = {
     "convention": lambda context: convention_rows(context.require_data()),
-    "emg": lambda context: emg_rows(context.require_data(), context.quick),
+    "emg": lambda context: emg_rows(context.require_data(), context.quick, context.out),
     "norms": lambda context: norms_rows(context.out),
     "scores": lambda _: score_rows(),
     "words": lambda context: words_rows(context.require_data(), context.out),

@@ -15,9 +15,13 @@ from scipy.signal import butter, filtfilt, sosfilt
 from benchmarks.checks import Check, information
 from mbkf.conventions import Array
 from mbkf.io.capture import read_capture
+from mbkf.io.emg_file import read_emg
+from mbkf.io.emg_on_capture import with_emg
+from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.trial.emg.bursts import bursts
 from mbkf.trial.emg.channels import electromyograms
 from mbkf.trial.emg.envelope import envelope
+from mbkf.trial.emg.muscles import muscles_of
 from mbkf.trial.emg.settings import EmgSettings
 
 CHANNELS = {
@@ -45,12 +49,13 @@ class Train(NamedTuple):
     bursts_s: Array
 
 
-def emg_rows(data: Path, quick: bool) -> Iterator[Check]:
+def emg_rows(data: Path, quick: bool, out: Path) -> Iterator[Check]:
     """Rows of channels, envelopes and onsets.
 
     Args:
         data: Folder of the captures.
         quick: Fewer trains.
+        out: Folder for tables.
     """
     settings = EmgSettings()
     wrong = 0
@@ -64,6 +69,7 @@ def emg_rows(data: Path, quick: bool) -> Iterator[Check]:
         _apart(envelope(one.volts, one.rate_hz, settings), _by_hand(one.volts, one.rate_hz)) for one in found
     ]
     yield Check("envelope of rehazenter_walk against scipy by hand", max(apart), SHARE, "<=", "of the peak")
+    yield from _table_rows(out)
     trains = range(FIRST_SEED, FIRST_SEED + (2 if quick else TRAINS))
     for louder_db, bounded in ((20.0, 100.0), (16.0, 100.0), (12.0, 95.0), (8.0, None)):
         errors, lost = _onset_errors(louder_db, trains, settings)
@@ -74,6 +80,33 @@ def emg_rows(data: Path, quick: bool) -> Iterator[Check]:
         else:
             what = "largest error" if bounded == 100.0 else f"error of {bounded:g} %"
             yield Check(f"{name}: {what}", float(np.percentile(errors, bounded)), ONSET_MS, "<=", "ms")
+
+
+def _table_rows(out: Path) -> Iterator[Check]:
+    """Onsets in trains that Noraxon's and Trigno Discover's layouts hold, 0.25 s after a trial's first frame."""
+    made = train(1000.0, 20.0, FIRST_SEED)
+    times_s = np.arange(len(made.samples)) / 1000.0
+    heads = {
+        "Noraxon": "Type\tRaw\nDate\t1\n\nTime,s\tRT TIB.ANT.,uV\tMarker\n",
+        "Trigno Discover": "Application:,Trigno Discover (1.7.0)\nTA R (5),,\nmode: 1,,\n"
+        "EMG 1 Time Series (s),EMG 1 (mV),ACC X (G)\n,1000 Hz,148 Hz\n",
+    }
+    markers = MarkerTrajectories(("A",), np.zeros((1000, 1, 3)), 100.0, start_time_s=3.0)
+    for maker, head in heads.items():
+        mark = "\t" if maker == "Noraxon" else ","
+        rows = [f"{t:.6g}{mark}{v:.9g}{mark}0.5" for t, v in zip(times_s, made.samples, strict=True)]
+        file = out / f"{maker}.csv"
+        file.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
+        capture = with_emg(Capture("", markers), read_emg(file), 3.25)
+        frames_s = 3.0 + np.arange(1000) / 100.0
+        found, _ = muscles_of(capture.analog, 3.0, frames_s, EmgSettings())
+        begins = np.array([one.from_s for one in found.muscle_bursts]) - 3.25
+        wrong = float("inf")
+        if found.muscle_names == ("tibialis_anterior_r",) and len(begins) == len(made.bursts_s):
+            wrong = 1e3 * float(np.abs(begins - made.bursts_s[:, 0]).max())
+        yield Check(
+            f"table of {maker}, offset by 0.25 s: largest error of an onset", wrong, ONSET_MS, "<=", "ms"
+        )
 
 
 def _by_hand(volts: Array, rate_hz: float) -> Array:
