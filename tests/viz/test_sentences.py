@@ -17,7 +17,7 @@ LIMB = (
 def test_values_are_sentences_parts_or_numbers():
     assert said(LIMB, "es") == (
         "el muslo izquierdo estuvo en duda de 1,20 a 2,00 s: sus marcadores quedan a 22 mm (valor eficaz) del cuerpo, "
-        "la pierna izquierda (segmento) está 12° fuera de su rango; la extremidad se ajustó de nuevo desde 2,01 s"
+        "la pierna izquierda está 12° fuera de su rango; la extremidad se ajustó de nuevo desde 2,01 s"
     )
     assert said(LIMB, "en") == LIMB
 
@@ -47,7 +47,7 @@ def test_a_verdicts_line_is_said_whole():
     hidden = Reason("left_arm", "do not use", "the capture shows nothing of it", "-", "-", shown=False)
     line = said(Verdict.of([*reasons, hidden]).line, "es")
     assert line == (
-        "mirar: pelvis, tronco (no se muestra: brazo izquierdo); ningún marcador muestra los dedos del pie izquierdo, "
+        "revisar: pelvis, tronco (no se muestra: miembro superior izquierdo); ningún marcador muestra los dedos del pie izquierdo, "
         "dedos del pie derecho: muy pocos marcadores las muestran; escale de nuevo"
     )
     assert all(said(title, "es") != title or title == "pelvis" for title in TITLES.values())
