@@ -8,7 +8,7 @@ from mbkf.app.charts import Charts
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.session import FootEvent
 from mbkf.stream.loopback import LOOPBACK
-from mbkf.viz.language import ENGLISH
+from mbkf.viz.language import ENGLISH, languages
 from mbkf.viz.page import asset, embedded_words, fill, scripts
 from mbkf.viz.report.document import report_page
 
@@ -52,6 +52,12 @@ def trial_report(
     )
 
 
-def live_frame_page(port: int) -> str:
-    """A page that holds the live page at a port of this computer in a frame, and may hold nothing else."""
-    return fill("app_live.html", address=f"http://{LOOPBACK}:{port}")
+def live_frame_page(port: int, language: str = ENGLISH) -> str:
+    """A page that holds the live page at a port of this computer in a frame, and may hold nothing else.
+
+    Args:
+        port: The port.
+        language: Code of the live page's language; English where it is not known.
+    """
+    known = language if language in languages() else ENGLISH
+    return fill("app_live.html", address=f"http://{LOOPBACK}:{port}", language=known)

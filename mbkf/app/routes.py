@@ -167,11 +167,11 @@ def _live_routes(workspace: Workspace, live: LiveRun) -> list[BaseRoute]:
             live.start(query["session"], options, folder)
         return answers.live_state(live)
 
-    def frame(_query: Query) -> str:
+    def frame(query: Query) -> str:
         now = live.state()
         if now is None or not now.goes_on or now.port is None:
             raise InvalidInput("No live run has a page now.")
-        return live_frame_page(now.port)
+        return live_frame_page(now.port, query["language"])
 
     return [
         data("/live", lambda query: {**live_offer(workspace, query["session"]), **answers.live_state(live)}),

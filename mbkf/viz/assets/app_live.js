@@ -133,7 +133,7 @@ class LiveDialog {
       return;
     }
     if (run.port !== null && !this.inside.querySelector("iframe")) {
-      this.inside.replaceChildren(element("iframe", { src: "live/page", title: word("live") }));
+      this.inside.replaceChildren(element("iframe", { src: "live/page?" + query({ language }), title: word("live") }));
     }
     this.stopper.hidden = false;
     this.stopper.disabled = run.state === "ending";

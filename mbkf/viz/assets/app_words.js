@@ -4,7 +4,7 @@
 const WORDS = JSON.parse(document.getElementById("words").textContent);
 
 const known = (name) => (name in WORDS ? name : null);
-let language = known(localStorage.getItem("mbkf language")) || known(navigator.language.slice(0, 2)) || "en";
+let language = known(new URLSearchParams(location.search).get("language")) || known(localStorage.getItem("mbkf language")) || known(navigator.language.slice(0, 2)) || "en";
 
 // Every request states the language that the page is read in, so that the server's sentences come in it.
 const fetchPlain = window.fetch.bind(window);
