@@ -32,6 +32,8 @@ _NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?=(?:e[+-]?\d+)?(?![\w.]*\w))")
 _FOLDERS = re.compile(r"""(?:^|(?<=[\s'"(]))/(?:[^/:;\n]+/)+(?=[^/\s])""")
 _PLAIN = re.compile(r"[\W\d_]*")
 _SIZE = re.compile(r"[\W\d_]*(?:[\d.]+ \S+)?")
+_IN_BRACKETS = re.compile(r"(\S+) \((.*)\)")
+_PARTED = r"((?:(?:[,;:(]| [(…]| by | and \d).*?)?)"
 _SEPARATOR = re.compile(r"; |: |\. | · ")
 
 
@@ -84,30 +86,39 @@ def with_decimals(text: str, language: str) -> str:
 
 @lru_cache(maxsize=8192)
 def _said(text: str, language: str) -> str:
-    found = _recognised(text)
-    if found is not None:
-        head, mark, rest = text.partition(": ")
-        own = _recognised(rest) if mark and found.key.startswith("{0}") and mark in found.values[0] else None
-        if own is not None and _letters(own.key) > _letters(found.key):
-            return _said(head, language) + mark + _said(rest, language)
+    found, (pieces, marks) = _recognised(text), _pieces(text)
+    if found is not None and (all(_known(one) for one in found.values) or not _pieces_known(pieces, marks)):
         return _filled(found, language)
     if text.endswith(".") and not text.endswith(".."):
         return _said(text[:-1], language) + "."
     if text[:1].isupper() and _recognised(_lowered(text)) is not None:
         made = _said(_lowered(text), language)
         return made[:1].upper() + made[1:]
-    pieces, marks = _pieces(text)
     if len(pieces) == 1:
         return _listed(text, language)
-    made, at = "", 0
-    while at < len(pieces):
-        ends = range(len(pieces) - (at == 0), at, -1)
-        end = next((k for k in ends if _recognised(_joined(pieces, marks, at, k)) is not None), at + 1)
-        made += _said(_joined(pieces, marks, at, end), language) + (
-            marks[end - 1] if end <= len(marks) else ""
-        )
-        at = end
-    return made
+    runs = (
+        (_joined(pieces, marks, first, end), [*marks, ""][end - 1]) for first, end in _runs(pieces, marks)
+    )
+    return "".join(_said(one, language) + mark for one, mark in runs)
+
+
+def _runs(pieces: list[str], marks: list[str]) -> list[tuple[int, int]]:
+    """First piece and end of each run of pieces: the longest that is a sentence but not the whole, or one piece."""
+    found: list[tuple[int, int]] = []
+    while not found or found[-1][1] < len(pieces):
+        first = found[-1][1] if found else 0
+        ends = range(len(pieces) - (first == 0), first, -1)
+        known = (end for end in ends if _recognised(_joined(pieces, marks, first, end)) is not None)
+        found.append((first, next(known, first + 1)))
+    return found
+
+
+def _pieces_known(pieces: list[str], marks: list[str]) -> bool:
+    """True for several pieces of which all but the first are sentences; that one may be the name of a file."""
+    runs = (
+        [_joined(pieces, marks, first, end) for first, end in _runs(pieces, marks)] if len(pieces) > 1 else []
+    )
+    return len(runs) > 1 and all(_recognised(one) is not None for one in runs[1:])
 
 
 def _lowered(text: str) -> str:
@@ -137,12 +148,27 @@ def _value(text: str, language: str) -> str:
 
 def _listed(text: str, language: str) -> str:
     """The members of a list of known names, or the text as it is."""
-    members = re.split(r"(, | and )", text)
-    if len(members) > 1 and all(_known(one) for one in members[::2]):
+    members = _members(text)
+    if (len(members) > 1 or _IN_BRACKETS.fullmatch(text)) and all(_known(one) for one in members[::2]):
         marks = [one.replace("and", _texts(language)["and"]) for one in members[1::2]]
-        names = [said(one, language) for one in members[::2]]
+        names = [_name(one, language) for one in members[::2]]
         return "".join(a + b for a, b in zip(names, [*marks, ""], strict=True))
     return with_decimals(text, language)
+
+
+def _members(text: str) -> list[str]:
+    """The members of a list, with the commas and the "and" outside brackets between them."""
+    members, start = [], 0
+    for mark in re.finditer(r", | and ", text):
+        if text[: mark.start()].count("(") == text[: mark.start()].count(")"):
+            members += [text[start : mark.start()], mark[0]]
+            start = mark.end()
+    return [*members, text[start:]]
+
+
+def _name(text: str, language: str) -> str:
+    bracketed = None if _recognised(text) else _IN_BRACKETS.fullmatch(text)
+    return said(text, language) if bracketed is None else f"{bracketed[1]} ({said(bracketed[2], language)})"
 
 
 def _pieces(text: str) -> tuple[list[str], list[str]]:
@@ -168,11 +194,9 @@ def _recognised(text: str) -> Sentence | None:
     known = _texts(ENGLISH)
     if text in known and not _PLACE.search(text):
         return Sentence(text, ())
-    for fits in _patterns():
-        found = fits(text)
-        if found is not None:
-            return found
-    return None
+    fitting = [found for fits in _patterns() if (found := fits(text)) is not None]
+    whole = (one for one in fitting if all(_known(value) for value in one.values))
+    return next(whole, fitting[0] if fitting else None)
 
 
 @cache
@@ -198,7 +222,7 @@ def _recogniser(key: str) -> Callable[[str], Sentence | None]:
     longest, letters = max(own, key=len), _letters(key)
     short = letters < LEAST_LETTERS
     # A value directly after another one is empty, or begins with a sign that parts them.
-    groups = ["(.*?)" if before or k == 0 else "((?:[ ,;:(].*?)?)" for k, before in enumerate(own[:-1])]
+    groups = ["(.*?)" if before or k == 0 else _PARTED for k, before in enumerate(own[:-1])]
     pattern = re.compile(
         "".join(re.escape(one) + group for one, group in zip(own, [*groups, ""], strict=True))
     )
@@ -224,8 +248,13 @@ def _known(value: str) -> bool:
     """True for a number, one word, a known sentence, or a list of these."""
     if _recognised(value) is not None:
         return True
-    members = [one.strip() for one in re.split(r", | and ", value)]
-    return all(_SIZE.fullmatch(one) or " " not in one or _recognised(one) is not None for one in members)
+    return all(_is_name(one) or _recognised(one) is not None for one in _members(value)[::2])
+
+
+def _is_name(text: str) -> bool:
+    """True for a size, one word, and one word with a known text in brackets."""
+    bracketed = _IN_BRACKETS.fullmatch(text)
+    return bool(_SIZE.fullmatch(text)) or " " not in text or (bracketed is not None and _known(bracketed[2]))
 
 
 def _letters(key: str) -> int:

@@ -47,8 +47,8 @@ def test_a_verdicts_line_is_said_whole():
     hidden = Reason("left_arm", "do not use", "the capture shows nothing of it", "-", "-", shown=False)
     line = said(Verdict.of([*reasons, hidden]).line, "es")
     assert line == (
-        "revisar: pelvis, tronco (no se muestra: miembro superior izquierdo); ningún marcador muestra los dedos del pie izquierdo, "
-        "dedos del pie derecho: muy pocos marcadores las muestran; escale de nuevo"
+        "revisar: pelvis, tronco (no se muestra: miembro superior izquierdo); ningún marcador muestra los dedos del "
+        "pie izquierdo, dedos del pie derecho: muy pocos marcadores las muestran; escale de nuevo"
     )
     assert all(said(title, "es") != title or title == "pelvis" for title in TITLES.values())
 
@@ -99,3 +99,21 @@ def test_files_are_named_without_their_folders():
         said(text, "es") == "m51.c3d: está cortado dentro de sus parámetros (3000 bytes); expórtelo de nuevo"
     )
     assert said("power in W/kg", "en") == "power in W/kg"
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("RVMH (right foot), PELO (computed by software, by its name)",
+         "RVMH (pie derecho), PELO (calculado por un programa, por su nombre)"),
+        ("scaled from h61 (trunk and arms: right upper arm turns by 81°)",
+         "escalado con h61 (tronco y brazos: brazo derecho gira 81°)"),
+        ("axes of plate '1' +2.12 times, mirrored it fits 2.1 times as well",
+         "ejes de la plataforma '1' +2,12 veces, en espejo ajusta 2,1 veces mejor"),
+        ("the verdict on the motion of the trunk is 'look': these loads are computed from it",
+         "el veredicto sobre el movimiento del tronco es 'revisar': estas cargas se calculan con él"),
+        ("worst is LASI, and nothing else", "worst is LASI, and nothing else"),
+    ],
+)  # fmt: skip
+def test_lists_brackets_and_values_within_values(text, shown):
+    assert said(text, "es") == shown
