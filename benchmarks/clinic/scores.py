@@ -13,9 +13,10 @@ import numpy as np
 
 from benchmarks.checks import Check
 from mbkf.conventions import Array
-from mbkf.io.norms import Band, GdiBasis, Norms
+from mbkf.io.norms import POINTS, Band, GdiBasis, Norms
 from mbkf.io.session import TrialKind
 from mbkf.study.session.cycles import ANGLE, Curves, Key, SessionCycle, SideCycles
+from mbkf.study.session.means import Mean, half_width
 from mbkf.study.session.records import MovementGroup
 from mbkf.study.session.scores import VARIABLES, gait_scores
 from mbkf.trial.gait.cycles import Cycle
@@ -28,6 +29,9 @@ SCORES_DEG = (
 
 INDICES = (132.9254, 104.5071)
 """Of compute_gdi."""
+
+SHIFT_DEG, PERSONS = 2.0, 300
+"""Standard deviation of the error that a scaled body causes in all cycles of a curve, and made persons for a cover."""
 
 DIGIT = 0.5001e-4
 """Half of the last printed digit."""
@@ -67,6 +71,56 @@ def made_norms() -> Norms:
     return Norms("made", bands, {}, gdi=gdi)
 
 
+def _cover_rows() -> Iterator[Check]:
+    """Share of made gaits, on a seed of their own, whose GPS interval holds the score of the person's cycles.
+
+    Curves lie 0, 2 or 6 degrees off the norm, alike or as a sine; a body's error shifts all cycles of a person.
+    """
+    rng = np.random.default_rng(2026)
+    shapes = (np.ones(POINTS), np.sqrt(2.0) * np.sin(np.linspace(0.0, 2.0 * np.pi, POINTS)))
+    for cycles in (3, 6):
+        covers = []
+        for off in (0.0, 2.0, 6.0):
+            for shape in shapes:
+                many = off * shape + _wandering(rng, 4000)
+                truth = float(np.sqrt((many**2).mean(axis=1)).mean())
+                held = 0
+                for _ in range(PERSONS):
+                    own = off * shape + SHIFT_DEG * rng.standard_normal() + _wandering(rng, cycles)
+                    gps = _gps_of(own)
+                    held += abs(float(gps.mean[0]) - truth) <= float(half_width(gps)[0])
+                covers.append(100.0 * held / PERSONS)
+        yield Check(
+            f"interval of a score, {cycles} cycles: least cover of 95 %", min(covers), 91.0, ">=", "%"
+        )
+
+
+def _wandering(rng: np.random.Generator, cycles: int) -> Array:
+    """(C, 101) smooth differences of cycles, 1.5 degrees."""
+    phases = rng.uniform(0.0, 2.0 * np.pi, (cycles, 3, 1))
+    sizes = 1.5 * rng.standard_normal((cycles, 3, 1)) * np.sqrt(2.0 / 3.0)
+    turns = np.arange(1, 4)[:, None] * np.linspace(0.0, 2.0 * np.pi, POINTS)
+    return np.asarray((sizes * np.sin(turns + phases)).sum(axis=1))
+
+
+def _gps_of(curves: Array) -> Mean:
+    """The GPS of cycles of the left knee with a stated shift, against a norm of zero."""
+    cycle, key = Cycle(1, 0.0, 0.6, 1.0, 0.5, 0.1), Key(ANGLE, "knee_angle")
+    shift = np.full_like(curves, SHIFT_DEG)
+    side = SideCycles(
+        1,
+        (SessionCycle("made", cycle, True, True, True, True),) * len(curves),
+        {key: Curves("deg", curves, shift, shift, np.zeros_like(curves))},
+    )
+    gait = MovementGroup(TrialKind.WALK, ("made",), (SideCycles(0, (), {}), side), ())
+    norms = Norms(
+        "zero", {("walk", ANGLE, "knee_angle"): Band("deg", 2, np.zeros(POINTS), np.ones(POINTS))}, {}
+    )
+    scores = gait_scores(gait, norms)
+    assert scores is not None and scores.sides[1] is not None
+    return scores.sides[1].gps
+
+
 def score_rows() -> Iterator[Check]:
     """Largest differences of the scores."""
     scores = gait_scores(made_gait(), made_norms())
@@ -85,4 +139,5 @@ def score_rows() -> Iterator[Check]:
     yield Check("GPS of right and left", float(np.abs(np.array(gps) - by_side).max()), DIGIT, "<=", "deg")
     both = np.sqrt(((theirs[1] ** 2).sum() + (theirs[0, 3:] ** 2).sum()) / 15.0)
     yield Check("GPS of both, 15 variables", abs(float(scores.gps.mean[0]) - both), DIGIT, "<=", "deg")
+    yield from _cover_rows()
     yield Check("GDI of right and left", float(np.abs(np.array(indices) - INDICES).max()), DIGIT, "<=")

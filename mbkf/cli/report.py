@@ -76,10 +76,17 @@ def run(args: argparse.Namespace) -> int:
 
 def _convention(args: argparse.Namespace) -> Convention | None:
     """The convention that is asked for; None: the result's."""
-    from mbkf.trial.gait.convention import CLINICAL, INTERNAL, convention_of
+    from mbkf.errors import InvalidInput
+    from mbkf.trial.gait.convention import CLINICAL, EXTERNAL, INTERNAL, convention_of
 
     if args.convention is None and args.moments == INTERNAL:
         return None
+    if args.moments == EXTERNAL and args.convention not in (None, CLINICAL):
+        raise InvalidInput(
+            f"external moments belong to the clinical convention, not to {args.convention}; give --convention clinical"
+        )
+    if args.convention is None:
+        print("convention: clinical, to which external moments belong")
     return convention_of(args.convention or CLINICAL, args.moments)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from mbkf.trial.gait.convention import CLINICAL, Convention
 from mbkf.viz.language import filled, words
@@ -17,8 +17,7 @@ def angle_title(language: str, convention: Convention, name: str, otherwise: str
         name: The coordinate, without its side.
         otherwise: The title, where the convention has no own one.
     """
-    own = words(language, "clinical_coordinates") if convention.name == CLINICAL else {}
-    return own.get(name, otherwise)
+    return _clinical("clinical_coordinates", language, convention).get(name, otherwise)
 
 
 def angle_positive(language: str, convention: Convention, name: str, otherwise: str) -> str:
@@ -30,8 +29,12 @@ def angle_positive(language: str, convention: Convention, name: str, otherwise: 
         name: The coordinate, without its side.
         otherwise: The meaning, where the convention has no own one.
     """
-    own = words(language, "clinical_positive") if convention.name == CLINICAL else {}
-    return own.get(name, otherwise)
+    return _clinical("clinical_positive", language, convention).get(name, otherwise)
+
+
+def _clinical(section: str, language: str, convention: Convention) -> Mapping[str, str]:
+    """A section of words of the clinical convention; empty in another one."""
+    return words(language, section) if convention.name == CLINICAL else {}
 
 
 def moment_title(language: str, convention: Convention, name: str, otherwise: str) -> str:

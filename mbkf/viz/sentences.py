@@ -18,7 +18,7 @@ from mbkf.viz.language import ENGLISH, contractions, decimal_sign, filled, langu
 SECTION = "sentences"
 
 TITLES = ("coordinates", "positive", "clinical_coordinates", "clinical_positive", "internal_moments",
-          "external_moments", "joints", "measures", "units", "convention")  # fmt: skip
+          "external_moments", "joints", "measures", "units", "convention", "muscles")  # fmt: skip
 """Sections whose texts in English are recognised as well; they have no values."""
 
 LEAST_LETTERS = 10

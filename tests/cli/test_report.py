@@ -83,3 +83,10 @@ def test_a_session_is_one_page(sessions, tmp_path, capsys):
 def test_bad_input_of_a_session_is_one_line(words, message, sessions, tmp_path, refused):
     places = {"after": sessions / "after", "none": tmp_path / "none", "empty": tmp_path}
     refused(["report", *(word.format(**places) for word in words)], message)
+
+
+def test_external_moments_belong_to_the_clinical_convention(result, capsys, refused):
+    assert main(["report", str(result), "--moments", "external"]) == 0
+    assert "convention: clinical, to which external moments belong" in capsys.readouterr().out
+    words = ["report", str(result), "--moments", "external", "--convention", "isb"]
+    refused(words, "not to isb; give --convention clinical")

@@ -23,6 +23,7 @@ from mbkf.viz.language import ENGLISH
 from mbkf.viz.markup import Html, folded, paragraph, section, table
 from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.contacts import contact_section
+from mbkf.viz.report.emg import emg_section
 from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
@@ -37,7 +38,7 @@ ANGLES_READ = {
 
 NAVIGATION = (
     ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("trunk", "Trunk"),
-    ("reactions", "Reactions"), ("contacts", "Contacts"), ("settings", "Settings"),
+    ("reactions", "Reactions"), ("contacts", "Contacts"), ("emg", "EMG"), ("settings", "Settings"),
 )  # fmt: skip
 
 
@@ -66,7 +67,7 @@ def report_page(
     sections = [quality_section(r, summary, labels)]
     if r.tracked.any():
         sections += [gait_section(gait, r.times_s), motion_section(r, gait, convention), trunk_section(r)]
-        sections += [reaction_section(r, gait), contact_section(r)]
+        sections += [reaction_section(r, gait), contact_section(r), emg_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)

@@ -16,6 +16,9 @@ from mbkf.viz.svg import number
 
 GDI = "GDI"
 
+LEAST_CYCLES = 3
+"""Intervals of fewer cycles cover the mean, but from ± 0 to ± 12° where three cycles have ± 1.5°."""
+
 
 @dataclass(frozen=True)
 class ScoreLine:
@@ -56,6 +59,8 @@ def scores_part(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
     note = terms.say("scores_note", norms.name)
     if scores.lacking:
         note += " " + terms.say("scores_lacking", ", ".join(terms.score(name) for name in scores.lacking))
+    if any(mean is not None and mean.count < LEAST_CYCLES for mean in (*_gps(scores), scores.gps)):
+        note += " " + terms.say("scores_few", LEAST_CYCLES)
     heads = ["", *(terms.say(word) for word in ("right", "left", "both", "norm"))]
     drawn = [ProfileRow(one.title, _pair(one.right), _pair(one.left), _band(one.norm)) for one in lines]
     return "".join(
@@ -85,13 +90,20 @@ def _lines(gait: MovementGroup, scores: GaitScores, norms: Norms, terms: Terms) 
         )
         for name in names
     ]
-    own = (None if right is None else right.gps, None if left is None else left.gps)
-    return [*lines, ScoreLine(terms.score(GPS), *own, scores.gps, norm(GPS))]
+    return [*lines, ScoreLine(terms.score(GPS), *_gps(scores), scores.gps, norm(GPS))]
+
+
+def _gps(scores: GaitScores) -> tuple[Mean | None, Mean | None]:
+    """The score of right and left."""
+    right, left = scores.sides
+    return None if right is None else right.gps, None if left is None else left.gps
 
 
 def _pair(mean: Mean | None) -> tuple[float, float] | None:
-    """A score with half of its interval."""
-    return None if mean is None else (float(mean.mean[0]), float(half_width(mean)[0]))
+    """A score with half of its interval, 0 of too few cycles."""
+    if mean is None:
+        return None
+    return float(mean.mean[0]), float(half_width(mean)[0]) if mean.count >= LEAST_CYCLES else 0.0
 
 
 def _band(norm: Band | None) -> tuple[float, float] | None:
@@ -100,7 +112,9 @@ def _band(norm: Band | None) -> tuple[float, float] | None:
 
 def _text(mean: Mean | None) -> str:
     pair = _pair(mean)
-    return "–" if pair is None else _plus_minus(*pair)
+    if mean is None or pair is None:
+        return "–"
+    return _plus_minus(*pair) if mean.count >= LEAST_CYCLES else number(pair[0], 1)
 
 
 def _norm(norm: Band | None) -> str:
