@@ -10,8 +10,14 @@ standard deviation of the controls' ln d (Schwartz 2008),
 
     d = |F g - c|,    GDI = 100 - 10 (ln d - mean) / sd.
 
-Scores are those of each cycle, then averaged. The uncertainty of the body shifts a curve by s at each point, and so a
-score by its gradient times s; the shifts of different variables are added as if they had one cause, which bounds them.
+Scores are those of each cycle, then averaged. The uncertainty of the body shifts a curve by z s at each point, with z
+standard normal. The shifts of different variables are added as if they had one cause, which bounds them: with
+c = sum |mean (x - m) s| and q = sum mean s^2 over the variables, a score g becomes at most
+
+    sqrt(g^2 + 2 z c + z^2 q),
+
+taken at the interval's end: near g = 0, and where s is square to x - m, a gradient would be too small. The index is
+taken to change by its gradient.
 """
 
 from __future__ import annotations
@@ -33,6 +39,9 @@ VARIABLES = (
     "ankle_angle", "foot_progression",
 )  # fmt: skip
 """Coordinates of the nine variables, in the order of Schwartz and Rozumalski."""
+
+INTERVAL_SD = 1.959964
+"""Standard deviations to the end of a normal distribution's 95 % interval."""
 
 GPS = "GPS"
 """Name of the score among measures of norms; those of single variables are named after their coordinates."""
@@ -151,7 +160,15 @@ def profile_score(found: _Deviations) -> Mean:
     apart = found.values - found.reference
     scores = np.sqrt((apart**2).mean(axis=(1, 2)))
     count = apart.shape[1] * apart.shape[2]
-    return found.mean(scores, apart / np.maximum(scores, 1e-9)[:, None, None] / count)
+
+    def to_the_end(sd: Array) -> Array:
+        """(C, 1) standard deviation of the score that leads to the interval's end."""
+        c = np.abs((apart * sd).sum(axis=2)).sum(axis=1) / count
+        q = (sd**2).sum(axis=(1, 2)) / count
+        end = np.sqrt(scores**2 + 2.0 * INTERVAL_SD * c + INTERVAL_SD**2 * q)
+        return np.asarray((end - scores) / INTERVAL_SD)[:, None]
+
+    return mean_of(scores[:, None], found.trials, to_the_end(found.shift), to_the_end(found.own))
 
 
 def _gdi(found: _Deviations, basis: GdiBasis) -> Mean:

@@ -88,6 +88,23 @@ def test_a_shift_of_the_body_is_in_the_interval_by_its_gradient():
     assert found.mean[0] == pytest.approx(4.0) and half_width(found)[0] == pytest.approx(1.96 * 2.0, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("off", "expected"), [(0.0, 1.96 * 2.0), (1.0, np.sqrt(1.0 + (1.96 * 2.0) ** 2) - 1.0)]
+)
+def test_a_shift_square_to_the_curve_is_in_the_interval(off, expected):
+    """A sine about the norm, or the norm itself, and a body that shifts it by 2° throughout: the gradient is zero."""
+    side = gait().sides[0]
+    knee = side.curves[Key("angle", "knee_angle")]
+    ones = np.ones_like(knee.values)
+    sine = off * np.sqrt(2.0) * np.sin(2.0 * np.pi * (np.arange(101) + 0.5) / 101.0) * ones
+    curves = {Key("angle", "knee_angle"): replace(knee, values=sine, sd=2.0 * ones, shift_sd=2.0 * ones)}
+    known = Norms("n", {("walk", "angle", "knee_angle"): Band("deg", 9, np.zeros(101), np.ones(101))}, {})
+    alone = replace(side, curves=curves)
+    scores = gait_scores(replace(gait(), sides=(alone, replace(alone, side=1))), known)
+    found = scores.sides[0].gvs["knee_angle"]
+    assert found.mean[0] == pytest.approx(off) and half_width(found)[0] == pytest.approx(expected, rel=1e-4)
+
+
 def test_the_index_is_schwartz_s_formula_and_100_on_average_of_the_controls():
     rng = np.random.default_rng(1)
     controls = rng.standard_normal((40, 8 * 51)).cumsum(axis=1)
