@@ -30,6 +30,11 @@ def paragraph(text: str) -> str:
     return f"<p>{escape(text)}</p>"
 
 
+def kept(text: str) -> str:
+    """A paragraph of plain text with names in it, in the page's language already."""
+    return f'<p translate="no">{escape(text)}</p>'
+
+
 def grid(charts: Iterable[str], columns: int = 3) -> str:
     """Charts side by side; an empty string leaves its place free."""
     cells = "".join(f"<div>{chart}</div>" for chart in charts)

@@ -50,7 +50,7 @@ def test_a_person_who_stood_still_is_scaled_and_recorded(server, cookie, recorde
     (row,) = [trial for trial in session["trials"] if trial["name"] == recorded]
     assert status == 200 and row["live"] and row["status"] == "done" and row["problems"] == []
     assert plain(server, cookie, "/live?session=P1")[1]["subject"] is True
-    for look, sign in (("look", b'id="recording"'), ("report", b"mbkf report")):
+    for look, sign in (("look", b'id="recording"'), ("report", "· report</title>".encode())):
         answer, text = asked(server, f"/trial/{look}?session=P1&trial={recorded}", Cookie=cookie)
         assert answer.status == 200 and sign in text
 

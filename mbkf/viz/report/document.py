@@ -29,6 +29,7 @@ from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
 from mbkf.viz.report.trunk import trunk_section
 from mbkf.viz.report.verdict import verdict_banner
+from mbkf.viz.sentences import said
 
 ANGLES_READ = {
     "model": "Angles are about the body's own axes, in the order of the ISB recommendations",
@@ -71,7 +72,9 @@ def report_page(
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)
-    return document(language, f"{r.trial} · mbkf report", report_style(colours, "report.css"), there, body)
+    return document(
+        language, f"{r.trial} · {said('report', language)}", report_style(colours, "report.css"), there, body
+    )
 
 
 def read_labels(path: str | Path) -> dict[str, object]:

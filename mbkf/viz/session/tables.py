@@ -12,7 +12,8 @@ from mbkf.io.session import TrialKind
 from mbkf.study.session.comparison import MeasurePair, measure_mean
 from mbkf.study.session.means import Mean, difference_of, paired_difference
 from mbkf.study.session.records import Measure, Session
-from mbkf.viz.markup import Html, folded, paragraph, table
+from mbkf.viz.markup import Html, folded, kept, paragraph, table
+from mbkf.viz.sentences import said
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.svg import number
 
@@ -39,7 +40,7 @@ def trials_table(session: Session, terms: Terms) -> str:
         counted = trial.name in cycles
         rows.append(
             (
-                trial.name,
+                Html(f"<span translate='no'>{escape(trial.name)}</span>"),
                 terms.say(trial.kind.value),
                 number(trial.seconds, 1),
                 f"{right} + {left}" if counted else "–",
@@ -55,7 +56,7 @@ def trials_table(session: Session, terms: Terms) -> str:
     ]
     below = f'<div class="on-screen">{folded(terms.say("remarks"), *remarks)}</div>' if remarks else ""
     out = [
-        paragraph(terms.say("left_out", trial.name, trial.left_out))
+        kept(terms.say("left_out", trial.name, said(trial.left_out, terms.language)))
         for trial in session.trials
         if trial.left_out
     ]
