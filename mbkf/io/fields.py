@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import date
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -30,8 +31,12 @@ DECIMAL_UNITS: Mapping[str, tuple[str, ...]] = {"kg": ("g",), "m": ("cm", "mm"),
 """Those among them in which a number is often given that is too large."""
 
 _NUMBER = re.compile(r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-z]*)", re.ASCII)
+_DAY = re.compile(r"\d{4}-\d{2}-\d{2}", re.ASCII)
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 _SHOWN = 40
+
+FIRST_YEAR = 1850
+"""First year of a day; an earlier one is a mistake of typing."""
 
 
 @dataclass(frozen=True)
@@ -176,6 +181,11 @@ def word(key: str, meaning: str, known: tuple[str, ...], *, required: bool = Fal
     )
 
 
+def day(key: str, meaning: str) -> Field[str]:
+    """A day of the calendar, read as a text such as "2025-03-31"; TOML's own dates are such days, too."""
+    return Field(key, meaning, "a day written as 2025-03-31", _day)
+
+
 def flag(key: str, meaning: str) -> Field[bool]:
     """True or false."""
     return Field(key, meaning, "true or false", lambda v: v if isinstance(v, bool) else None)
@@ -293,3 +303,14 @@ def _number_in(value: object, low: float, high: float) -> float | None:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     return float(value) if low <= value <= high and math.isfinite(value) else None
+
+
+def _day(value: object) -> str | None:
+    """A day from 1850 on in the form of ISO 8601, None for anything else."""
+    text = value.isoformat() if isinstance(value, date) else value
+    if not isinstance(text, str) or not _DAY.fullmatch(text):
+        return None
+    try:
+        return text if date.fromisoformat(text).year >= FIRST_YEAR else None
+    except ValueError:
+        return None

@@ -8,6 +8,10 @@
     protocol = "plug_in_gait"
     scaling = "session"
 
+    [visit]
+    date = 2025-03-31
+    condition = "barefoot"
+
     [trial.walk3]
     kind = "walk"
     excluded = "stumbled"
@@ -17,8 +21,8 @@
     kind = "strike"
     time_s = 1.25
 
-Everything is optional. A trial is named by its file without the suffix. Events are those that a user set, moved or
-kept; where a trial has any, they replace the detected ones.
+Everything is optional. :mod:`mbkf.io.visit` describes the visit. A trial is named by its file without the suffix. Events
+are those that a user set, moved or kept; where a trial has any, they replace the detected ones.
 """
 
 from __future__ import annotations
@@ -32,6 +36,7 @@ from types import MappingProxyType
 from mbkf.io import fields
 from mbkf.io.atomic import write_text
 from mbkf.io.toml import Entries, Origin, toml_text
+from mbkf.io.visit import CONDITION, VISIT, Visit, plain_visit, visit_of
 
 SESSION_FILE = "session.toml"
 
@@ -80,7 +85,8 @@ _SCALING = fields.word(
 _TRIAL = fields.part(
     "trial", "statements on a trial, which is named by its file without suffix", "[trial.NAME]"
 )
-SESSION = fields.record("session", _NAME, MASS, HEIGHT, _AGE, _SEX, PROTOCOL, _SCALING, _TRIAL)
+_VISIT = fields.part("visit", "facts of the visit for the head of the report", "[visit]")
+SESSION = fields.record("session", _NAME, MASS, HEIGHT, _AGE, _SEX, PROTOCOL, _SCALING, _VISIT, _TRIAL)
 """Entries of a session file."""
 
 _KIND = fields.word("kind", "its task; by default the one that its markers show", tuple(TrialKind))
@@ -88,7 +94,7 @@ _EXCLUDED = fields.text("excluded", "reason to leave it out", empty=True)
 _EVENTS = fields.part(
     "event", "strikes and toe-offs by hand, instead of the detected ones", "[[trial.NAME.event]]"
 )
-TRIAL = fields.record("trial", _KIND, _EXCLUDED, _EVENTS)
+TRIAL = fields.record("trial", _KIND, _EXCLUDED, CONDITION, _EVENTS)
 """Entries of a trial in a session file."""
 
 _SIDE = fields.word("side", "foot", SIDES, required=True)
@@ -121,11 +127,13 @@ class TrialNotes:
         kind: Its task; None for the one detected in the capture.
         excluded: Reason to leave it out; empty for a trial that counts.
         events: Its events by hand; None for the detected ones.
+        condition: Its condition; empty for that of the visit.
     """
 
     kind: TrialKind | None = None
     excluded: str = ""
     events: tuple[FootEvent, ...] | None = None
+    condition: str = ""
 
 
 @dataclass(frozen=True)
@@ -139,6 +147,7 @@ class SessionNotes:
         protocol: Marker protocol; None for the one that the names belong to.
         trials: Statements on trials, by name.
         scaling: :data:`FROM_SESSION` or :data:`FROM_STATIC`; empty where not stated.
+        visit: Facts of the visit.
     """
 
     name: str = ""
@@ -149,6 +158,7 @@ class SessionNotes:
     protocol: str | None = None
     trials: Mapping[str, TrialNotes] = field(default_factory=dict)
     scaling: str = ""
+    visit: Visit = field(default_factory=Visit)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "trials", MappingProxyType(dict(self.trials)))
@@ -156,6 +166,15 @@ class SessionNotes:
     def trial(self, name: str) -> TrialNotes:
         """Statements on a trial; empty ones for a trial without an entry."""
         return self.trials.get(name, TrialNotes())
+
+    def condition(self, trial: str) -> str:
+        """Condition of a trial: its own, else that of the visit; empty where not stated."""
+        return self.trial(trial).condition or self.visit.condition
+
+    @property
+    def age_at_visit(self) -> float | None:
+        """The stated age, else that on the day of the visit; None where not known."""
+        return self.visit.age if self.age is None else self.age
 
 
 def read_session(path: str | Path) -> SessionNotes:
@@ -188,6 +207,7 @@ def _session(read: Entries) -> SessionNotes:
         protocol=read.get(PROTOCOL),
         trials={name: _trial(entries) for name, entries in read.tables(_TRIAL, TRIAL).items()},
         scaling=read.get(_SCALING) or "",
+        visit=Visit() if (found := read.table_with_own(_VISIT, VISIT)) is None else visit_of(*found),
     )
 
 
@@ -199,6 +219,8 @@ def plain_session(notes: SessionNotes) -> dict[str, object]:
     }  # fmt: skip
     trials = {name: _plain_trial(trial) for name, trial in notes.trials.items() if trial != TrialNotes()}
     found: dict[str, object] = {key: value for key, value in person.items() if value not in (None, "")}
+    if visit := plain_visit(notes.visit):
+        found["visit"] = visit
     if trials:
         found["trial"] = trials
     return found
@@ -229,6 +251,8 @@ def _plain_trial(trial: TrialNotes) -> dict[str, object]:
         found["kind"] = trial.kind.value
     if trial.excluded:
         found["excluded"] = trial.excluded
+    if trial.condition:
+        found["condition"] = trial.condition
     if trial.events is not None:
         found["event"] = plain_events(trial.events)
     return found
@@ -240,6 +264,7 @@ def _trial(read: Entries) -> TrialNotes:
         None if kind is None else TrialKind(kind),
         read.get(_EXCLUDED) or "",
         None if events is None else tuple(sorted((_event(one) for one in events), key=lambda e: e.time_s)),
+        read.get(CONDITION) or "",
     )
 
 

@@ -246,6 +246,19 @@ class Entries:
             raise self.fault(f"{field.key} must be a table, [{field.key}]", field.key)
         return Entries(record, found, self._inner(field.key), f"{field.key}: ")
 
+    def table_with_own(
+        self, field: Field[object], record: Record
+    ) -> tuple[Entries, Mapping[str, object]] | None:
+        """The one table under a key, and apart the entries that its record does not declare; None without the table."""
+        found = self.table.get(field.key)
+        if found is None:
+            return None
+        if not isinstance(found, dict):
+            raise self.fault(f"{field.key} must be a table, [{field.key}]", field.key)
+        own = {key: value for key, value in found.items() if key not in record.keys}
+        known = {key: value for key, value in found.items() if key in record.keys}
+        return Entries(record, known, self._inner(field.key), f"{field.key}: "), own
+
     def each_table(self, field: Field[object], record: Record) -> list[Entries | FileFormatError]:
         """Tables one after another, where one that cannot be read costs only itself; empty without such an entry."""
         listed = self.table.get(field.key, [])

@@ -1,6 +1,7 @@
 """Session files: what is written comes back, and what is not possible is refused."""
 
 import json
+from datetime import date
 
 import pytest
 from hypothesis import given, settings
@@ -23,6 +24,7 @@ from mbkf.io.session import (
     session_of,
     write_session,
 )
+from mbkf.io.visit import AFFECTED, VISIT, Visit
 
 TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
 EVENTS = st.builds(
@@ -36,7 +38,17 @@ TRIALS = st.builds(
     st.none() | st.sampled_from(TrialKind),
     TEXTS,
     st.none() | st.lists(EVENTS, max_size=4).map(lambda found: tuple(sorted(found, key=lambda e: e.time_s))),
+    TEXTS,
 ).filter(lambda trial: trial != TrialNotes())
+DAYS = st.just("") | st.dates(date(1850, 1, 1)).map(date.isoformat)
+OWN = st.dictionaries(
+    TEXTS.filter(lambda name: name not in VISIT.keys),
+    TEXTS | st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False, allow_infinity=False),
+    max_size=3,
+)
+VISITS = st.builds(
+    Visit, DAYS, DAYS, TEXTS, st.sampled_from(("", *AFFECTED)), TEXTS, TEXTS, TEXTS, OWN
+).filter(lambda visit: not visit.date or visit.birth_date <= visit.date)
 SESSIONS = st.builds(
     SessionNotes,
     TEXTS,
@@ -47,6 +59,7 @@ SESSIONS = st.builds(
     st.none() | TEXTS.filter(bool),
     st.dictionaries(TEXTS, TRIALS, max_size=3),
     st.sampled_from(("", FROM_SESSION, FROM_STATIC)),
+    VISITS,
 )
 
 
@@ -106,6 +119,22 @@ def test_the_example_of_the_docs_is_read(tmp_path):
         ("mass_kg = '158 lb'", "got 158 lb; write mass_kg = 71.67"),
         ("height_m = 178", "got 178; write height_m = 1.78 if it is in cm"),
         ("height_m = 1780", "got 1780; write height_m = 1.78 if it is in mm"),
+        ("visit = 3", "visit must be a table, [visit]"),
+        (
+            "[visit]\ndate = '31.3.2025'",
+            "line 2: visit: date must be a day written as 2025-03-31, got 31.3.2025",
+        ),
+        ("[visit]\ndate = 2025-03-31T10:00:00", "visit: date must be a day written as 2025-03-31"),
+        ("[visit]\ndate = '2025-02-29'", "visit: date must be a day"),
+        ("[visit]\nbirth_date = '0198-02-12'", "visit: birth_date must be a day"),
+        ("[visit]\nside = 'links'", "visit: side must be one of right, left, both"),
+        (
+            "[visit]\ndate = 2025-03-31\nbirth_date = 2026-01-01",
+            "birth_date 2026-01-01 lies after date 2025-03-31",
+        ),
+        ("[visit]\nward = [1]", "visit: ward must be a text, a number, or true or false"),
+        ("[visit]\nward = inf", "visit: ward must be a text"),
+        ("trial.a.condition = 3", "trial a: condition must be a text"),
         ("name = ", "not a session file"),
         ("a = " + "[" * 5000, "not a session file"),
     ],

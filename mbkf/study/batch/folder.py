@@ -370,6 +370,7 @@ def stated_of(root: Path, place: Path) -> SessionNotes:
                 height_m=found.height_m if nearer.height_m is None else nearer.height_m,
                 protocol=nearer.protocol or found.protocol,
                 scaling=nearer.scaling or found.scaling,
+                visit=nearer.visit.within(found.visit),
                 trials=nearer.trials if folder == place else {},
             )
         elif folder == place:

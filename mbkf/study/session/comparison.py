@@ -59,24 +59,40 @@ class Comparison:
         curves: Curves that both have, loads only where both are measured or both estimated.
         measures: Spatiotemporal parameters that both have.
         same_body: Whether both were reconstructed with the same scaled person.
+        conditions: Conditions of before and after; empty where not stated.
     """
 
     kind: TrialKind
     curves: tuple[CurvePair, ...]
     measures: tuple[MeasurePair, ...]
     same_body: bool
+    conditions: tuple[str, str] = ("", "")
 
 
 def compare(before: Session, after: Session) -> tuple[Comparison, ...]:
-    """Differences between two sessions, for each kind of gait that both have.
+    """Differences between two sessions, for each kind and condition of gait that both have.
 
     Args:
         before: The earlier session.
         after: The later one.
     """
     same = is_same_body(before.subject, after.subject)
-    pairs = ((before.gait(one.kind), one) for one in after.gaits)
+    pairs = ((before.gait(one.kind, one.condition), one) for one in after.gaits)
     return tuple(_compare(first, second, same) for first, second in pairs if first is not None)
+
+
+def conditions_compared(session: Session) -> tuple[Comparison, ...]:
+    """Differences between the conditions of one session: each against the first one of its kind of gait.
+
+    Args:
+        session: The session, one scaled person.
+    """
+    found = []
+    for one in session.gaits:
+        first = session.gait(one.kind)
+        if first is not None and first is not one:
+            found.append(_compare(first, one, same=True))
+    return tuple(found)
 
 
 def is_same_body(one: Subject, other: Subject) -> bool:
@@ -99,7 +115,8 @@ def _compare(before: MovementGroup, after: MovementGroup, same: bool) -> Compari
                 continue
             apart = difference_of(new.mean, old.mean, same, moved)
             curves.append(CurvePair(key, side, second.curves[key].unit, old, new, apart))
-    return Comparison(after.kind, tuple(curves), measure_pairs(before.measures, after.measures), same)
+    measures = measure_pairs(before.measures, after.measures)
+    return Comparison(after.kind, tuple(curves), measures, same, (before.condition, after.condition))
 
 
 def postures_apart(first: SideCycles, second: SideCycles) -> Array:

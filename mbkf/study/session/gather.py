@@ -17,6 +17,7 @@ from mbkf.io.session import SessionNotes, TrialKind, TrialNotes
 from mbkf.io.session import session_of as session_of_entries
 from mbkf.io.subject import Subject
 from mbkf.io.verdict import listed
+from mbkf.io.visit import CONDITIONS
 from mbkf.model.human import HumanModel
 from mbkf.study.batch.inputs import RECORD, read_record
 from mbkf.study.session.agreement import TrialBody, disagreements
@@ -131,25 +132,27 @@ def _session(
         InvalidInput: The session has no trial.
     """
     parts, seen = [], Counter[str]()
-    for r, notes in results:
+    for r, own in results:
         seen[r.trial] += 1
         convention = convention or convention_of_result(r)
+        notes = replace(own, condition=own.condition or stated.visit.condition)
         parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes, convention))
     if not parts or convention is None:
         raise InvalidInput(f"{name}: no trial to report on was found; reconstruct at least one trial first")
-    kinds = [kind for kind in GAIT_KINDS if any(_gait_of(part, kind) for part in parts)]
     return Session(
         name,
         parts[0].subject,
         tuple(part.trial for part in parts),
-        tuple(_group(kind, [part for part in parts if _gait_of(part, kind)]) for kind in kinds),
+        _gaits(parts),
         _joined([part.jumps for part in parts]),
         _joined([part.squats for part in parts]),
         stated.sex or None,
-        stated.age,
+        stated.age_at_visit,
         disagreements([part.body for part in parts]),
         convention,
         tuple(dict.fromkeys(part.axes for part in parts)),
+        stated.name,
+        stated.visit,
     )
 
 
@@ -213,7 +216,7 @@ def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
 
 def _part(r: Reconstruction, stated: TrialNotes, convention: Convention) -> _Part:
     r = replace(r, verdict=verdict_of(r))
-    trial = trial_summary(r, stated.kind)
+    trial = replace(trial_summary(r, stated.kind), condition=stated.condition)
     gait = find_gait(r, stated.events) if trial.kind in GAIT_KINDS and r.tracked.any() else None
     read = convention_angles(r, convention)
     right, left = (with_emg(r, cycles_of_trial(r, gait, side, convention, read)) for side in range(2))
@@ -236,16 +239,29 @@ def _again(r: Reconstruction, number: int) -> Reconstruction:
     return replace(r, trial=f"{r.trial} ({number})")
 
 
-def _gait_of(part: _Part, kind: TrialKind) -> bool:
-    return part.trial.kind == kind and part.gait is not None
+def _gaits(parts: Sequence[_Part]) -> tuple[MovementGroup, ...]:
+    """The gait of each kind in each condition."""
+    found = []
+    for kind in GAIT_KINDS:
+        with_gait = [part for part in parts if part.trial.kind == kind and part.gait is not None]
+        conditions = dict.fromkeys(part.trial.condition for part in with_gait)
+        found += [
+            _group(kind, one, [part for part in with_gait if part.trial.condition == one])
+            for one in sorted(conditions, key=_rank)
+        ]
+    return tuple(found)
 
 
-def _group(kind: TrialKind, parts: list[_Part]) -> MovementGroup:
-    """Trials of a kind together."""
+def _rank(condition: str) -> int:
+    """Place of a condition among others, which come last."""
+    return CONDITIONS.index(condition) if condition in CONDITIONS else len(CONDITIONS)
+
+
+def _group(kind: TrialKind, condition: str, parts: list[_Part]) -> MovementGroup:
+    """Trials of a kind and a condition together."""
     sides = (together([p.sides[0] for p in parts], 0), together([p.sides[1] for p in parts], 1))
-    return MovementGroup(
-        kind, tuple(p.trial.name for p in parts), sides, _joined([_parameters(p) for p in parts if p.moves])
-    )
+    names = tuple(p.trial.name for p in parts)
+    return MovementGroup(kind, names, sides, _joined([_parameters(p) for p in parts if p.moves]), condition)
 
 
 def _parameters(part: _Part) -> tuple[Measure, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.errors import UnknownName
 from mbkf.io.norms import NormPerson
 from mbkf.io.session import TrialKind
+from mbkf.io.visit import UNAIDED
 from mbkf.study.session.cycles import Curves, SideCycles
 from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
 from mbkf.trial.gait.convention import MODEL
@@ -22,6 +23,7 @@ REASONS = {
     "in_view": "the person in view is compared with others alone",
     "unknown_kind": "movement not recognised; state its kind in the session",
     "other_kind": "no walk ({0})",
+    "condition": "condition {0}",
     "verdict": "{0}: {1}",
     "no_walk": "no walk that may be used",
     "age_and_sex": "age and sex not stated; write them into the session",
@@ -127,6 +129,9 @@ def _against(session: Session, trial: SessionTrial) -> LeftOut | None:
         return LeftOut(session.name, trial.name, "unknown_kind")
     if trial.kind != TrialKind.WALK:
         return LeftOut(session.name, trial.name, "other_kind", (trial.kind.value.replace("_", " "),))
+    walk = session.gait(TrialKind.WALK)
+    if trial.condition not in UNAIDED or (walk is not None and trial.condition != walk.condition):
+        return LeftOut(session.name, trial.name, "condition", (trial.condition or "–",))
     if trial.verdict != "use":
         remark = trial.remarks[0] if trial.remarks else "see its report"
         return LeftOut(session.name, trial.name, "verdict", (trial.verdict, remark))
@@ -171,7 +176,7 @@ def of_trials(gait: MovementGroup, trials: Collection[str]) -> MovementGroup:
     names = tuple(name for name in gait.trials if name in trials)
     right, left = (_side(side, trials) for side in gait.sides)
     measures = tuple(_measure(one, trials) for one in gait.measures)
-    return MovementGroup(gait.kind, names, (right, left), measures)
+    return MovementGroup(gait.kind, names, (right, left), measures, gait.condition)
 
 
 def _side(side: SideCycles, trials: Collection[str]) -> SideCycles:

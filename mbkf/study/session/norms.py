@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -12,8 +13,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.norms import Band, CurveName, GdiBasis, Norms, Span, Speeds
-from mbkf.io.session import SESSION_FILE, SessionNotes, read_session
-from mbkf.study.batch.inputs import RECORD, read_record
+from mbkf.io.session import SessionNotes, read_session
 from mbkf.study.session.chosen import chosen_curves
 from mbkf.study.session.cycles import ANGLE, Key
 from mbkf.study.session.gather import results_in, session_from
@@ -26,6 +26,7 @@ from mbkf.study.session.norm_selection import (
 )
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.study.session.scores import GPS, VARIABLES, gait_scores, gdi_basis
+from mbkf.study.session.statements import session_files
 from mbkf.trial.gait.convention import Convention
 
 _Name = TypeVar("_Name", bound=tuple[str, ...])
@@ -38,9 +39,6 @@ SPEED_STEP_M_S, LEAST_AT_SPEED = 0.2, 5
 
 FEATURES, LEAST_FOR_GDI = 15, 20
 """Features of the gait deviation index, as in its paper, and the persons that their distances need."""
-
-MOST_ABOVE = 4
-"""Folders above a capture in which its session file is looked for."""
 
 
 def person_sessions(folders: Sequence[Path], convention: Convention | None = None) -> list[Session]:
@@ -70,18 +68,9 @@ def person_sessions(folders: Sequence[Path], convention: Convention | None = Non
 
 def _notes(person: Path, result: Path) -> SessionNotes:
     """Statements about a person; empty ones where no session file is found or it cannot be read."""
-    places = [person]
-    try:
-        files = read_record(result / RECORD).get("files", {})
-        captures = [Path(name).absolute() for name in files] if isinstance(files, dict) else []
-    except FileFormatError:
-        captures = []
-    places += [above for file in captures[:1] for above in list(file.parents)[:MOST_ABOVE]]
-    for place in places:
-        try:
-            return read_session(place / SESSION_FILE)
-        except FileFormatError:
-            continue
+    for file in session_files(person, result):
+        with suppress(FileFormatError):
+            return read_session(file)
     return SessionNotes()
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mbkf.conventions import Array
 from mbkf.io.session import TrialKind
 from mbkf.io.subject import Subject
+from mbkf.io.visit import Visit
 from mbkf.study.session.agreement import Disagreement
 from mbkf.study.session.cycles import SideCycles
 from mbkf.trial.emg.settings import EmgSettings
@@ -42,6 +43,7 @@ class SessionTrial:
         filter: The filter, and which later frames it knew.
         left_out: Parts that the capture shows and that may not be used, in words; means and norms leave them out.
         emg: Its electromyograms; None without.
+        condition: Condition of walking; empty where not stated.
     """
 
     name: str
@@ -52,6 +54,7 @@ class SessionTrial:
     filter: str
     left_out: str = ""
     emg: TrialEmg | None = None
+    condition: str = ""
 
 
 @dataclass(frozen=True)
@@ -73,19 +76,25 @@ class Measure:
 
 @dataclass(frozen=True)
 class MovementGroup:
-    """The trials of a kind that have gait, together.
+    """The trials of a kind and a condition that have gait, together.
 
     Attributes:
         kind: Walk, run, or unknown.
         trials: Their names.
         sides: Cycles of the right and the left foot.
         measures: Spatiotemporal parameters.
+        condition: Condition of walking; empty where not stated.
     """
 
     kind: TrialKind
     trials: tuple[str, ...]
     sides: tuple[SideCycles, SideCycles]
     measures: tuple[Measure, ...]
+    condition: str = ""
+
+    def measure(self, name: str) -> Measure | None:
+        """A parameter by its name; None without it."""
+        return next((one for one in self.measures if one.name == name), None)
 
 
 @dataclass(frozen=True)
@@ -96,13 +105,16 @@ class Session:
         name: As it is shown.
         subject: The scaled person.
         trials: All trials that were reconstructed.
-        gaits: Trials with gait cycles, by kind.
+        gaits: Trials with gait cycles, by kind, then by condition: barefoot first, then as for
+            :data:`mbkf.io.visit.CONDITIONS`.
         jumps: Measures of each jump; empty without.
         squats: Measures of each squat; empty without.
         sex, age: As stated; None: not stated.
         disagreements: Trials that disagree with the others about the person's body.
         convention: Axes and signs of the curves.
         axes: Axes that angles are read in, one for all trials as a rule: "model", "isb" or "pig".
+        patient: Name or code of the person; empty where not stated.
+        visit: Facts of the visit.
     """
 
     name: str
@@ -116,7 +128,18 @@ class Session:
     disagreements: tuple[Disagreement, ...] = ()
     convention: Convention = BY_MODEL
     axes: tuple[str, ...] = (MODEL,)
+    patient: str = ""
+    visit: Visit = field(default_factory=Visit)
 
-    def gait(self, kind: TrialKind) -> MovementGroup | None:
-        """The gait of a kind; None: the trial has no such gait."""
-        return next((one for one in self.gaits if one.kind == kind), None)
+    def gait(self, kind: TrialKind, condition: str = "") -> MovementGroup | None:
+        """The gait of a kind in a condition; None: the session has no such gait.
+
+        Args:
+            kind: The kind.
+            condition: The condition; gait without a stated one belongs to any, and an empty text to the first gait.
+        """
+        same = [one for one in self.gaits if one.kind == kind]
+        found = [one for one in same if one.condition == condition] or [
+            one for one in same if not one.condition
+        ]
+        return next(iter(found or ([] if condition else same)), None)

@@ -187,9 +187,10 @@ def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> t
         along = way / max(length, 1e-9)
         step = end - middle
         across = abs(float(along[0] * (middle - start)[1] - along[1] * (middle - start)[0]))
+        both = 100.0 * cycle.support_s / T
         values = (
             120.0 / T, length / T, length, float(step @ along), across, T, cycle.end_s - cycle.opposite_s,
-            cycle.off_percent, 100.0 - cycle.off_percent, 100.0 * cycle.support_s / T,
+            cycle.off_percent, 100.0 - cycle.off_percent, cycle.off_percent - np.maximum(both, 0.0), both,
         )  # fmt: skip
         for (name, _), value in zip(_PARAMETERS, values, strict=True):
             table[name][side].append(value)
@@ -204,7 +205,7 @@ def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> t
 _PARAMETERS = (
     ("Cadence", "steps/min"), ("Speed", "m/s"), ("Stride length", "m"), ("Step length", "m"),
     ("Step width", "m"), ("Stride time", "s"), ("Step time", "s"), ("Stance", "%"), ("Swing", "%"),
-    ("Double support", "%"),
+    ("Single support", "%"), ("Double support", "%"),
 )  # fmt: skip
 
 

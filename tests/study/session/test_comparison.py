@@ -4,9 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.io.session import SessionNotes, TrialNotes
+from mbkf.io.visit import Visit
 from mbkf.study.session.comparison import (
     by_curve,
     compare,
+    conditions_compared,
     is_same_body,
     measure_mean,
     measure_pairs,
@@ -103,3 +106,23 @@ def test_measures_are_paired_by_side():
     unknown = replace(measures[0], values={"r": np.array([np.nan])}, trials={"r": ("a",)})
     assert measure_mean(unknown, "r") is None and measure_mean(unknown, "l") is None
     assert measure_pairs((unknown,), (unknown,)) == ()
+
+
+def test_conditions_of_a_visit_are_compared_with_the_first():
+    conditions = {"walk 0": "orthosis", "walk 1": "barefoot", "walk 2": "orthosis"}
+    notes = SessionNotes(trials={name: TrialNotes(condition=one) for name, one in conditions.items()})
+    whole = session_of(walks(3), "conditions", notes)
+    assert [(one.condition, one.trials) for one in whole.gaits] == [
+        ("barefoot", ("walk 1",)),
+        ("orthosis", ("walk 0", "walk 2")),
+    ]
+    (found,) = conditions_compared(whole)
+    assert found.conditions == ("barefoot", "orthosis") and found.same_body
+    pair = by_curve(found)[(KNEE, 0)]
+    np.testing.assert_allclose(pair.difference.difference, 0.0, atol=1e-9)
+    alone = session_of(walks(3), "one", SessionNotes(visit=Visit(condition="barefoot")))
+    assert conditions_compared(alone) == () and alone.gaits[0].condition == "barefoot"
+    assert [one.conditions for one in compare(whole, alone)] == [("barefoot", "barefoot")]
+    assert [one.conditions for one in compare(session(), alone)] == [("", "barefoot")]
+    other = session_of(walks(2), "shoes", SessionNotes(visit=Visit(condition="shoes")))
+    assert compare(whole, other) == (), "other conditions are no change"

@@ -87,3 +87,10 @@ def test_the_part_of_a_gait_has_its_own_cycles_and_measures():
     ]
     assert speed_of(part) == pytest.approx(np.mean(own))
     assert np.isnan(speed_of(of_trials(gait, set())))
+
+
+def test_walks_with_an_orthosis_or_in_another_condition_are_named():
+    aided = with_trial(person(), condition="orthosis")
+    assert reasons(aided) == (["session 5, walk 0: condition orthosis"], 1)
+    mixed = with_trial(person(), condition="shoes")
+    assert reasons(mixed) == (["session 5, walk 0: condition shoes"], 1), "one condition counts"

@@ -68,6 +68,7 @@ def test_parameters_of_the_made_walk():
     assert_near(every["Stride length"], every["Speed"] * every["Stride time"], 1e-9)
     assert_near(every["Step length"], 0.5 * np.mean(every["Stride length"]), 0.03)
     assert (every["Step width"] > 0.03).all() and (every["Step width"] < 0.25).all()
+    assert_near(every["Single support"] + every["Double support"], every["Stance"], 1e-9)
     stance, support = every["Stance"].mean(), every["Double support"].mean()
     assert support == pytest.approx(2.0 * stance - 100.0, abs=2.0), "both feet stand while neither swings"
 
