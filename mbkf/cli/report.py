@@ -3,12 +3,13 @@
 The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait,
 angles, torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait
 cycle with means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and changes against an earlier
-session with 95 % intervals.
+session with 95 % intervals. It begins with two printed pages that state the visit ([visit] of session.toml).
 
 Examples:
   mbkf report result                         one trial: writes result/report.html
   mbkf report result --labels labelled.json  with the numbers of 'mbkf label'
   mbkf report results/P1/monday              a session of 'mbkf batch': writes report.html there
+  mbkf report results/P1/monday --laboratory ours/laboratory.toml      with the laboratory's head
   mbkf report friday --against monday --norms norms.toml --language es
   mbkf report results/P1 --curves curves.csv
   mbkf report results/P1 --emg-reference mvc          EMG in per cent of the trial mvc's largest envelope
@@ -45,11 +46,25 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
     session = parser.add_argument_group("for a session")
     session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
+    session.add_argument(
+        "--visits",
+        metavar="DIR",
+        nargs="+",
+        help="other visits of the person, each with its date: their trend",
+    )
     session.add_argument("--norms", metavar="FILE.toml", help="reference bands of 'mbkf norms build'")
     session.add_argument(
         "--emg-reference",
         metavar="WORD",
         help="100 %% of EMG: peak or mean of the session's cycles, or the peak of the trial of that name (peak)",
+    )
+    session.add_argument(
+        "--session", metavar="FILE", help="session.toml (that beside the results, else beside the captures)"
+    )
+    session.add_argument(
+        "--laboratory",
+        metavar="FILE",
+        help="laboratory.toml with name, address and logo (that in the folder of results or above it)",
     )
     add_out(session, "FILE", "write every curve, too: .csv or .parquet", option="--curves")
     session.add_argument("--name", metavar="TEXT", help="heading of the page (the folder's name)")
@@ -66,6 +81,7 @@ def run(args: argparse.Namespace) -> int:
 
     folders = [Path(folder) for folder in args.folders]
     for_session = [args.against, args.norms, args.curves, args.name, args.emg_reference]
+    for_session += [args.session, args.laboratory, args.visits]
     one = len(folders) == 1 and ((folders[0] / MOTION_FILE).is_file() or not folders[0].is_dir())
     if one and not any(option is not None for option in for_session):
         return _trial(args, folders[0])
@@ -114,10 +130,13 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
 
 def _session(args: argparse.Namespace, folders: list[Path]) -> int:
     from mbkf.io.atomic import write_text
+    from mbkf.io.laboratory import laboratory_above, read_laboratory
     from mbkf.io.norms import read_norms
+    from mbkf.io.session import read_session
     from mbkf.io.utf8 import storable
     from mbkf.study.session.emg import PEAK
     from mbkf.study.session.gather import results_in, session_from
+    from mbkf.study.session.statements import MOST_ABOVE, stated_on_results
     from mbkf.viz.language import ENGLISH
     from mbkf.viz.session.document import session_page
 
@@ -128,16 +147,25 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
         check_curves_file(Path(args.curves))
     out = Path(args.out) if args.out else folders[0] / "report.html"
 
-    def read(places: list[Path], name: str | None) -> Session:
+    def read(places: list[Path], name: str | None, file: str | None = None) -> Session:
         results = [result for place in places for result in results_in(place)]
-        return session_from(results, name or storable(places[0].absolute().name), None, convention)
+        notes = read_session(file) if file else stated_on_results(places[0], results[0])
+        return session_from(results, name or storable(places[0].absolute().name), notes, convention)
 
     convention = _convention(args)
-    session = read(folders, args.name)
+    session = read(folders, args.name, args.session)
     convention = session.convention
     before = None if args.against is None else read([Path(place) for place in args.against], None)
     language, reference = args.language or ENGLISH, args.emg_reference or PEAK
-    write_text(out, session_page(session, before, norms, language, reference, args.colours))
+    first = folders[0].absolute()
+    laboratory = (
+        read_laboratory(args.laboratory)
+        if args.laboratory
+        else laboratory_above([first, *first.parents][:MOST_ABOVE])
+    )
+    visits = [read([Path(place)], None) for place in args.visits or ()]
+    page = session_page(session, before, norms, language, reference, args.colours, laboratory, visits)
+    write_text(out, page)
     print(out)
     if args.curves is not None:
         write_session_curves(session, args.curves)

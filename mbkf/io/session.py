@@ -21,7 +21,7 @@
     kind = "strike"
     time_s = 1.25
 
-Everything is optional. :mod:`mbkf.io.visit` describes the visit. A trial is named by its file without the suffix. Events
+Everything is optional; :mod:`mbkf.io.visit` has the visit. A trial is named by its file without the suffix. Events
 are those that a user set, moved or kept; where a trial has any, they replace the detected ones.
 """
 

@@ -232,12 +232,14 @@ def _unknown(unit: str, count: int) -> Curves:
 
 
 def _session_cycle(r: Reconstruction, cycle: Cycle) -> SessionCycle:
-    """Source of the loads of a cycle."""
+    """Source of the loads of a cycle; a foot that no plate measured in stance stood beside the plates."""
     edge = np.minimum(r.times_s - cycle.start_s, cycle.end_s - r.times_s) < EDGE * cycle.seconds
-    own = edge | np.isin(r.foot_source[:, cycle.side], (Source.NONE, Source.MEASURED))
+    source = r.foot_source[:, cycle.side]
+    own = edge | np.isin(source, (Source.NONE, Source.MEASURED))
     measured, body_measured, valid = (
         bool(_within(r, cycle, one).all()) for one in (own, r.measured, r.valid)
     )
+    measured = measured and bool(_within(r, cycle, source == Source.MEASURED).any())
     return SessionCycle(r.trial, cycle, measured, measured or valid, body_measured, valid)
 
 

@@ -8,14 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import SIDES
-from mbkf.io.norms import Band
+from mbkf.io.norms import Band, Norms
 from mbkf.model.description import BodyDescription
 from mbkf.numerics.runs import spread_indices
 from mbkf.study.session.chosen import Chosen, chosen_curves
 from mbkf.study.session.comparison import CurvePair
 from mbkf.study.session.cycles import ANGLE, FORCES, PERCENT, POWER, REACTION, TORQUE, Key, SideCycles
+from mbkf.study.session.records import MovementGroup
+from mbkf.viz.markup import key
 from mbkf.viz.session.terms import Terms
-from mbkf.viz.svg import Line, Mark, chart
+from mbkf.viz.svg import HEIGHT, WIDTH, Line, Mark, chart
 from mbkf.viz.wording import Wording, wordings
 
 MOST_SINGLE = 12
@@ -89,7 +91,13 @@ def reaction_rows(terms: Terms) -> list[list[Shown]]:
     return [[Shown(Key(REACTION, name), terms.say(name).capitalize(), "") for name in reversed(FORCES)]]
 
 
-def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band | None, terms: Terms) -> str:
+def session_chart(
+    sides: tuple[SideCycles, SideCycles],
+    shown: Shown,
+    norm: Band | None,
+    terms: Terms,
+    size: tuple[float, float] = (WIDTH, HEIGHT),
+) -> str:
     """A quantity over both sides' cycles; an empty text if neither side has it.
 
     Args:
@@ -97,6 +105,7 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
         shown: The quantity.
         norm: The laboratory's reference; None without.
         terms: The report's words.
+        size: Width and height of the drawing.
     """
     thin, bold, marks, unit = [], [], [], ""
     for side in sides:
@@ -114,8 +123,43 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
     note = f"+ {shown.positive}" if shown.positive else ""
     caption = _caption(shown, terms)
     return chart(
-        shown.title, terms.unit(unit), [*thin, *bold], PER_CENT, "%", marks=marks, note=note, caption=caption
+        shown.title,
+        terms.unit(unit),
+        [*thin, *bold],
+        PER_CENT,
+        "%",
+        marks=marks,
+        note=note,
+        caption=caption,
+        width=size[0],
+        height=size[1],
     )
+
+
+def legend(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
+    """The meaning of lines and bands in charts of a gait.
+
+    Args:
+        gait: The gait.
+        norms: Those that its charts show; None without.
+        terms: The report's words.
+    """
+    cycles = [cycle for side in gait.sides for cycle in side.cycles]
+    entries = [("swatch r", terms.say("right")), ("swatch l", terms.say("left"))]
+    entries += [("swatch band", terms.say("mean_band")), ("swatch thin", terms.say("single"))]
+    mixed = any(c.measured for c in cycles) and any(c.valid and not c.measured for c in cycles)
+    if mixed:
+        entries.append(("swatch thin dashed", terms.say("estimated_single")))
+    if any(
+        side.cycles and not any(c.measured for c in side.cycles) and any(c.valid for c in side.cycles)
+        for side in gait.sides
+    ):
+        entries.append(("swatch dashed m", terms.say("estimated_mean")))
+    entries.append(("swatch off", terms.say("toe_off")))
+    if norms is not None and any(kind == gait.kind.value for kind, *_ in norms.curves):
+        persons = max(band.persons for (kind, *_), band in norms.curves.items() if kind == gait.kind.value)
+        entries.append(("swatch norm", terms.say("norm_band", norms.name, persons)))
+    return key(*entries)
 
 
 def _caption(shown: Shown, terms: Terms) -> str:

@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from mbkf.io.norms import Norms, Span
 from mbkf.study.session.norm_conversion import ConvertedNorms, converted
-from mbkf.study.session.records import Session
+from mbkf.study.session.norm_selection import speed_of
+from mbkf.study.session.records import MovementGroup, Session
 from mbkf.trial.gait.convention import convention_of
 from mbkf.viz.convention_words import statement
 from mbkf.viz.language import filled, words
 from mbkf.viz.session.terms import Terms
+
+
+def norms_at_speed(norms: Norms | None, gait: MovementGroup) -> Norms | None:
+    """Norms with curves of persons that walk as fast, where there are any; None without norms.
+
+    Args:
+        norms: The norms.
+        gait: The gait.
+    """
+    return None if norms is None else norms.at_speed(speed_of(gait))
 
 
 def norms_in_report(norms: Norms | None, session: Session) -> ConvertedNorms | None:

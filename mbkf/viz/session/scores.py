@@ -62,15 +62,50 @@ def scores_part(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
     if any(mean is not None and mean.count < LEAST_CYCLES for mean in (*_gps(scores), scores.gps)):
         note += " " + terms.say("scores_few", LEAST_CYCLES)
     heads = ["", *(terms.say(word) for word in ("right", "left", "both", "norm"))]
-    drawn = [ProfileRow(one.title, _pair(one.right), _pair(one.left), _band(one.norm)) for one in lines]
     return "".join(
         (
             f"<h3>{escape(terms.say('scores'))}</h3>",
             paragraph(note),
-            profile_chart(terms.say("profile"), drawn, terms.unit("deg")),
+            _profile(lines, terms),
             table(heads, rows),
         )
     )
+
+
+def scores_of_sheet(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
+    """GPS and GDI in a line, and the profile; an empty text without norms that have angles of this kind of gait.
+
+    Args:
+        gait: The gait.
+        norms: The laboratory's; None without.
+        terms: The report's words.
+    """
+    scores = None if norms is None else gait_scores(gait, norms)
+    if norms is None or scores is None:
+        return ""
+    lines = _lines(gait, scores, norms, terms)
+    right, left = (None if side is None else side.gdi for side in scores.sides)
+    total = lines[-1]
+    texts = [
+        terms.sheet("gps", *(_text(one) for one in (total.both, total.right, total.left)), _norm(total.norm))
+    ]
+    if right is not None or left is not None:
+        texts.append(terms.sheet("gdi", _text(right), _text(left)))
+    if scores.lacking:
+        texts.append(terms.say("scores_lacking", ", ".join(terms.score(name) for name in scores.lacking)))
+    return "".join(
+        (
+            f"<h4>{escape(terms.say('scores'))}</h4>",
+            f'<p class="gait-line">{escape(" ".join(texts))}</p>',
+            _profile(lines, terms),
+            paragraph(terms.sheet("scores_note", norms.name)),
+        )
+    )
+
+
+def _profile(lines: list[ScoreLine], terms: Terms) -> str:
+    drawn = [ProfileRow(one.title, _pair(one.right), _pair(one.left), _band(one.norm)) for one in lines]
+    return profile_chart(terms.say("profile"), drawn, terms.unit("deg"))
 
 
 def _lines(gait: MovementGroup, scores: GaitScores, norms: Norms, terms: Terms) -> list[ScoreLine]:

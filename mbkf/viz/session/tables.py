@@ -54,7 +54,7 @@ def trials_table(session: Session, terms: Terms) -> str:
         f"<h4 translate='no'>{escape(', '.join(names))}</h4><ul>{''.join(f'<li>{escape(r)}</li>' for r in texts)}</ul>"
         for names, texts in _remarks(session).items()
     ]
-    below = f'<div class="on-screen">{folded(terms.say("remarks"), *remarks)}</div>' if remarks else ""
+    below = f'<div class="remarks">{folded(terms.say("remarks"), *remarks)}</div>' if remarks else ""
     out = [
         kept(terms.say("left_out", trial.name, said(trial.left_out, terms.language)))
         for trial in session.trials
@@ -106,9 +106,9 @@ def measures_table(
         row = [f"{terms.measure(one.name)}, {terms.unit(one.unit)}"]
         if "r" in one.values or "l" in one.values:
             right, left = measure_mean(one, "r"), measure_mean(one, "l")
-            row += [_mean(right, digits), _mean(left, digits), *_apart(one, right, left, digits)]
+            row += [mean_text(right, digits), mean_text(left, digits), *_apart(one, right, left, digits)]
         else:
-            row.append(_mean(measure_mean(one, ""), digits))
+            row.append(mean_text(measure_mean(one, ""), digits))
         if with_norm and kind is not None:
             band = known.get((kind.value, one.name))
             row.append(
@@ -118,8 +118,15 @@ def measures_table(
     return table([*heads, *([terms.say("norm")] if with_norm else [])], rows)
 
 
-def changes_table(pairs: Sequence[MeasurePair], terms: Terms) -> str:
-    """Measures before and after, and the change with its interval, bold where that excludes 0."""
+def changes_table(pairs: Sequence[MeasurePair], terms: Terms, headings: tuple[str, str] | None = None) -> str:
+    """Measures before and after, and the change with its interval, bold where that excludes 0.
+
+    Args:
+        pairs: The measures.
+        terms: The report's words.
+        headings: Of both columns; None: "before" and "after".
+    """
+    old, new = headings or (terms.say("before"), terms.say("after"))
     sides = {"r": f", {terms.say('right')}", "l": f", {terms.say('left')}", "": ""}
     rows = []
     for one in pairs:
@@ -129,12 +136,12 @@ def changes_table(pairs: Sequence[MeasurePair], terms: Terms) -> str:
         rows.append(
             (
                 f"{terms.measure(one.name)}{sides[one.side]}, {terms.unit(one.unit)}",
-                _mean(one.before, digits),
-                _mean(one.after, digits),
+                mean_text(one.before, digits),
+                mean_text(one.after, digits),
                 Html(f"<b>{change}</b>") if np.isfinite(half) and abs(apart) > half else change,
             )
         )
-    return table(["", *(terms.say(word) for word in ("before", "after", "change"))], rows)
+    return table(["", old, new, terms.say("change")], rows)
 
 
 def _with_half(value: float, half: float, digits: int) -> str:
@@ -142,7 +149,13 @@ def _with_half(value: float, half: float, digits: int) -> str:
     return number(value, digits) + (f" ± {number(half, digits)}" if np.isfinite(half) else "")
 
 
-def _mean(mean: Mean | None, digits: int) -> str:
+def mean_text(mean: Mean | None, digits: int) -> str:
+    """A mean ± the standard deviation between cycles; a dash where it is not known.
+
+    Args:
+        mean: The mean of a measure.
+        digits: Decimals.
+    """
     if mean is None:
         return "–"
     spread = "" if np.isnan(mean.sd[0]) else f" ± {number(float(mean.sd[0]), digits)}"

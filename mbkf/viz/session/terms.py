@@ -56,6 +56,10 @@ class Terms:
         """A text of the section ``session_report``, filled with values."""
         return filled(words(self.language, "session_report")[name], *values)
 
+    def sheet(self, name: str, *values: object) -> str:
+        """A text of the section ``sheet``, filled with values."""
+        return filled(words(self.language, "sheet")[name], *values)
+
     def measure(self, name: str) -> str:
         """The name of a measure, e.g. "Step length"."""
         return words(self.language, "measures").get(name, name)

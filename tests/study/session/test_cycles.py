@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
+from mbkf.io.contacts import Source
 from mbkf.io.verdict import Reason, Verdict
 from mbkf.model.human import reference_body
 from mbkf.study.session.cycles import Key, cycles_of_trial, part_of_curve, together
@@ -151,3 +152,13 @@ def test_curves_that_may_not_be_used_are_nan():
     assert np.isnan(left.curves[Key("torque", "knee_angle")].values).all()
     assert np.isfinite(left.curves[Key("angle", "knee_angle")].values).all()
     assert np.isfinite(right.curves[Key("torque", "knee_angle")].values).all()
+
+
+def test_a_foot_beside_the_plates_is_not_measured():
+    """Without a plate below it a foot has no force in stance: that is no measurement of zero."""
+    source = trial().foot_source.copy()
+    source[:, 1] = Source.NONE
+    beside = replace(trial(), foot_source=source, valid=np.zeros_like(trial().valid))
+    right, left = (cycles_of_trial(beside, gait(), k).cycles for k in range(2))
+    assert right and all(one.measured for one in right)
+    assert left and not any(one.measured or one.valid for one in left)

@@ -6,6 +6,8 @@ from dataclasses import replace
 import pytest
 
 from mbkf.errors import InvalidInput
+from mbkf.io.session import SessionNotes, TrialNotes
+from mbkf.io.visit import Visit
 from mbkf.study.session.gather import session_of
 from mbkf.study.session.norms import norms_of
 from mbkf.viz.language import languages
@@ -15,18 +17,22 @@ from tests.study.session.sessions import estimated, person, session, walks
 
 
 def everything(language):
-    whole = session_of([*walks(), recorded("jump", 3.0, 2), recorded("squat", 4.0, 2)], "Ana")
+    notes = SessionNotes(trials={"walk 1": TrialNotes(condition="orthosis")}, visit=Visit("2025-03-31"))
+    whole = session_of([*walks(), recorded("jump", 3.0, 2), recorded("squat", 4.0, 2)], "Ana", notes)
+    visits = [replace(whole, visit=Visit(day)) for day in ("2025-01-01", "2025-02-01")]
     norms = norms_of([person(), person(1, 6)], "ours")
-    return session_page(whole, whole, norms, language)
+    return session_page(whole, whole, norms, language, visits=visits)
 
 
 @pytest.mark.parametrize("language", sorted(languages()))
 def test_the_page_has_every_section_in_every_language(language):
     page = everything(language)
     sections = re.findall(r'<section id="([\w-]+)"', page)
-    assert sections == ["trials", "gait-walk", "jumps", "squats", "change", "numbers"]
+    assert sections == [
+        "summary", "trials", "gait-walk", "gait-walk-2", "jumps", "squats", "conditions", "trend", "change", "numbers",
+    ]  # fmt: skip
     assert f'<html lang="{language}">' in page and re.findall(r'href="#([\w-]+)"', page) == sections
-    assert "{0}" not in page and "default-src 'none'" in page and "<script" not in page
+    assert "{0}" not in page and "{1}" not in page and "default-src 'none'" in page and "<script" not in page
     assert "http" not in page.replace("http-equiv", "")
 
 
