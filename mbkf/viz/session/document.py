@@ -21,7 +21,7 @@ from mbkf.study.session.emg import PEAK
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.study.session.trend import Trend, trend
 from mbkf.version import __version__
-from mbkf.viz.language import ENGLISH
+from mbkf.viz.language import ENGLISH, words
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.motion import JointNames, joint_names

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from mbkf.io.norms import Norms
 from mbkf.study.session.norms import norms_of
-from mbkf.viz.session.norms import norm_sentences, norms_in_report
+from mbkf.viz.session.norms import norm_sentences, norms_at_speed, norms_in_report
 from mbkf.viz.session.terms import Terms
 from tests.study.session.sessions import person
 
@@ -36,3 +36,10 @@ def test_another_convention_is_named():
     assert norms_in_report(alone, person()) is None
     assert norm_sentences(alone, None, Terms("en"))[1].startswith("The norms are in another convention")
     assert norms_in_report(Norms("n", {}, {}), person()) is None
+
+
+def test_bands_of_the_speed_count():
+    key = ("walk", "angle", "knee_angle")
+    fast = replace(ours(), by_speed={(0.1, 9.0): {key: ours().curves[key]}})
+    (gait,) = person().gaits
+    assert norms_at_speed(fast, gait).name == "ours, 0.1–9.0 m/s" and norms_at_speed(None, gait) is None
