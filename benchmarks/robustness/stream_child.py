@@ -87,7 +87,14 @@ class Sender(threading.Thread):
 
 
 def wire_of(protocol: str, walk: Played, name: str, counted: bool) -> Wire:
-    """The player of a protocol, "lsl" or "natnet"."""
+    """The player of a protocol.
+
+    Args:
+        protocol: "lsl" or "natnet".
+        walk: The capture.
+        name: Of the stream, where the protocol has names.
+        counted: Whether frames carry a count.
+    """
     return LslWire(walk, name, counted) if protocol == LSL else NatNetWire(walk)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 
 import numpy as np
@@ -74,5 +75,46 @@ UDP: dict[str, Fault] = {
     "axes change for a while": _described(b'{"up": "y"}', b'{"up": "z"}'),
 }
 
-FAULTS: dict[str, dict[str, Fault]] = {"udp": SHARED | UDP}
+
+def _half_frame(rng: np.random.Generator) -> bytes:
+    """A packet of data that ends in its components."""
+    points = struct.pack("<QII", 5, int(rng.integers(0, 10**6)), 1) + struct.pack("<IIIhh", 496, 9, 30, 0, 0)
+    return bytes([3]) + points + rng.bytes(int(rng.integers(0, 300)))
+
+
+def _claims(rng: np.random.Generator) -> bytes:
+    """Components whose counts are those of a million things."""
+    kind = int(rng.choice([1, 2, 4, 9, 10]))
+    return bytes([3]) + struct.pack("<QIIIIII", 5, 7, 1, 24, kind, 10**6, 10**6) + rng.bytes(4)
+
+
+def _garbage_data(rng: np.random.Generator) -> bytes:
+    return bytes([3]) + rng.bytes(int(rng.integers(0, 2000)))
+
+
+def _any_type(rng: np.random.Generator) -> bytes:
+    return bytes([int(rng.choice([0, 1, 2, 4, 5, 6, 8, 99]))]) + rng.bytes(int(rng.integers(0, 200)))
+
+
+def _renamed(s: Schedule) -> None:
+    s.act(s.begin, "rename")
+    s.act(s.end, "rename_back")
+    s.whole = False
+
+
+def _unreadable(s: Schedule) -> None:
+    s.act(s.begin, "forget_size")
+    s.whole = False
+
+
+QUALISYS: dict[str, Fault] = {
+    "half packets": _packets(_half_frame),
+    "packets that claim a million things": _packets(_claims),
+    "packets of garbage": _packets(_garbage_data),
+    "packets of any type": _packets(_any_type),
+    "labels renamed for a while": _renamed,
+    "bytes that are no packet": _unreadable,
+}
+
+FAULTS: dict[str, dict[str, Fault]] = {"udp": SHARED | UDP, "qualisys": SHARED | QUALISYS}
 """Faults by protocol and name."""

@@ -3,26 +3,42 @@
 from __future__ import annotations
 
 import socket
+import struct
 from dataclasses import replace
 
 import numpy as np
 
 from benchmarks.robustness.stream_schedule import Sent
 from benchmarks.robustness.stream_wire import HERE, STRANGER, Wire, with_other_markers
+from benchmarks.streams.qualisys_server import CAMERAS_CHANGED, QtmServer
 from mbkf.stream.played import Played, PlayedFrame
+from mbkf.stream.qualisys.source import QualisysSource
 from mbkf.stream.source import FrameSource, PlateSamples
 from mbkf.stream.udp.player import UdpPlayer, description, line
 from mbkf.stream.udp.source import UdpSource
 
 
 def wire_of(protocol: str, walk: Played, name: str, counted: bool) -> Wire:
-    """The player of a protocol by its name."""
+    """The player of a protocol.
+
+    Args:
+        protocol: "udp" or "qualisys".
+        walk: The capture.
+        name: Of the stream, where the protocol has names.
+        counted: Whether frames carry a count.
+    """
     del name, counted
-    return {"udp": UdpWire}[protocol](walk)
+    return QualisysWire(walk) if protocol == "qualisys" else UdpWire(walk)
 
 
 def disturbed(played: Played, one: Sent, samples: PlateSamples) -> PlayedFrame:
-    """A frame as the schedule alters it."""
+    """A frame as the schedule alters it.
+
+    Args:
+        played: The capture.
+        one: The altered frame.
+        samples: The plates' samples of the frame.
+    """
     if not one.plates:
         samples = PlateSamples.none(len(played.stream.plates))
     elif one.load is not None:
@@ -107,3 +123,81 @@ class UdpWire:
         fields = self._player.fields(replace(shown, markers_m=one.markers_m[:count]))
         fields["frame"] = int(one.number) if np.isfinite(one.number) else one.number
         return line(fields)
+
+
+class QualisysWire:
+    """A simulated QTM. Methods beyond those of a wire are acts of a schedule."""
+
+    def __init__(self, played: Played) -> None:
+        """Args: the capture."""
+        self._played = played
+        self._samples = [frame.plates for frame in played.frames()]
+        self._server: QtmServer | None = QtmServer(played)
+        self._port = self._server.port
+
+    def source(self) -> FrameSource:
+        """A source of this server."""
+        return QualisysSource(HERE, self._port)
+
+    def listening(self) -> bool:
+        """True once the source asked for frames."""
+        return self._server is not None and self._server.listening()
+
+    def open(self) -> None:
+        """Serves again."""
+        self._server = QtmServer(self._played, port=self._port)
+
+    def open_other(self) -> None:
+        """Serves fewer markers."""
+        self._server = QtmServer(with_other_markers(self._played), port=self._port)
+
+    def close(self) -> None:
+        """Serves no more."""
+        if self._server is not None:
+            self._server.close()
+            self._server = None
+
+    def half(self) -> None:
+        """Sends half of a frame."""
+        if self._server is not None:
+            one = Sent(0.0, 0, 0.0, 0.0, self._played.markers_m[0])
+            for client in self._server.streaming():
+                whole = self._payload(self._server, one, client.components)
+                self._server.raw_to_all(struct.pack("<II", 8 + len(whole), 3) + whole[: len(whole) // 2])
+
+    def send(self, one: Sent) -> bool:
+        """Sends a frame."""
+        server = self._server
+        if server is None:
+            return False
+        clients = server.streaming()
+        for client in clients:
+            server.send_data(client, self._payload(server, one, client.components))
+        return bool(clients)
+
+    def packet(self, data: bytes, stranger: bool) -> None:
+        """Sends a packet: the first byte is its type."""
+        if self._server is not None and not stranger:
+            self._server.to_all(data[0], data[1:])
+
+    def rename(self) -> None:
+        """QTM has other labels."""
+        if self._server is not None:
+            self._server.names = [f"other_{name}" for name in self._server.names]
+            self._server.to_all(6, bytes([CAMERAS_CHANGED]))
+
+    def rename_back(self) -> None:
+        """QTM has the known labels in another order."""
+        if self._server is not None:
+            self._server.names = list(self._played.stream.marker_names)
+            self._server.to_all(6, bytes([CAMERAS_CHANGED]))
+
+    def forget_size(self) -> None:
+        """Bytes that are no packet, after which a connection cannot be read any more."""
+        if self._server is not None:
+            self._server.raw_to_all(b"\xff" * 64)
+
+    def _payload(self, server: QtmServer, one: Sent, components: tuple[int, ...]) -> bytes:
+        shown = disturbed(self._played, one, self._samples[one.frame])
+        number = int(one.number) if abs(one.number) < 2.0**62 else 2**31
+        return server.data(shown, components, number)

@@ -12,7 +12,7 @@ from mbkf.cli.options import port
 if TYPE_CHECKING:
     from mbkf.stream.source import FrameSource
 
-SOURCES = "lsl|natnet|udp[:PORT]|file:TRIAL"
+SOURCES = "lsl|natnet|qualisys[:HOST]|udp[:PORT]|file:TRIAL"
 """Values of ``--from``, for help."""
 
 
@@ -29,7 +29,19 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     )
     stream.add_argument("--port", type=port, default=1510, metavar="N", help="NatNet: command port")
     stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")
-    stream.add_argument("--up", metavar="AXIS", help="NatNet and files: vertical axis (NatNet: y)")
+    stream.add_argument(
+        "--up",
+        metavar="AXIS",
+        help="NatNet, Qualisys and files: vertical axis (NatNet: y, Qualisys: as QTM states)",
+    )
+    stream.add_argument("--over-udp", action="store_true", help="Qualisys: frames over UDP in place of TCP")
+    stream.add_argument(
+        "--control",
+        metavar="PASSWORD",
+        nargs="?",
+        const="",
+        help="Qualisys: start a measurement in QTM with the run, and stop it at the end",
+    )
     stream.add_argument("--forces", metavar="FILE", help="file: its ground reactions, as for reconstruct")
     stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
     stream.add_argument(
@@ -77,6 +89,17 @@ def _udp(args: argparse.Namespace, detail: str) -> FrameSource:
     return UdpSource(_port(detail, DEFAULT_PORT, "udp"), args.local)
 
 
+def _qualisys(args: argparse.Namespace, detail: str) -> FrameSource:
+    from mbkf.stream.qualisys.client import BASE_PORT
+    from mbkf.stream.qualisys.source import QualisysSource
+
+    host, _, base = detail.partition(":")
+    number = _port(base, BASE_PORT, f"qualisys:{host}")
+    return QualisysSource(
+        host or "127.0.0.1", number, up=args.up, over_udp=args.over_udp, control=args.control
+    )
+
+
 def _port(detail: str, default: int, source: str) -> int:
     """The port behind a source's name.
 
@@ -96,7 +119,8 @@ def _port(detail: str, default: int, source: str) -> int:
 _STREAMS: Mapping[str, Callable[[argparse.Namespace, str], FrameSource]] = {
     "lsl": _lsl,
     "natnet": _natnet,
+    "qualisys": _qualisys,
     "udp": _udp,
 }
-_WITH_PLACE = ("udp",)
+_WITH_PLACE = ("qualisys", "udp")
 """Sources whose name may be followed by a colon and a port or an address."""

@@ -21,7 +21,7 @@ from mbkf.conventions import Array
 from mbkf.io.dimensions import AXES, axes_text
 from mbkf.io.hdf5 import array
 from mbkf.io.quantities import Quantity, attributes, quantities
-from mbkf.io.utf8 import storable
+from mbkf.io.utf8 import without_noughts
 
 Fields: TypeAlias = dict[str, Any]
 """Values by the name of a record's field."""
@@ -41,7 +41,7 @@ def write_record(file: h5py.File, record: object) -> None:
     for kept in attributes(kind):
         value = getattr(record, kept.name)
         plain = value if kept.read in PLAIN else plain_json(value)
-        file.attrs[kept.name] = storable(plain) if isinstance(plain, str) else plain
+        file.attrs[kept.name] = without_noughts(plain) if isinstance(plain, str) else plain
     declared = [one for one in quantities(kind).values() if one.written]
     for one in declared:
         if one.is_text:
@@ -82,7 +82,9 @@ def write_labels(file: h5py.File, key: str, labels: Sequence[str], meaning: str)
         labels: One for each entry of the axis.
         meaning: Of the entries.
     """
-    dataset = file.create_dataset(key, data=[storable(label) for label in labels], dtype=h5py.string_dtype())
+    dataset = file.create_dataset(
+        key, data=[without_noughts(label) for label in labels], dtype=h5py.string_dtype()
+    )
     _describe(dataset, long_name=meaning)
     dataset.make_scale(key)
 
@@ -121,7 +123,7 @@ def _describe(dataset: h5py.Dataset, **texts: str) -> None:
     """Writes attributes, five times as fast as ``dataset.attrs``: a result has hundreds of them."""
     for name, text in texts.items():
         attribute = h5a.create(dataset.id, name.encode(), _TEXT, h5s.create(h5s.SCALAR))
-        attribute.write(np.array(storable(text), dtype=h5py.string_dtype()))
+        attribute.write(np.array(without_noughts(text), dtype=h5py.string_dtype()))
 
 
 def plain_json(value: object) -> str:

@@ -14,3 +14,8 @@ def encoded(text: str) -> bytes:
 def storable(text: str) -> str:
     """A text without halves of letters, which are codes then; another text stays as it is."""
     return text if text.isascii() else encoded(text).decode("utf-8")
+
+
+def without_noughts(text: str) -> str:
+    """A storable text as HDF5 holds it: without noughts, which streams may send, and which are codes then."""
+    return storable(text).replace("\0", "\\x00")

@@ -29,11 +29,18 @@ def test_udp_listens_at_its_port():
     assert source(f"udp:{port}").port == port
 
 
+def test_qualisys_has_a_computer_and_a_base_port():
+    assert source("qualisys")._place == ("127.0.0.1", 22222, False)
+    assert source("qualisys:lab:2000", "--over-udp")._place == ("lab", 2000, True)
+    assert source("qualisys", "--control")._control == ""
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("udp:70000", "write udp:15100"),
         ("udp:abc", "write udp:15100"),
+        ("qualisys:lab:x", "write qualisys:lab:22222"),
         ("lsl:3", "unknown source 'lsl:3'"),
         ("serial", "unknown source"),
         ("file:", "names no file"),

@@ -41,6 +41,13 @@ def test_hdf5_files_hold_utf_8(tmp_path):
         assert file["names"].attrs["long_name"] == storable(ODD)
 
 
+def test_hdf5_files_hold_noughts_as_codes(tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        write_labels(file, "names", ["a\0b", "c"], "x\0")
+        assert [one.decode("utf-8") for one in file["names"][:]] == ["a\\x00b", "c"]
+        assert file["names"].attrs["long_name"] == "x\\x00"
+
+
 def test_tables_of_any_name_are_written(tmp_path):
     table = Table(("a",), np.array([0.0]), np.array([[1.0]]))
     path = tmp_path / f"{ODD}.mot"

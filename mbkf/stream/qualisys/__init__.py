@@ -1,0 +1,1 @@
+"""Qualisys QTM's real-time protocol: packets, parameters, client and source."""

@@ -1,0 +1,317 @@
+"""Frames from Qualisys Track Manager over its real-time protocol: connection, its renewal, parameters that change."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from contextlib import suppress
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, read_only
+from mbkf.errors import InvalidInput, InvalidPacket, MbkfError
+from mbkf.io.resample import WHOLE
+from mbkf.stream.known import KnownStream
+from mbkf.stream.qualisys import packets
+from mbkf.stream.qualisys.client import PARAMETERS, Packet, QtmClient
+from mbkf.stream.qualisys.parameters import MM, QtmDescription, read_parameters
+from mbkf.stream.qualisys.plates import PlateForceReader
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
+
+RECONNECT_AFTER_S, AGAIN_S = 3.0, 0.5
+"""After so long without a packet the connection is made anew; attempts are so far apart."""
+
+FORCES_WITHIN_S, SILENT_S = 0.1, 1.0
+"""A frame waits so long for the forces of its time, which QTM hands on in chunks; after so long without any it does not
+wait."""
+
+MOST_VAIN = 20
+"""After so many frames in a row that waited in vain, forces are numbered otherwise than frames, or come later."""
+
+ASK_AGAIN_S = 0.25
+"""Interval of questions for parameters while frames do not fit them."""
+
+NEW_PARAMETERS = {1, 3, 7, 11}
+"""Events after which parameters may be others: connected, capture started, file started, cameras' settings changed."""
+
+NO_POINTS = read_only(np.zeros((0, 3)))
+
+
+class QualisysSource:
+    """A :class:`mbkf.stream.source.FrameSource`.
+
+    Attributes:
+        receiving: True from the first read on, when frames are asked for.
+    """
+
+    patient = False
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        *,
+        up: str | None = None,
+        over_udp: bool = False,
+        control: str | None = None,
+    ) -> None:
+        """A source that is not connected yet.
+
+        Args:
+            host: QTM's computer.
+            port: Its base port.
+            up: Axis that points up in QTM; None for the one that it states.
+            over_udp: Whether frames come over UDP.
+            control: Password with which a measurement is started at the first frame asked for and stopped at the end,
+                "" without one; None to leave QTM alone.
+        """
+        self._place, self._up, self._control = (host, port, over_udp), up, control
+        self._client: QtmClient | None = None
+        self._known: KnownStream | None = None
+        self._described: QtmDescription | None = None
+        self._plates: PlateForceReader | None = None
+        self.receiving = False
+        self._samples: list[PlateSamples] = []
+        self._held: deque[SourceFrame] = deque()
+        self._newest, self._vain = -1, 0
+        self._heard_s = self._forces_s = self._tried_s = self._asked_s = 0.0
+        self._lost = False
+        self._news: list[tuple[str, str]] = []
+        self._reported: set[str] = set()
+
+    def connect(self, timeout_s: float) -> StreamDescription | None:
+        """QTM's description of the stream, None while QTM is not there; frames are asked for by the first read.
+
+        Raises:
+            InvalidInput: Another server answers, or the parameters cannot be used.
+        """
+        begin = time.perf_counter()
+        try:
+            self._client = QtmClient(*self._place)
+        except OSError:
+            time.sleep(max(0.0, min(timeout_s, 0.1 - (time.perf_counter() - begin))))
+            return None
+        self._described = read_parameters(self._client.parameters, self._up)
+        self._known, self._plates = KnownStream(self._described.stream), PlateForceReader(self._described)
+        self._news += [("plates", sentence) for sentence in self._described.left_out]
+        return self._described.stream
+
+    def read(self, timeout_s: float) -> SourceFrame | None:
+        """The next frame, with the forces until its end where they come in time."""
+        assert self._known is not None, "connect first"
+        until = time.perf_counter() + timeout_s
+        if not self.receiving:
+            self.receiving = True
+            self._heard_s = time.perf_counter()
+            self._ask_for_frames()
+        while True:
+            ready = self._due()
+            if ready is not None:
+                return ready
+            now = time.perf_counter()
+            wait_s = until - now
+            if self._held:
+                wait_s = min(wait_s, self._held[0].arrival_s + FORCES_WITHIN_S - now)
+            found = self._take(max(0.0, wait_s), now)
+            if found is not None:
+                self._put(found)
+            elif now >= until:
+                return None
+
+    def news(self) -> list[tuple[str, str]]:
+        """Events of the connection since the last call."""
+        news, self._news = self._news, []
+        return news
+
+    def close(self) -> None:
+        """Ends a measurement that this source started, and the connection."""
+        if self._client is None:
+            return
+        with suppress(OSError):
+            self._client.send("StreamFrames Stop")
+            if self._control is not None and self.receiving:
+                self._client.send("Stop")
+                self._client.send("ReleaseControl")
+        self._client.close()
+        self._client = None
+
+    def _take(self, timeout_s: float, now: float) -> Packet | None:
+        """The next packet; a connection that broke off is made anew."""
+        if self._client is None:
+            if now - self._tried_s < AGAIN_S:
+                time.sleep(min(timeout_s, AGAIN_S - (now - self._tried_s)))
+                return None
+            self._again(now)
+            return None
+        try:
+            found = self._client.take(timeout_s)
+        except (OSError, InvalidPacket) as error:
+            self._lose(str(error))
+            return None
+        if found is not None:
+            self._heard_s = found.arrival_s
+        elif now - self._heard_s > RECONNECT_AFTER_S:
+            self._lose("QTM is silent")
+        return found
+
+    def _lose(self, why: str) -> None:
+        if not self._lost:
+            self._news.append(("connection", f"the connection to QTM broke off and is made anew ({why})"))
+        self._lost = True
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+
+    def _again(self, now: float) -> None:
+        self._tried_s = now
+        try:
+            self._client = QtmClient(*self._place)
+            self._heard_s = time.perf_counter()
+            self._describe(self._client.parameters)
+            self._ask_for_frames()
+        except (OSError, InvalidInput) as error:
+            self._report("refused", f"QTM cannot be connected to again ({error})")
+            return
+        if self._lost:
+            self._news.append(("connection", "the connection to QTM is back"))
+        self._lost = False
+
+    def _ask_for_frames(self) -> None:
+        assert self._client is not None and self._known is not None
+        try:
+            if self._control is not None:
+                self._client.command(f"TakeControl {self._control}".strip())
+                self._client.command("Start")
+            components = "3DRes 3DNoLabelsRes" if self._known.stream.marker_names else "3DNoLabelsRes"
+            self._client.stream(f"{components} Force" if self._known.stream.plates else components)
+        except OSError as error:
+            self._lose(str(error))
+        except InvalidInput as error:
+            self._control = None
+            self._news.append(("control", f"no measurement was started: {error}"))
+            self._ask_for_frames()
+
+    def _put(self, one: Packet) -> None:
+        """Takes a packet."""
+        if one.kind == packets.DATA:
+            try:
+                self._put_frame(packets.read_frame(one.payload), one.arrival_s)
+            except (InvalidPacket, ValueError, ArithmeticError) as error:
+                self._report("packets", f"packets that cannot be read are left out ({error})")
+        elif one.kind == packets.XML:
+            self._describe(packets.text_of(one.payload))
+        elif one.kind == packets.EVENT and one.payload[:1] and one.payload[0] in NEW_PARAMETERS:
+            self._ask_for_parameters()
+        elif one.kind == packets.ERROR:
+            self._report("connection", f"QTM answers: {packets.text_of(one.payload)[:200]}")
+
+    def _put_frame(self, frame: packets.DataFrame, arrival_s: float) -> None:
+        assert self._described is not None and self._known is not None and self._plates is not None
+        if self._known.refused:
+            return
+        known = self._known
+        if frame.forces is not None and known.stream.plates:
+            before = self._plates.axes
+            samples = known.plate_samples(self._plates.samples(frame.forces))
+            if self._plates.axes != before:
+                self._news.append(("plates axes", f"QTM states forces in axes of the {self._plates.axes}"))
+            if len(samples.index):
+                self._samples.append(samples)
+                self._newest, self._forces_s = int(samples.index[-1]), arrival_s
+        labelled = frame.points.get(packets.MARKERS_RESIDUAL, frame.points.get(packets.MARKERS))
+        bare = frame.points.get(packets.POINTS_RESIDUAL, frame.points.get(packets.POINTS))
+        if labelled is None and (bare is None or known.stream.marker_names):
+            return  # forces alone
+        markers = NO_POINTS
+        if known.stream.marker_names:
+            markers = self._markers(labelled, len(self._described.stream.marker_names))
+        points = NO_POINTS if bare is None or not len(bare) else self._world(bare)
+        none = PlateSamples.none(len(known.stream.plates))
+        self._held.append(SourceFrame(frame.number, arrival_s, markers, points, none))
+
+    def _markers(self, found: NDArray[np.float32] | None, described: int) -> Array:
+        """(M, 3) known markers; NaN where their number is not that of the parameters, which are then asked for."""
+        assert self._known is not None
+        if found is None or len(found) != described:
+            self._ask_for_parameters()
+            return np.full((len(self._known.stream.marker_names), 3), np.nan)
+        return self._known.in_order(self._world(found))
+
+    def _world(self, points_mm: NDArray[np.float32]) -> Array:
+        assert self._described is not None
+        return np.asarray(points_mm.astype(float) @ (MM * self._described.rotation.T))
+
+    def _due(self) -> SourceFrame | None:
+        """The oldest frame, once the forces of its time are here or are not waited for any more."""
+        if not self._held:
+            return None
+        assert self._known is not None
+        one, stream, now = self._held[0], self._known.stream, time.perf_counter()
+        ratio = stream.plate_rate_hz / stream.rate_hz
+        wanted = ceil((one.number + 0.5) * ratio - WHOLE)
+        waits = self._vain < MOST_VAIN and now - self._forces_s < SILENT_S
+        if stream.plates and waits and self._newest < wanted:
+            if now - one.arrival_s < FORCES_WITHIN_S:
+                return None
+            self._vain += 1
+            if self._vain == MOST_VAIN:
+                self._report(
+                    "plates late", "QTM sends forces too late for their frames, which do not wait for them"
+                )
+        else:
+            self._vain = MOST_VAIN if self._vain == MOST_VAIN else 0
+        self._held.popleft()
+        samples, self._samples = self._samples, []
+        if not samples:
+            return one
+        index = np.concatenate([chunk.index for chunk in samples])
+        wrench = np.concatenate([chunk.wrench for chunk in samples])
+        return SourceFrame(
+            one.number, one.arrival_s, one.markers_m, one.unlabelled_m, PlateSamples(index, wrench)
+        )
+
+    def _ask_for_parameters(self) -> None:
+        now = time.perf_counter()
+        if self._client is None or now - self._asked_s < ASK_AGAIN_S:
+            return
+        self._asked_s = now
+        try:
+            self._client.send(PARAMETERS)
+        except OSError as error:
+            self._lose(str(error))
+
+    def _describe(self, text: str) -> None:
+        """Takes parameters that came again."""
+        assert self._known is not None
+        try:
+            found = read_parameters(text, self._up)
+        except MbkfError as error:
+            self._report("refused", f"QTM's new parameters cannot be used ({error})")
+            return
+        if self._described is not None and _same(found, self._described) and not self._known.refused:
+            return
+        axes = None if self._plates is None else self._plates.axes
+        self._described, self._plates = found, PlateForceReader(found)
+        self._plates.axes = axes
+        self._news += self._known.describe(found.stream)
+
+    def _report(self, kind: str, sentence: str) -> None:
+        if kind not in self._reported:
+            self._reported.add(kind)
+            self._news.append((kind, sentence))
+
+
+def _same(one: QtmDescription, other: QtmDescription) -> bool:
+    """True for equal rates, names and plates."""
+    first, second = one.stream, other.stream
+    return (
+        (first.marker_names, first.rate_hz, one.plate_ids)
+        == (second.marker_names, second.rate_hz, other.plate_ids)
+        and np.array_equal(one.rotation, other.rotation)
+        and all(
+            plate.rate_hz == known.rate_hz and np.array_equal(plate.origin_m, known.origin_m)
+            for plate, known in zip(first.plates, second.plates, strict=True)
+        )
+    )
