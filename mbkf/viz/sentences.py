@@ -32,7 +32,7 @@ _NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?=(?:e[+-]?\d+)?(?![\w.]*\w))")
 _FOLDERS = re.compile(r"""(?:^|(?<=[\s'"(]))/(?:[^/:;\n]+/)+(?=[^/\s])""")
 _PLAIN = re.compile(r"[\W\d_]*")
 _SIZE = re.compile(r"[\W\d_]*(?:[\d.]+ \S+)?")
-_IN_BRACKETS = re.compile(r"(\S+) \((.*)\)")
+_IN_BRACKETS = re.compile(r"(\S+(?: …)?) \((.*)\)")
 _PARTED = r"((?:(?:[,;:(]| [(…]| by | and \d).*?)?)"
 _SEPARATOR = re.compile(r"; |: |\. | · ")
 
@@ -141,9 +141,8 @@ def contracted(text: str, language: str) -> str:
 
 
 def _value(text: str, language: str) -> str:
-    spare = text.lstrip(" ;:,.")
-    lead = text[: len(text) - len(spare)]
-    return lead + said(spare, language) if spare else text
+    own = text.lstrip(" ;:,.").rstrip(" ;:,")
+    return text.replace(own, said(own, language), 1) if own else text
 
 
 def _listed(text: str, language: str) -> str:
@@ -246,7 +245,7 @@ def _recogniser(key: str) -> Callable[[str], Sentence | None]:
 
 def _known(value: str) -> bool:
     """True for a number, one word, a known sentence, or a list of these."""
-    if _recognised(value) is not None:
+    if _recognised(value.strip(" ;:,")) is not None:
         return True
     return all(_is_name(one) or _recognised(one) is not None for one in _members(value)[::2])
 

@@ -112,6 +112,12 @@ def test_files_are_named_without_their_folders():
          "ejes de la plataforma '1' +2,12 veces, en espejo ajusta 2,1 veces mejor"),
         ("the verdict on the motion of the trunk is 'look': these loads are computed from it",
          "el veredicto sobre el movimiento del tronco es 'revisar': estas cargas se calculan con él"),
+        ("On a treadmill at 3.53 m/s. Whole cycles: 2 right, 1 left. Mean ± standard deviation between cycles. Strikes "
+         "and toe-offs come from the feet's loads if these are known, else from their motion. A step belongs to the "
+         "foot that ends it.",
+         "En una cinta a 3,53 m/s. Ciclos completos: 2 derechos, 1 izquierdos. Media ± desviación típica entre ciclos. "
+         "Apoyos y despegues vienen de las cargas de los pies si se conocen, si no, de su movimiento. Un paso "
+         "pertenece al pie que lo termina."),
         ("worst is LASI, and nothing else", "worst is LASI, and nothing else"),
     ],
 )  # fmt: skip

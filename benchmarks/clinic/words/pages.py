@@ -36,7 +36,7 @@ FAILING = (
 )  # fmt: skip
 """Requests of the page's server that fail."""
 
-_TEXTS = """() => {
+_READ = """() => {
   const found = [], spoken = ["title", "aria-label", "placeholder", "alt"];
   const silent = (one) => one.closest("script, style, code, [translate=no]");
   const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT);
@@ -47,7 +47,8 @@ _TEXTS = """() => {
       for (const name of spoken) if (node.getAttribute(name)) found.push(node.getAttribute(name));
     }
   }
-  return found;
+  const rows = "ul.flags li, table.reasons tbody tr, ul.problems li, details.reasons li, section#trials li";
+  return { texts: found, problems: [...document.querySelectorAll(rows)].map((one) => one.textContent.trim()) };
 }"""
 
 _FETCH = """async (path) => {
@@ -119,18 +120,18 @@ def _sessions(data: Path, lab: Path) -> set[str]:
 def _read_session(user: Visit, session: str) -> Iterator[Read]:
     """The page of a session and every page behind it, where it has results."""
     if not user.page.locator("td .buttons").count():
-        yield Read(session, user.page.evaluate(_TEXTS), _listed(user.page))
+        yield _read(session, user.page)
         return
     for name, frames in every_page(user, close="Cerrar"):
         for k, frame in enumerate(frames[-1:] if name != "session" else frames):
-            texts = frame.evaluate(_TEXTS)
-            yield Read(f"{session} {name} {k}", texts, _listed(frame))
+            yield _read(f"{session} {name} {k}", frame)
 
 
-def _listed(frame: Any) -> list[str]:
-    """Reasons and remarks of a page, each element of a list or row of a table."""
-    one = "ul.flags li, table.reasons tbody tr, ul.problems li, details.reasons li, section#trials li"
-    return [text.strip() for text in frame.locator(one).all_text_contents()]
+def _read(name: str, frame: Any) -> Read:
+    """The texts of a page, and of them the reasons and remarks: elements of lists or rows of tables."""
+    frame.wait_for_load_state()
+    found = frame.evaluate(_READ)
+    return Read(name, found["texts"], found["problems"])
 
 
 def _failures(user: Visit) -> Read:
