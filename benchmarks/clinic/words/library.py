@@ -107,7 +107,9 @@ NO_TEXTS = frozenset(
     (
         "export frame rate", "capture frame rate", "total exported frames", "total frames in take",
         "attachment; filename*=utf-8''71", "Reference bands of a laboratory, written by mbkf",
-        "number of persons", "gait cycles that count", "A session, as 'mbkf app' and 'mbkf batch' read it",
+        "A laboratory, for the head of its reports", "day of the visit", "the person's day of birth",
+        "condition of walking: 71, or a text of your own", "diagnosis, or reason of the visit", "notes for the report",
+        "person who signs the report", "number of persons", "gait cycles that count", "A session, as 'mbkf app' and 'mbkf batch' read it",
         "A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame",
     )
 )  # fmt: skip
