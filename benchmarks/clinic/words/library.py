@@ -109,7 +109,9 @@ NO_TEXTS = frozenset(
         "attachment; filename*=utf-8''71", "Reference bands of a laboratory, written by mbkf",
         "A laboratory, for the head of its reports", "day of the visit", "the person's day of birth",
         "condition of walking: 71, or a text of your own", "diagnosis, or reason of the visit", "notes for the report",
-        "person who signs the report", "number of persons", "gait cycles that count", "A session, as 'mbkf app' and 'mbkf batch' read it",
+        "person who signs the report", "GetParameters General 3D Force", "QTM RT Interface connected",
+        "number of persons", "gait cycles that count",
+        "A session, as 'mbkf app' and 'mbkf batch' read it",
         "A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame",
     )
 )  # fmt: skip

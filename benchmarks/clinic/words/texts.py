@@ -16,7 +16,8 @@ VOID = ("br", "img", "input", "meta", "link", "hr")
 SECTIONS = (
     "app", "session_report", "measures", "units", "joints", "coordinates", "positive", "clinical_coordinates",
     "clinical_positive", "internal_moments", "external_moments", "convention", "left_out_of_norms", "chart_choices",
-    "live", "live_page", "marker_set_page", "export", "viewer", "problems", "sentences", "norms", "visit", "sheet", "muscles",
+    "live", "live_page", "marker_set_page", "export", "viewer", "problems", "sentences",
+    "norms", "visit", "sheet", "muscles",
 )  # fmt: skip
 """Sections of the language files whose words are compared."""
 
