@@ -44,12 +44,19 @@ OF_SYSTEM = {
 class Refused(MbkfError):
     """A request that the page's server does not carry out.
 
+    Args:
+        status: Of the reply.
+        text: The reason, a sentence.
+        key: Text ``refused_KEY`` of the language files that the page shows instead; empty without one.
+        values: Values filled into that text.
+
     Attributes:
         status: Of the reply.
+        key, values: As given.
     """
 
-    def __init__(self, status: int, text: str) -> None:
-        self.status = status
+    def __init__(self, status: int, text: str, key: str = "", *values: str) -> None:
+        self.status, self.key, self.values = status, key, values
         super().__init__(text)
 
 
@@ -80,9 +87,11 @@ def _failure(error: MbkfError | OSError) -> tuple[int, str]:
 
 
 def failed(error: MbkfError | OSError, language: str = ENGLISH) -> Response:
-    """The reply for a foreseen error: its sentence in a language under "trouble"."""
+    """The reply for a foreseen error: its sentence under "trouble", and its key and values where it has them."""
     status, text = failure(error, language)
-    return JSONResponse({"trouble": text}, status_code=status)
+    keyed = isinstance(error, Refused) and error.key
+    own = {"key": f"refused_{error.key}", "values": list(error.values)} if keyed else {}
+    return JSONResponse({"trouble": text, **own}, status_code=status)
 
 
 def sentence(error: Exception) -> str:

@@ -11,6 +11,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from mbkf.app import answers, reports
+from mbkf.app.arranging import Arranging
 from mbkf.app.bodies import plain, stated_size, stream_body
 from mbkf.app.exports import export, session_curves
 from mbkf.app.failures import failed, language_of
@@ -42,6 +43,7 @@ def routes(workspace: Workspace, runs: Runs, live: LiveRun) -> list[BaseRoute]:
         page("/", lambda _: start_page()),
         *_session_routes(workspace, runs),
         *_trial_routes(workspace, runs),
+        *_arranging_routes(Arranging(workspace, runs, live)),
         *_report_routes(workspace),
         *_marker_set_routes(workspace),
         *_live_routes(workspace, live),
@@ -115,6 +117,18 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         change("/trial/events", events),
         download("/trial/export", exported),
     ]
+
+
+def _arranging_routes(arranging: Arranging) -> list[BaseRoute]:
+    def arrange(query: Query, _body: bytes) -> object:
+        session, trial = query["session"], query["trial"]
+        if query["do"] == "delete":
+            return arranging.delete(session, trial)
+        if query["do"] == "undo":
+            return arranging.undo(query["key"])
+        return arranging.move(session, trial, query["to_session"], query["to_trial"])
+
+    return [action("/arrange", arrange), data("/bin", lambda _: {"moved": arranging.listed()})]
 
 
 def _report_routes(workspace: Workspace) -> list[BaseRoute]:

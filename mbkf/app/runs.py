@@ -125,6 +125,37 @@ class Runs:
             self._revive()
             return self._states.get(session)
 
+    def is_busy(self, session: str) -> bool:
+        """True while a session waits or runs."""
+        state = self.state(session)
+        return state is not None and state.state in {WAITING, RUNNING}
+
+    def plain_state(self, session: str, trial: str = "") -> dict[str, object] | None:
+        """The state of a session, or that of one of its trials, as plain data; None without."""
+        state = self.state(session)
+        if state is None or (trial and trial not in state.trials):
+            return None
+        return {"trials": {trial: state.trials[trial]}} if trial else asdict(state) | {"under_way": {}}
+
+    def take(self, session: str, trial: str = "") -> None:
+        """Forgets the state of a session, or that of one of its trials."""
+        with self._changed:
+            if not trial:
+                self._states.pop(session, None)
+            elif session in self._states:
+                self._states[session].trials.pop(trial, None)
+            self._save()
+
+    def give(self, session: str, trial: str, plain: Mapping[str, object]) -> None:
+        """Puts back a state that :meth:`plain_state` gave."""
+        found = _state(plain)
+        with self._changed:
+            if trial and session in self._states:
+                self._states[session].trials |= found.trials
+            elif not trial:
+                self._states[session] = found
+            self._save()
+
     def wait(self, reached: Callable[[], bool], timeout_s: float | None = None) -> bool:
         """Waits for a condition on the states, looked at after every change; false where it is not met in time.
 
@@ -322,13 +353,19 @@ def _read(file: Path) -> dict[str, RunState]:
     """The states in a file; empty if it is missing or damaged."""
     try:
         plain = json.loads(read_state(file))
-        found = {str(name): RunState(**one) for name, one in plain.items()}
-        for state in found.values():
-            state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}
-            state.persons = {
-                str(k): [str(name) for name in names] for k, names in state.persons.items() if names
-            }
-            state.under_way = {}
-        return found
+        return {str(name): _state(one) for name, one in plain.items()}
     except (OSError, ValueError, TypeError, AttributeError):
         return {}
+
+
+def _state(plain: Mapping[str, object]) -> RunState:
+    """A state from plain data, without trials under way.
+
+    Raises:
+        ValueError, TypeError, AttributeError: The data are no state.
+    """
+    state = RunState(**plain)  # type: ignore[arg-type]
+    state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}
+    state.persons = {str(k): [str(name) for name in names] for k, names in state.persons.items() if names}
+    state.under_way = {}
+    return state

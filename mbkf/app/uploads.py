@@ -52,7 +52,7 @@ def putting(root: Path, name: str, size: int | None = None) -> Iterator[BinaryIO
         Refused: A file of this name with another content is there.
         OSError: The file cannot be written.
     """
-    target = _target(root, name)
+    target = target_of(root, name)
     target.parent.mkdir(parents=True, exist_ok=True)
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
@@ -72,8 +72,8 @@ def putting(root: Path, name: str, size: int | None = None) -> Iterator[BinaryIO
                 raise _taken(name)
 
 
-def _target(root: Path, name: str) -> Path:
-    """The place of a file in the folder.
+def target_of(root: Path, name: str) -> Path:
+    """The place of a file or folder of a name in the page's folder.
 
     Raises:
         InvalidInput: The path is not possible, or leads out of the folder.

@@ -52,3 +52,22 @@ def test_dropped_files_are_put_beside_the_others(server, cookie):
     assert (server.workspace.root / "P7" / "walk ä.c3d").read_bytes() == content
     told = plain(server, cookie, "/session?session=P7")[1]
     assert told["trials"][0]["file"] == "walk ä.c3d" and told["trials"][0]["kind"] == "walk"
+
+
+def test_a_session_is_renamed_deleted_and_comes_back(server, cookie):
+    content = (walk_folder() / "trial.c3d").read_bytes()
+    assert plain(server, cookie, "/put?file=P8/walk.c3d", "POST", content)[0] == 200
+    made = plain(server, cookie, "/arrange?do=move&session=P8&to_session=P9", "POST")[1]
+    assert made["session"] == "P9" and (server.workspace.root / "P9" / "walk.c3d").read_bytes() == content
+    assert plain(server, cookie, "/arrange?do=delete&session=P9&trial=walk", "POST")[0] == 200
+    assert plain(server, cookie, "/session?session=P9")[0] == 400
+    moved = plain(server, cookie, "/bin")[1]["moved"]
+    assert [(one["act"], one["session"], one["trial"]) for one in moved] == [
+        ("delete", "P9", "walk"),
+        ("move", "P8", ""),
+    ]
+    status, said = plain(server, cookie, "/arrange?do=move&session=P1&to_session=P9", "POST")
+    assert (status, said["key"], said["values"]) == (409, "refused_in_the_way", ["P9"])
+    for one in moved:
+        assert plain(server, cookie, f"/arrange?do=undo&key={one['key']}", "POST")[0] == 200
+    assert (server.workspace.root / "P8" / "walk.c3d").read_bytes() == content
