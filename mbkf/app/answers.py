@@ -24,10 +24,17 @@ HAS_RESULT = ("done", "unchanged")
 """Statuses of trials with a result."""
 
 
-def sessions(workspace: Workspace, runs: Runs) -> Plain:
-    """All sessions, in short."""
+def sessions(workspace: Workspace, runs: Runs, moved: list[Plain]) -> Plain:
+    """All sessions, in short.
+
+    Args:
+        workspace: The sessions.
+        runs: Their runs.
+        moved: Deletions and moves that can be undone.
+    """
     return {
         "folder": str(workspace.root),
+        "moved": moved,
         "sessions": [_in_short(workspace, runs.state(name), name) for name in workspace.sessions()],
     }
 
@@ -37,8 +44,9 @@ def _in_short(workspace: Workspace, state: RunState | None, name: str) -> Plain:
     place = workspace.place(name)
     trials = {} if state is None else state.trials
     done = [place / trial for trial, (status, _) in trials.items() if status in HAS_RESULT]
-    failed = any(status == "failed" for status, _ in trials.values())
-    return {"id": name, "run": run_state(state), "verdict": gravest_on(done, failed)}
+    failed = sum(status == "failed" for status, _ in trials.values())
+    counts = {"failed": failed, "trials": len(trials)}
+    return {"id": name, "run": run_state(state), **counts, "verdict": gravest_on(done, failed > 0)}
 
 
 def session(workspace: Workspace, runs: Runs, name: str) -> Plain:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
+from mbkf.io.session import TrialKind
 from mbkf.study.survey.session import SurveyedSession
 
 LSL, NATNET, FILE = "lsl", "natnet", "file"
@@ -25,12 +26,17 @@ MISSING = {"stream": "choose a stream", "trial": "choose a capture"}
 def live_offer(workspace: Workspace, session: str) -> dict[str, object]:
     """Choices for a live run of a session: its captures, and its body and mass where they are known.
 
+    Captures that are left out are no choice; moving ones come first, so that no standing trial is replayed unasked.
+
     Raises:
         InvalidInput: The session does not exist.
         FileFormatError: Its session file is damaged.
     """
+    found = workspace.survey(session)
+    usable = [one for one in found.trials if one.usable and not found.notes.trial(one.name).excluded]
+    usable.sort(key=lambda one: found.kind(one) == TrialKind.STATIC)
     return {
-        "captures": [one.name for one in workspace.survey(session).trials if one.usable],
+        "captures": [{"name": one.name, "file": one.path.name, "kind": found.kind(one).value} for one in usable],
         "subject": workspace.subject(session) is not None,
         "mass_kg": workspace.stated(session).mass_kg,
     }

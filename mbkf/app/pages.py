@@ -2,29 +2,49 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 
 from mbkf.app.charts import Charts
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.session import FootEvent
 from mbkf.stream.loopback import LOOPBACK
-from mbkf.viz.language import ENGLISH, languages
-from mbkf.viz.page import asset, embedded_words, fill, scripts
+from mbkf.viz.language import ENGLISH, languages, words
+from mbkf.viz.markup import paragraph, section
+from mbkf.viz.page import BLUE_RED, asset, document, embedded_words, fill, report_style, scripts
 from mbkf.viz.report.document import report_page
 
 SCRIPTS = (
-    "element.js", "app_words.js", "app_place.js", "app_merge.js", "app_live.js", "app_export.js", "app_report.js",
-    "app_session.js", "app.js",
+    "element.js", "app_words.js", "app_place.js", "app_focus.js", "app_merge.js", "app_live.js", "app_export.js",
+    "app_files.js", "app_report.js", "app_session.js", "app.js",
 )  # fmt: skip
 """Scripts of the start page, in the order they are needed."""
 
-SECTIONS = ("app", "live", "export", "problems", "chart_choices")
+SECTIONS = ("app", "live", "export", "problems", "chart_choices", "files", "help_titles")
 """Sections of the language files with the start page's texts; a key stands in one of them only."""
 
 
 def start_page() -> str:
     """The page of the sessions."""
     return fill("app.html", style=asset("app.css"), words=embedded_words(*SECTIONS), scripts=scripts(SCRIPTS))
+
+
+def help_page(language: str) -> str:
+    """Help on every step of the page, in one document that needs no network.
+
+    Args:
+        language: Its code.
+
+    Raises:
+        InvalidInput: The language does not exist.
+    """
+    titles, texts = words(language, "help_titles"), words(language, "help_texts")
+    parts = [(name, titles[f"help_{name}"], text.split("\n\n")) for name, text in texts.items()]
+    body = f"<h1>{escape(titles['help'])}</h1>" + "".join(
+        section(name, title, "".join(map(paragraph, texts))) for name, title, texts in parts
+    )
+    links = [(name, title) for name, title, _ in parts]
+    return document(language, titles["help"], report_style(BLUE_RED, "report.css"), links, body)
 
 
 def trial_report(

@@ -20,7 +20,7 @@ from mbkf.app.live_command import live_offer, live_options, recording_folder
 from mbkf.app.live_run import LiveRun
 from mbkf.app.marker_sets import MarkerSets
 from mbkf.app.notes import change_notes
-from mbkf.app.pages import live_frame_page, start_page, trial_report
+from mbkf.app.pages import help_page, live_frame_page, start_page, trial_report
 from mbkf.app.replies import Query, action, change, data, download, page
 from mbkf.app.runs import Runs
 from mbkf.app.several_persons import separate
@@ -39,18 +39,20 @@ def routes(workspace: Workspace, runs: Runs, live: LiveRun) -> list[BaseRoute]:
         runs: Their runs.
         live: The live run.
     """
+    arranging = Arranging(workspace, runs, live)
     return [
         page("/", lambda _: start_page()),
-        *_session_routes(workspace, runs),
+        page("/help", lambda query: help_page(query["language"] or ENGLISH)),
+        *_session_routes(workspace, runs, arranging),
         *_trial_routes(workspace, runs),
-        *_arranging_routes(Arranging(workspace, runs, live)),
+        *_arranging_routes(arranging),
         *_report_routes(workspace),
         *_marker_set_routes(workspace),
         *_live_routes(workspace, live),
     ]
 
 
-def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
+def _session_routes(workspace: Workspace, runs: Runs, arranging: Arranging) -> list[BaseRoute]:
     def noted(query: Query, sent: object, version: str) -> object:
         found = change_notes(workspace, query["session"], sent, version)
         return {**answers.session(workspace, runs, query["session"]), **found}
@@ -77,7 +79,7 @@ def _session_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         return JSONResponse({"put": name})
 
     return [
-        data("/sessions", lambda _: answers.sessions(workspace, runs)),
+        data("/sessions", lambda _: answers.sessions(workspace, runs, arranging.listed())),
         data("/session", lambda query: answers.session(workspace, runs, query["session"])),
         change("/session", noted),
         action("/run", run),

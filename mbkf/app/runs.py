@@ -147,7 +147,13 @@ class Runs:
             self._save()
 
     def give(self, session: str, trial: str, plain: Mapping[str, object]) -> None:
-        """Puts back a state that :meth:`plain_state` gave."""
+        """Puts a state back.
+
+        Args:
+            session: The session.
+            trial: The trial; empty for the whole session.
+            plain: As :meth:`plain_state` gave it.
+        """
         found = _state(plain)
         with self._changed:
             if trial and session in self._states:

@@ -60,7 +60,10 @@ def test_the_trials_of_the_body_are_stated_with_their_reasons(workspace):
 
 
 def test_all_sessions_in_short(workspace):
-    told = answers.sessions(workspace, States({"P1": RunState("finished")}))
+    trials = {"walk1": ("failed", "why"), "walk2": ("unchanged", "")}
+    told = answers.sessions(workspace, States({"P1": RunState("finished", trials=trials)}), [{"key": "k"}])
+    assert told["moved"] == [{"key": "k"}]
+    assert (told["sessions"][0]["failed"], told["sessions"][0]["trials"]) == (1, 2)
     assert [one["id"] for one in told["sessions"]] == ["P1"]
     assert told["sessions"][0]["run"]["state"] == "finished" and told["folder"] == str(workspace.root)
 

@@ -5,6 +5,7 @@ import pytest
 from mbkf.app.server import AppServer
 from mbkf.io.session import read_session
 from tests.studies import runs_here, study, walk_folder
+from tests.viz.browsing import until
 from tests.waiting import PATIENCE_S
 
 NAME = "<img src=x onerror=window.hit=1>'{{words}}"
@@ -55,7 +56,7 @@ def test_a_run_goes_on_while_the_page_is_loaded_again(page, lab):
     page.wait_for_selector("progress")
     page.reload()
     page.wait_for_selector("text=Done in", timeout=1e3 * PATIENCE_S)
-    assert page.locator(".status.done").count() >= 2
+    assert page.locator("td .status.done").count() >= 2
 
 
 def test_names_are_text(page, lab):
@@ -64,7 +65,7 @@ def test_names_are_text(page, lab):
     (session / f"{NAME}.c3d").write_bytes((walk_folder() / "trial.c3d").read_bytes())
     page.reload()
     page.wait_for_selector("tbody tr")
-    assert page.locator("tbody tr td").first.inner_text() == f"{NAME}.c3d"
+    assert page.locator("tbody tr td b").first.inner_text() == f"{NAME}.c3d"
     page.wait_for_timeout(200)
     assert page.evaluate("window.hit") is None and page.locator("img").count() == 0
 
@@ -79,3 +80,61 @@ def test_a_file_that_cannot_be_kept_is_told_and_the_others_are_taken(page, opene
     assert "1 files were refused" in page.locator("#told").inner_text()
     assert [path.name for path in (lab.workspace.root / "P2").iterdir()] == ["walk.c3d"]
     opened.errors[:] = [one for one in opened.errors if "400 (Bad Request)" not in one]  # the refusal itself
+
+
+def stops_at(page, key, most=80):
+    """Presses Tab until a control has the focus, which is seen; returns the presses."""
+    for presses in range(most):
+        if page.evaluate("document.activeElement.dataset.key || ''").startswith(key):
+            assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
+            return presses
+        page.keyboard.press("Tab")
+    raise AssertionError(f"{key} is not reached: {page.evaluate('document.activeElement.outerHTML')}")
+
+
+def test_the_whole_job_by_keyboard(page, lab, tmp_path):
+    source = study(tmp_path / "disk", trials=1) / "P1"
+    (source / "broken.c3d").write_bytes(b"nothing")
+    page.wait_for_selector(".drop")
+    stops_at(page, "choose true")
+    with page.expect_file_chooser() as chosen:
+        page.keyboard.press("Enter")
+    chosen.value.set_files(source)
+    page.wait_for_selector("tbody tr")
+    content = {path.name: path.read_bytes() for path in (lab.workspace.root / "P1").iterdir()}
+    stops_at(page, "run BUTTON main")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".running .bad:has-text('1 of 2 trials failed')", timeout=1e3 * PATIENCE_S)
+    assert "1 of 2 trials failed" in page.text_content("#heard")
+    badges = page.locator("button.session .status")
+    assert badges.count() == 2 and page.locator("button.session .status.done, button.session .verdict-use").count() == 0
+    stops_at(page, "menu More for broken")
+    page.keyboard.press("Enter")
+    for _ in range(2):
+        page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#told:has-text('broken was deleted')")
+    assert not (lab.workspace.root / "P1" / "broken.c3d").exists()
+    assert page.evaluate("document.activeElement.textContent") == "Undo"
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#told:has-text('broken is back')")
+    assert page.evaluate("document.activeElement.dataset.key") == "menu More for broken"
+    found = {path.name: path.read_bytes() for path in (lab.workspace.root / "P1").iterdir()}
+    assert {name: found[name] for name in content} == content
+    stops_at(page, "menu More for P1")
+    page.keyboard.press("Enter")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("dialog input[name=name]")
+    for name, reason in (("a?b", "not a possible name"), ("", "")):
+        page.keyboard.press("Control+A")
+        page.keyboard.type(name or "Q/visit 2")
+        page.keyboard.press("Enter")
+        page.wait_for_selector(f"dialog .wrong:has-text('{reason}')" if reason else "h2:has-text('Q/visit 2')")
+    page.keyboard.press("Escape")
+    stops_at(page, "run BUTTON main 1")
+    page.keyboard.press("Enter")
+    page.frame_locator("dialog iframe").locator("#gait-walk svg").first.wait_for()
+    page.keyboard.press("Escape")
+    page.locator("dialog").wait_for(state="detached")
+    until(page, "document.activeElement.id === 'session-report'")

@@ -44,8 +44,14 @@ def test_a_capture_of_the_session_is_played(workspace, lab):
 
 
 def test_what_is_stated_of_the_person_is_taken(workspace, lab):
-    assert live_offer(workspace, "P2") == {"captures": ["static", "walk1"], "subject": False, "mass_kg": None}
+    captures = [
+        {"name": "walk1", "file": "walk1.c3d", "kind": "walk"},
+        {"name": "static", "file": "static.c3d", "kind": "static"},
+    ]
+    assert live_offer(workspace, "P2") == {"captures": captures, "subject": False, "mass_kg": None}
     file = lab / "P2" / "session.toml"
+    file.write_text('[trial.walk1]\nexcluded = "stumbled"\n')
+    assert live_offer(workspace, "P2")["captures"] == captures[1:]
     file.write_text('mass_kg = 71.5\nprotocol = "reference36"\n')
     args = parsed(live_options(workspace, "P2", LSL))
     assert (args.mass, args.protocol) == (71.5, "reference36")

@@ -101,7 +101,7 @@ def test_the_frame_may_hold_the_live_page_and_nothing_else():
 
 def test_what_can_be_followed_is_offered(server, cookie, monkeypatch):
     status, offer = plain(server, cookie, "/live?session=P1")
-    assert status == 200 and offer["captures"] == ["static", "walk1"]
+    assert status == 200 and [one["name"] for one in offer["captures"]] == ["walk1", "static"]
     found = (FoundStream("<b>QTM</b>", "lab", 120.0),)
     monkeypatch.setattr(module, "marker_streams", lambda: found)
     told = {"streams": [{"name": "<b>QTM</b>", "host": "lab", "rate_hz": 120.0}]}

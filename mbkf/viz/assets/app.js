@@ -18,8 +18,9 @@ async function ask(path, options = {}, still = here(), send = fetch) {
   }
   const said = await whileHere(still, await answer.json());
   if (!answer.ok && !said.differences) {
-    tell(said.trouble, true);
-    throw new Error(said.trouble);
+    const trouble = troubleOf(said);
+    tell(trouble, true);
+    throw new Error(trouble);
   }
   return said;
 }
@@ -34,11 +35,22 @@ function write(path, options) {
 const query = (values) => new URLSearchParams(values).toString();
 const notesOf = (session) => "session?" + query({ session });
 
-function tell(text, bad = false) {
+// A reason from the server, in the page's language where it has one.
+const troubleOf = (said) => (said.key && said.key in WORDS[language].words ? word(said.key, ...said.values) : said.trouble);
+
+// A message stays until the next one where it is bad or offers something to click.
+function tell(text, bad = false, ...offers) {
   const told = place("told");
-  told.textContent = text;
+  told.replaceChildren(text, ...offers.flatMap((one) => [" ", one]));
   told.className = bad ? "bad" : "";
-  if (!bad) setTimeout(() => { if (told.textContent === text) told.textContent = ""; }, 2500);
+  if (bad || offers.length) told.append(" ", element("button", { type: "button", className: "away", ariaLabel: word("close"), onclick: () => tell("") }, "×"));
+  else setTimeout(() => { if (told.textContent === text) told.textContent = ""; }, 2500);
+}
+
+// For those who hear the page: changes of a run that eyes see in its bar.
+function announce(text) {
+  const heard = place("heard");
+  if (heard.textContent !== text) heard.textContent = text;
 }
 
 const act = {
@@ -81,24 +93,28 @@ const act = {
   view(view, trial) {
     const frame = (path, title) => element("iframe", { src: path, title });
     if (view === "session_report") sessionReport(chosen, act);
-    else if (view === "live") new LiveDialog(chosen, act).open();
+    else if (view === "help") act.dialog(word("help"), frame("help?" + query({ language }) + (trial ? `#${trial}` : ""), word("help")));
+    else if (view === "live") new LiveDialog(chosen, act, trial).open();
     else if (view === "marker_set") act.dialog(word(view), frame("marker_set?" + query({ session: chosen, language }), word(view)));
     else act.dialog(trial, frame(`trial/${view}?` + query({ session: chosen, trial, language }), `${trial}: ${word(view)}`));
   },
   dialog(title, content, tools = []) {
     const dialog = element("dialog", { onclose: () => act.leave(dialog) });
     dialog.setAttribute("aria-label", title);
+    dialog.opener = keyOf(document.activeElement);
     const close = element("button", { type: "button", onclick: () => dialog.close() }, word("close"));
     dialog.append(element("div", { className: "bar" }, element("b", {}, title), ...tools, close), content);
     document.body.append(dialog);
     dialog.showModal();
+    return dialog;
   },
   // A dialog that the person closed leaves the address; one that the page closed has left it already.
-  leave(dialog) {
+  async leave(dialog) {
     if (!dialog.isConnected) return;
     dialog.remove();
     history.replaceState(null, "", address({ session: chosen }));
-    refresh();
+    await refresh();
+    focusKey(dialog.opener);
   },
   report: () => act.open("session_report"),
   markerSet: () => act.open("marker_set"),
@@ -107,13 +123,10 @@ const act = {
 function draw(data, turn) {
   if (turn < drawn || data.id !== chosen) return; // a newer state is shown already, or another session
   drawn = turn;
-  const focused = document.activeElement, main = place("session");
-  if (main.contains(focused) && focused.tagName === "INPUT" && focused.type !== "checkbox" && shown && shown.id === data.id && document.hasFocus() && data.run && data.run.state === "running") return;
-  const at = [...main.querySelectorAll("input, select, button")].indexOf(focused);
   shown = data;
   document.title = `${titleOf(data.id)} · mbkf`;
-  main.replaceChildren(...sessionView(data, act));
-  if (at >= 0) main.querySelectorAll("input, select, button")[at]?.focus();
+  keepingFocus(() => drawParts(place("session"), data, act));
+  announce(runText(data));
   clearTimeout(timer);
   if (data.run && (data.run.state === "running" || data.run.state === "waiting")) timer = setTimeout(refresh, AGAIN_MS);
 }
@@ -128,7 +141,7 @@ function enter(session) {
   [chosen, shown] = [session, null];
   place("told").textContent = "";
   document.title = "mbkf";
-  place("session").replaceChildren();
+  forget();
 }
 
 function go(session) {
@@ -146,6 +159,7 @@ async function arrive() {
 }
 
 function lack(text) {
+  forget();
   place("session").replaceChildren(element("p", { className: "lack" }, text));
 }
 
@@ -158,7 +172,7 @@ async function refresh() {
     chosen = known.sessions[0].id;
     history.replaceState(null, "", address({ session: chosen }));
   }
-  place("sessions").replaceChildren(dropZone(), ...known.sessions.map(sessionButton));
+  keepingFocus(() => place("sessions").replaceChildren(dropZone(), sessionList(known.sessions), binList(known.moved, act)));
   if (chosen === null) lack(word("no_session"));
   else if (!known.sessions.some((one) => one.id === chosen)) {
     shown = null;
@@ -171,20 +185,35 @@ async function refresh() {
   }
 }
 
+function sessionList(sessions) {
+  return element("ul", { className: "sessions" }, ...sessions.map((one) => element("li", {}, sessionButton(one))));
+}
+
 function sessionButton(one) {
-  const state = one.run ? element("span", { className: `status ${one.run.state === "finished" ? "done" : one.run.state}` }, one.run.state === "finished" ? "✓" : one.run.state === "running" ? "…" : "") : "";
-  const button = element("button", { className: "session", type: "button", onclick: () => go(one.id) }, titleOf(one.id), one.verdict ? verdictBadge({ word: one.verdict }) : "", state);
+  const button = element("button", { className: "session", type: "button", onclick: () => go(one.id) }, element("span", {}, titleOf(one.id)), ...badges(one));
+  button.dataset.key = `session ${one.id}`;
   button.setAttribute("aria-current", String(one.id === chosen));
   return button;
+}
+
+// The state of a session in short; green only where every trial may be used.
+function badges(one) {
+  const badge = (kind, text) => element("span", { className: `status ${kind}` }, text);
+  if (one.run && one.run.state === "running") return [badge("running", word("running"))];
+  if (one.run && one.run.state === "waiting") return [badge("waiting", word("waiting_short"))];
+  const found = one.failed ? [badge("failed", word("failed_of", one.failed, one.trials))] : one.run && one.run.state === "failed" ? [badge("failed", word("failed"))] : [];
+  return one.verdict ? [...found, verdictBadge({ word: one.verdict })] : found;
 }
 
 function dropZone() {
   const pick = (folder) => {
     const input = element("input", { type: "file", multiple: true, hidden: true, webkitdirectory: folder });
     input.onchange = () => take([...input.files].map((file) => [file.webkitRelativePath || file.name, file]));
-    return [element("button", { type: "button", onclick: () => input.click() }, word(folder ? "choose_folder" : "choose_files")), input];
+    const button = element("button", { type: "button", onclick: () => input.click() }, word(folder ? "choose_folder" : "choose_files"));
+    button.dataset.key = `choose ${folder}`;
+    return [button, input];
   };
-  const zone = element("div", { className: "drop" }, word("drop"), element("div", { className: "choose" }, ...pick(true), ...pick(false)));
+  const zone = element("div", { className: "drop" }, word("drop"), " ", helpButton("add", act), element("div", { className: "choose" }, ...pick(true), ...pick(false)));
   zone.ondragover = (event) => { event.preventDefault(); zone.classList.add("over"); };
   zone.ondragleave = () => zone.classList.remove("over");
   zone.ondrop = async (event) => {
@@ -229,7 +258,7 @@ async function take(files) {
 async function put(path, file) {
   const answer = await fetch("put?" + query({ file: path }), { method: "POST", body: file }).catch(() => null);
   if (answer === null) throw new Error(word("lost"));
-  if (!answer.ok) throw new Error((await answer.json()).trouble);
+  if (!answer.ok) throw new Error(troubleOf(await answer.json()));
 }
 
 // The first of the folders that holds captures; the first one without, so that the page says so.
@@ -247,6 +276,8 @@ function chooseLanguage() {
 function start() {
   document.documentElement.lang = language;
   place("sessions").setAttribute("aria-label", word("sessions"));
+  place("help").replaceChildren(helpButton("", act));
+  forget();
   chooseLanguage();
   arrive();
 }

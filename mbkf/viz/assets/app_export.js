@@ -3,24 +3,19 @@
 
 const EXPORTS = ["c3d", "csv", "bvh", "glb", "mp4", "gif"];
 
-function exportSelect(data, one) {
-  const idle = element("option", { value: "" }, word("export"));
-  const select = element("select", { className: "export" }, idle, ...EXPORTS.map((name) => element("option", { value: name }, word(name))));
-  select.setAttribute("aria-label", word("export_as", one.name));
-  select.onchange = async () => {
-    const to = select.value, file = `${one.name}.${to}`;
-    [select.value, select.disabled, idle.textContent] = ["", true, `${to} …`]; // a film takes its time
-    tell(word("exporting", file));
+function exportMenu(data, one) {
+  const entry = (to) => [word(to), async () => {
+    const file = `${one.name}.${to}`;
+    tell(word("exporting", file)); // a film takes its time
     await download("trial/export?" + query({ session: data.id, trial: one.name, to }), file);
-    [select.disabled, idle.textContent] = [false, word("export")];
-  };
-  return select;
+  }];
+  return menu(word("export"), word("export_as", one.name), EXPORTS.map(entry));
 }
 
 async function download(path, file) {
   const still = here(), answer = await fetch(path).catch(() => null);
   if (answer === null || !answer.ok) {
-    const trouble = answer === null ? word("lost") : (await answer.json()).trouble;
+    const trouble = answer === null ? word("lost") : troubleOf(await answer.json());
     if (still()) tell(trouble, true);
     return;
   }

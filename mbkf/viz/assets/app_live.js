@@ -5,7 +5,8 @@ const LIVE_AGAIN_MS = 500;
 
 function liveSection(data, act) {
   const button = element("button", { type: "button", className: "live", onclick: () => act.open("live") }, `${word("live")} …`);
-  return element("section", {}, element("div", { className: "run" }, button, element("span", {}, word("live_hint"))));
+  button.dataset.key = "live";
+  return element("section", {}, titled("live", "live", act), element("div", { className: "run" }, button, element("span", {}, word("live_hint"))));
 }
 
 async function askLive(path, options = {}) {
@@ -17,8 +18,9 @@ async function askLive(path, options = {}) {
 }
 
 class LiveDialog {
-  constructor(session, act) {
-    Object.assign(this, { session, act });
+  // trial: the capture to rehearse with; null for any.
+  constructor(session, act, trial = null) {
+    Object.assign(this, { session, act, trial });
     this.told = element("span", { className: "told", role: "status" });
     this.stopper = element("button", { type: "button", className: "stop", hidden: true, onclick: () => this.stop() }, word("live_stop"));
     const close = element("button", { type: "button", onclick: () => this.dialog.close() }, word("close"));
@@ -28,6 +30,7 @@ class LiveDialog {
   }
 
   async open() {
+    this.dialog.opener = keyOf(document.activeElement);
     document.body.append(this.dialog);
     this.dialog.showModal();
     await this.begin();
@@ -66,12 +69,12 @@ class LiveDialog {
     const select = (name, choices) => element("select", { name }, ...choices.map(([value, text]) => element("option", { value }, text)));
     const sources = [["lsl", word("live_lsl")], ["natnet", word("live_natnet")]];
     if (offer.captures.length) sources.push(["file", word("live_file")]);
-    const source = select("source", sources), place = element("div", { className: "fields" });
+    const source = select("source", sources), captures = offer.captures.map(({ name, file, kind }) => [name, `${file} (${word(KIND_WORDS[kind])})`]), place = element("div", { className: "fields" });
     const bodies = [["standing", word("live_standing")]];
     if (offer.subject) bodies.unshift(["subject", word("live_subject")]);
     const body = select("body", bodies), note = element("p", {});
     const weigh = () => { note.textContent = body.value === "subject" ? "" : offer.mass_kg === null ? word("live_weigh") : word("live_mass", offer.mass_kg); };
-    const parts = { lsl: () => this.streams(), natnet: () => this.addresses(), file: () => [field(word("live_capture"), select("trial", offer.captures.map((name) => [name, name])))] };
+    const parts = { lsl: () => this.streams(), natnet: () => this.addresses(), file: () => [field(word("live_capture"), select("trial", captures))] };
     source.onchange = () => { this.tell(""); place.replaceChildren(...parts[source.value]()); };
     body.onchange = weigh;
     const form = element("form", { className: "live" }, field(word("live_source"), source), place, field(word("live_body"), body), note,
@@ -81,7 +84,10 @@ class LiveDialog {
       this.start(Object.fromEntries(new FormData(form)));
     };
     this.inside.replaceChildren(form);
+    const rehearsed = captures.some(([name]) => name === this.trial);
+    if (rehearsed) source.value = "file";
     source.onchange();
+    if (rehearsed) form.elements.trial.value = this.trial;
     weigh();
     source.focus();
   }

@@ -4,7 +4,7 @@
 // Counts the sessions that were shown: replies that come after the page has moved on are dropped, its messages end.
 let visit = 0;
 
-const VIEWS = ["look", "report", "session_report", "marker_set", "live"];
+const VIEWS = ["look", "report", "session_report", "marker_set", "live", "help"];
 
 const here = () => {
   const at = visit;

@@ -5,8 +5,51 @@ const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "sq
 const VERDICT_WORDS = { "use": "verdict_use", "look": "verdict_look", "do not use": "verdict_do_not_use" };
 const STAGE_WORDS = { "Reading": "stage_reading", "Following markers alone": "stage_markers", "Filtering": "stage_filtering", "Writing": "stage_writing" };
 
-function sessionView(data, act) {
-  return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data, act), run(data, act), liveSection(data, act), trials(data, act)];
+// The parts of a session, and the data that each of them shows: a part is drawn again when these change.
+const PARTS = [
+  ["heading", heading, (data) => [data.id, data.notes.name]],
+  ["person", person, (data) => [data.id, data.notes, data.version, data.standing_kg]],
+  ["problems", problemsOf, (data) => [data.id, data.problems]],
+  ["run", run, (data) => [data.id, data.run, data.scaled_from, data.trials.map((one) => one.status)]],
+  ["live", liveSection, (data) => [data.id]],
+  ["trials", trials, (data) => [data.id, data.notes, data.version, data.trials.map((one) => ({ ...one, under_way: Boolean(one.under_way) }))]],
+];
+let parts = new Map();
+
+// Draws everything anew next time, e.g. in another language.
+function forget() {
+  parts = new Map();
+  place("session").replaceChildren();
+}
+
+function drawParts(main, data, act) {
+  for (const [name, make, of] of PARTS) {
+    const state = JSON.stringify(of(data)), known = parts.get(name);
+    if (known && (known.state === state || isTyping(known.made))) continue;
+    const made = make(data, act) || element("div", { hidden: true });
+    if (known) known.made.replaceWith(made);
+    else main.append(made);
+    parts.set(name, { state, made });
+  }
+  for (const one of data.trials) {
+    const cell = main.querySelector(`[data-under-way="${CSS.escape(one.name)}"]`);
+    if (cell && one.under_way) cell.replaceChildren(underWay(one));
+  }
+}
+
+// A part with a text that is being written is left alone until that is done.
+function isTyping(part) {
+  const focused = document.activeElement;
+  return document.hasFocus() && part.contains(focused) && /^(text|number|date)$/.test(focused.type) && focused.value !== focused.defaultValue;
+}
+
+function heading(data, act) {
+  const title = data.id === "." ? data.notes.name || "·" : data.id;
+  return element("div", { className: "head title" }, element("h2", {}, title), data.id === "." ? "" : filesMenu(data.id, "", act));
+}
+
+function titled(name, help, act, ...more) {
+  return element("div", { className: "head" }, element("h3", {}, word(name)), helpButton(help, act), element("span", { className: "space" }), ...more);
 }
 
 function field(label, input) {
@@ -36,7 +79,8 @@ function person(data, act) {
     act.person(data, { [name]: value === "" ? undefined : number ? numberIn(value) : value });
   };
   form.onsubmit = (event) => event.preventDefault();
-  return element("section", {}, element("h3", {}, word("person")), form);
+  keyed(form, "person");
+  return element("section", {}, titled("person", "person", act), form);
 }
 
 function problemList(problems, act) {
@@ -49,39 +93,54 @@ function markerSetButton(act) {
 }
 
 function problemsOf(data, act) {
-  return data.problems.length ? element("section", {}, problemList(data.problems, act)) : "";
+  return data.problems.length ? element("section", {}, titled("problems", "problems", act), problemList(data.problems, act)) : "";
 }
 
 function run(data, act) {
-  const state = data.run, busy = state && (state.state === "running" || state.state === "waiting");
+  const state = data.run, busy = isBusy(state);
   const row = element("div", { className: "run" });
   row.append(element("button", { className: "main", type: "button", disabled: Boolean(busy), onclick: () => act.run("start") }, word(state && !busy ? "again" : "run")));
   if (data.trials.some((one) => one.status === "done" || one.status === "unchanged")) {
     row.append(element("button", { id: "session-report", className: "main", type: "button", onclick: act.report }, word("session_report")));
   }
-  if (!state) return element("section", {}, row);
+  const section = element("section", { className: "running" }, titled("calculation", "run", act), row);
+  if (!state) return keyed(section, "run");
   if (busy) {
     const total = Math.max(state.total, 1);
     const bar = element("progress", { max: total, value: state.done + state.share });
     bar.setAttribute("aria-label", word("trials"));
     const left = state.remaining_s === null ? "" : " · " + word("remaining", duration(state.remaining_s));
-    const said = state.state === "waiting" ? word("waiting") : state.done || state.stage ? word("of", state.done, state.total) + left : word("scaling");
-    row.append(bar, element("span", {}, said), element("button", { type: "button", onclick: () => act.run("cancel") }, word("cancel")));
+    row.append(bar, element("span", {}, runText(data) + left), element("button", { type: "button", onclick: () => act.run("cancel") }, word("cancel")));
   } else {
-    const said = { finished: () => word("finished", duration(state.seconds)), cancelled: () => word("cancelled"), failed: () => word("failed_run", state.reason) };
-    row.append(element("span", {}, said[state.state]()));
+    row.append(element("span", { className: state.state === "failed" || failedTrials(data) ? "bad" : "" }, runText(data)));
     if (state.persons.length) row.append(element("button", { type: "button", className: "separate", onclick: act.separate }, word("separate", state.persons.join(", "))));
   }
   if (!busy && data.scaled_from.length) row.append(element("span", { className: "scaled-from", title: data.scaled_why.join("\n") }, `${word("scaled_by")}: ${data.scaled_from.join(", ")}`));
-  return element("section", {}, row);
+  return keyed(section, "run");
 }
 
+const isBusy = (state) => Boolean(state) && (state.state === "running" || state.state === "waiting");
+const failedTrials = (data) => data.trials.filter((one) => one.status === "failed").length;
+
+// The state of a run in words.
+function runText(data) {
+  const state = data.run;
+  if (!state) return "";
+  if (state.state === "waiting") return word("waiting");
+  if (state.state === "running") return state.done || state.stage ? word("of", state.done, state.total) : word("scaling");
+  if (state.state === "cancelled") return word("cancelled");
+  if (state.state === "failed") return word("failed_run", state.reason);
+  const failed = failedTrials(data);
+  return failed ? word("finished_failed", duration(state.seconds), failed, data.trials.filter((one) => one.status).length) : word("finished", duration(state.seconds));
+}
+
+const COLUMNS = ["trial", "kind", "content", "use", "problems", "result"];
+
 function trials(data, act) {
-  const heads = [["trial"], ["kind"], ["length", "number"], ["markers", "number"], ["plates", "number"], ["use"], ["problems"], ["result"]];
-  const head = element("tr", {}, ...heads.map(([name, kind]) => element("th", { className: kind || "", scope: "col" }, word(name))));
+  const head = element("tr", { role: "row" }, ...COLUMNS.map((name) => element("th", { role: "columnheader", scope: "col" }, word(name))));
   const body = data.trials.map((one) => trialRow(data, one, act));
-  return element("section", {}, element("div", { className: "head" }, element("h3", {}, word("trials")), markerSetButton(act)),
-    element("div", { className: "table" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body))));
+  return element("section", {}, titled("trials", "trials", act, helpButton("kinds", act, word("help_kinds")), markerSetButton(act)),
+    element("table", { role: "table", ariaLabel: word("trials") }, element("thead", { role: "rowgroup" }, head), element("tbody", { role: "rowgroup" }, ...body)));
 }
 
 function underWay(trial) {
@@ -112,18 +171,27 @@ function trialRow(data, one, act) {
   if (one.verdict) result.append(verdictBadge(one.verdict, one.status));
   else if (one.status) result.append(element("span", { className: `status ${one.status}` }, word(one.status)));
   if (one.status === "failed") result.append(" " + one.reason);
-  if (one.under_way) result.replaceChildren(underWay(one));
+  if (one.under_way) {
+    const progress = element("div", {}, underWay(one));
+    progress.dataset.underWay = one.name;
+    result.replaceChildren(progress);
+  }
   if (one.status === "done" || one.status === "unchanged") {
     const show = (look) => element("button", { type: "button", onclick: () => act.open(look, one.name) }, word(look));
     if (one.verdict && one.verdict.reasons.length) result.append(element("details", { className: "reasons" }, element("summary", {}, word("reasons")), element("ul", {}, ...one.verdict.reasons.map((text) => element("li", {}, text)))));
-    result.append(element("div", { className: "buttons" }, show("look"), show("report"), exportSelect(data, one)));
+    result.append(element("div", { className: "buttons" }, show("look"), show("report"), exportMenu(data, one)));
   }
   if (one.live) out.replaceChildren("–");
   const seen = one.usable || one.seconds;
-  return element("tr", { className: one.excluded ? "out" : "" },
-    element("td", {}, one.file), element("td", {}, one.live ? word("live_recording") : kind),
-    element("td", { className: "number" }, seen ? word("seconds", numeral(one.seconds, 1)) : "–"),
-    element("td", { className: "number" }, seen ? String(one.markers || one.unnamed) : "–"),
-    element("td", { className: "number" }, seen ? String(one.plates ?? "–") : "–"), out,
-    element("td", {}, one.problems.length ? problemList(one.problems, act) : ""), result);
+  const content = seen ? [word("seconds", numeral(one.seconds, 1)), word("markers_count", one.markers || one.unnamed), ...(one.plates ? [word("plates_count", one.plates)] : [])].join(", ") : "–";
+  const rehearse = one.usable && !one.live && one.kind !== "static" ? [[word("rehearse"), () => act.open("live", one.name)]] : [];
+  const row = element("tr", { role: "row", className: one.excluded ? "out" : "" },
+    element("td", {}, element("b", {}, one.file), filesMenu(data.id, one.name, act, rehearse, one.live)), element("td", {}, one.live ? word("live_recording") : kind),
+    element("td", {}, content), out, element("td", {}, one.problems.length ? problemList(one.problems, act) : ""), result);
+  [...row.children].forEach((cell, k) => {
+    cell.dataset.label = word(COLUMNS[k]);
+    cell.setAttribute("role", "cell");
+    cell.classList.toggle("empty", !cell.textContent && !cell.children.length);
+  });
+  return keyed(row, `trial ${one.name}`);
 }
