@@ -51,5 +51,5 @@ def _dialogs(user: Visit, every_trial: bool) -> list[Any]:
     """Buttons of the session, and of its trials that were run, which open something."""
     of_session = ("#session-report", "button.live", "button.marker-set")
     trials = user.page.locator("td .buttons")
-    of_trials = (trials if every_trial else trials.first).locator("button").all()
+    of_trials = (trials if every_trial else trials.first).locator(":scope > button").all()
     return [*(user.page.locator(one).first for one in of_session), *of_trials]

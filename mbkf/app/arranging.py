@@ -129,20 +129,20 @@ class Arranging:
         files = [] if recorded else _files_of(folder, wanted.trial)
         if not wanted.to_session:
             moves = [self._bin.into(wanted.key, one) for one in files]
-            places = ((folder, wanted.trial, None),)
+            places = [(folder, wanted.trial, False)]
         else:
             target = self._target_of_trial(wanted, folder)
             moves = [
                 _move(self._workspace.root, one, target / _renamed(one, wanted.trial, wanted.to_trial))
                 for one in files
             ]
-            places = ((folder, wanted.trial, None), (target, wanted.to_trial, wanted.trial))
+            places = [(folder, wanted.trial, False), (target, wanted.to_trial, True)]
         stated = current_session(folder / SESSION_FILE).trial(wanted.trial)
 
         def rewrite() -> list[Rewritten]:
             return [
-                self._restated(place / SESSION_FILE, name, stated, added=was is not None)
-                for place, name, was in places
+                self._restated(place / SESSION_FILE, name, stated, added)
+                for place, name, added in places
                 if stated != TrialNotes()
             ]
 

@@ -93,7 +93,7 @@ class Bin:
             yield
 
     def key(self) -> str:
-        """A new name of a set of moves; names sort by time."""
+        """A new name of a set of moves."""
         return f"{time.strftime('%Y-%m-%d-%H%M%S')}-{secrets.token_hex(4)}"
 
     def into(self, key: str, path: Path) -> Move:
@@ -158,8 +158,9 @@ class Bin:
     def listed(self) -> list[Moved]:
         """The sets that can be undone, the newest first."""
         with suppress(OSError):
-            keys = sorted((place.name for place in self._place.iterdir()), reverse=True)
-            return [one for key in keys if (one := self._read(key)) is not None and not one.undone]
+            found = [self._read(place.name) for place in self._place.iterdir()]
+            kept = [one for one in found if one is not None and not one.undone]
+            return sorted(kept, key=lambda one: one.at_s, reverse=True)
         return []
 
     def text(self, file: str) -> str | None:

@@ -89,8 +89,9 @@ def _failure(error: MbkfError | OSError) -> tuple[int, str]:
 def failed(error: MbkfError | OSError, language: str = ENGLISH) -> Response:
     """The reply for a foreseen error: its sentence under "trouble", and its key and values where it has them."""
     status, text = failure(error, language)
-    keyed = isinstance(error, Refused) and error.key
-    own = {"key": f"refused_{error.key}", "values": list(error.values)} if keyed else {}
+    own: dict[str, object] = {}
+    if isinstance(error, Refused) and error.key:
+        own = {"key": f"refused_{error.key}", "values": list(error.values)}
     return JSONResponse({"trouble": text, **own}, status_code=status)
 
 

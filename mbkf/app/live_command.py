@@ -36,7 +36,9 @@ def live_offer(workspace: Workspace, session: str) -> dict[str, object]:
     usable = [one for one in found.trials if one.usable and not found.notes.trial(one.name).excluded]
     usable.sort(key=lambda one: found.kind(one) == TrialKind.STATIC)
     return {
-        "captures": [{"name": one.name, "file": one.path.name, "kind": found.kind(one).value} for one in usable],
+        "captures": [
+            {"name": one.name, "file": one.path.name, "kind": found.kind(one).value} for one in usable
+        ],
         "subject": workspace.subject(session) is not None,
         "mass_kg": workspace.stated(session).mass_kg,
     }

@@ -107,7 +107,10 @@ def test_the_whole_job_by_keyboard(page, lab, tmp_path):
     page.wait_for_selector(".running .bad:has-text('1 of 2 trials failed')", timeout=1e3 * PATIENCE_S)
     assert "1 of 2 trials failed" in page.text_content("#heard")
     badges = page.locator("button.session .status")
-    assert badges.count() == 2 and page.locator("button.session .status.done, button.session .verdict-use").count() == 0
+    assert (
+        badges.count() == 2
+        and page.locator("button.session .status.done, button.session .verdict-use").count() == 0
+    )
     stops_at(page, "menu More for broken")
     page.keyboard.press("Enter")
     for _ in range(2):
@@ -130,7 +133,9 @@ def test_the_whole_job_by_keyboard(page, lab, tmp_path):
         page.keyboard.press("Control+A")
         page.keyboard.type(name or "Q/visit 2")
         page.keyboard.press("Enter")
-        page.wait_for_selector(f"dialog .wrong:has-text('{reason}')" if reason else "h2:has-text('Q/visit 2')")
+        page.wait_for_selector(
+            f"dialog .wrong:has-text('{reason}')" if reason else "h2:has-text('Q/visit 2')"
+        )
     page.keyboard.press("Escape")
     stops_at(page, "run BUTTON main 1")
     page.keyboard.press("Enter")

@@ -13,7 +13,9 @@ from mbkf.trial.gait.convention import CONVENTIONS, MOMENTS
 from mbkf.viz.language import languages, words
 from mbkf.viz.page import COLOURS, asset
 
-SERVER = "".join((Path(bin.__file__).parent / f"{name}.py").read_text("utf-8") for name in ("bin", "arranging"))
+SERVER = "".join(
+    (Path(bin.__file__).parent / f"{name}.py").read_text("utf-8") for name in ("bin", "arranging")
+)
 
 SAID_BY_THE_SERVER = {
     *("done", "unchanged", "failed", "static", "walk", "squat", "jump", "unknown"),

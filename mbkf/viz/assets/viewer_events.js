@@ -23,6 +23,14 @@ class FootEvents {
     return this.shown.filter((one) => one.side === side).sort((a, b) => a.time_s - b.time_s || a.kind.localeCompare(b.kind));
   }
 
+  // Neighbours of one foot that do not alternate: strike, toe-off, strike.
+  outOfOrder() {
+    return ["right", "left"].flatMap((side) => {
+      const lane = this.of(side);
+      return lane.slice(1).map((one, k) => ({ side, kind: one.kind, from: lane[k], to: one })).filter(({ from, to }) => from.kind === to.kind);
+    });
+  }
+
   get(key) {
     return this.shown.find((one) => one.key === key);
   }

@@ -73,7 +73,8 @@ class Strip {
     const bar = (kind) => element("span", {}, element("span", { className: `contact bar ${kind}` }), " " + word(`contact_${kind}`));
     const key = element("span", { className: "key" }, sign("▼▲", "by_hand"), sign("▽△", "found"), bar("measured"), bar("estimated"));
     const keys = element("details", {}, element("summary", {}, word("keys")), element("p", { className: "hint" }, word("hint")));
-    this.place.append(element("div", { className: "tools" }, this.delete, this.undo, this.redo, this.forget, key, keys));
+    this.order = element("p", { className: "order", role: "status" });
+    this.place.append(element("div", { className: "tools" }, this.delete, this.undo, this.redo, this.forget, key, keys), this.order);
   }
 
   add(side, kind, time) {
@@ -110,6 +111,9 @@ class Strip {
     this.undo.disabled = !this.events.past.length;
     this.redo.disabled = !this.events.future.length;
     this.forget.disabled = !this.events.byHand;
+    const faults = this.events.outOfOrder(), [first] = faults, time = (one) => one.time_s.toFixed(2);
+    const text = first ? word("out_of_order", word(`${first.side}_${first.kind}`), time(first.from), time(first.to), word(`${first.side}_${first.kind === "off" ? "strike" : "off"}`), faults.length) : "";
+    if (this.order.textContent !== text) this.order.textContent = text;
   }
 
   was({ side, kind, time_s }) {
