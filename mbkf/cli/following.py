@@ -36,6 +36,10 @@ def add_following_options(parser: argparse.ArgumentParser) -> None:
     out = parser.add_argument_group("results while it runs")
     out.add_argument("--publish", metavar="NAME", help="send results as an LSL stream of this name")
     out.add_argument("--websocket", metavar="[ADDRESS:]PORT", help="serve results as JSON over WebSocket")
+    out.add_argument("--send-json", metavar="[ADDRESS:]PORT", help="send results as JSON over UDP")
+    out.add_argument(
+        "--send-osc", metavar="[ADDRESS:]PORT", help="send results as Open Sound Control over UDP"
+    )
     out.add_argument(
         "--view-address", default="127.0.0.1", metavar="ADDRESS", help="address of the page (this computer)"
     )
@@ -142,6 +146,12 @@ def sinks(
         served = WebSocketResults(setup.model, *parse_address(args.websocket), args.token)
         say(f"results: {served.url}")
         found.append(served)
+    for option, to in (("json", args.send_json), ("osc", args.send_osc)):
+        if to is not None:
+            from mbkf.stream.results.datagrams import DatagramResults
+            from mbkf.stream.results.websocket import parse_address
+
+            found.append(DatagramResults(setup.model, option, *parse_address(to, f"--send-{option}")))
     if args.view:
         from mbkf.viz.live.page import LivePage
 

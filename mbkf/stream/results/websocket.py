@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hmac
 import json
-import math
 import secrets
 import threading
 from http import HTTPStatus
@@ -17,12 +16,12 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
-from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
 from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.judgement import Judgement
+from mbkf.stream.results.message import frame_message
 from mbkf.stream.results.sending import SendingThread
 from mbkf.stream.results.values import ResultValues
 
@@ -31,15 +30,19 @@ SENT_FRAMES = 8
 """Frames that may wait to be made into text."""
 
 
-def parse_address(text: str) -> tuple[str, int]:
+def parse_address(text: str, option: str = "--websocket") -> tuple[str, int]:
     """Address and port of ``[ADDRESS:]PORT``.
+
+    Args:
+        text: Address and port.
+        option: The option that holds them, for the message.
 
     Raises:
         InvalidInput: It is not of that form.
     """
     address, _, port = text.rpartition(":")
     if not port.isdigit() or int(port) > 65535:
-        raise InvalidInput(f"--websocket '{text}': write PORT or ADDRESS:PORT")
+        raise InvalidInput(f"{option} '{text}': write PORT or ADDRESS:PORT")
     return address or LOOPBACK, int(port)
 
 
@@ -134,18 +137,7 @@ class WebSocketResults:
             return
 
     def _prepare(self, frame: LiveFrame) -> None:
-        message: dict[str, object] = {
-            "frame": frame.number,
-            "time_s": frame.time_s,
-            "tracked": frame.tracked,
-            "latency_s": frame.latency_s,
-            "lost": frame.lost,
-            "rate_hz": frame.rate_hz,
-            "valid": frame.valid,
-            "verdict": None if frame.judgement is None else frame.judgement.verdict.overall,
-            "values": _numbers(self._values.row(frame)),
-        }
-        text = json.dumps(message)
+        text = json.dumps(frame_message(frame, self._values.row(frame)))
         changed = frame.judgement is not None and frame.judgement is not self._judgement
         judged = json.dumps(frame.judgement.plain()) if changed and frame.judgement is not None else ""
         with self._changed:
@@ -154,8 +146,3 @@ class WebSocketResults:
                 self._judged_count += 1
             self._newest, self._count = text, self._count + 1
             self._changed.notify_all()
-
-
-def _numbers(values: Array) -> list[float | None]:
-    """Plain numbers, None for unknown ones."""
-    return [value if math.isfinite(value) else None for value in values.tolist()]

@@ -23,7 +23,7 @@ DEFAULT_PORT = 15100
 RATES_HZ = (1.0, 100_000.0)
 """Rates of frames and plates that a stream may state."""
 
-MOST_MARKERS, MOST_PLATES = 1000, 16
+MOST_MARKERS, MOST_PLATES = 1000, 64
 
 DESCRIBING = ("trial", "rate", "unit", "moment_unit", "up", "names", "plates", "start")
 """Keys of a description; each stays until it is sent again."""

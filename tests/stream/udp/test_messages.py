@@ -112,7 +112,7 @@ def test_what_is_not_stated_is_metres_z_up_and_the_middle_of_the_corners():
         ({"names": "A"}, '"names" is not a list'),
         ({"names": ["A", "A"]}, "twice"),
         ({"plates": [1]}, "plate 1 is not an object"),
-        ({"plates": [{}] * 17}, "at most 16"),
+        ({"plates": [{}] * 65}, "at most 64"),
         ({"plates": [{"corners": [[0, 0, 0]] * 4}]}, "no place"),
         ({"plates": [{"corners": [[0, 0]] * 4}]}, "plate 1"),
         ({"plates": [{"origin": [1e9, 0, 0]}]}, "no place"),
