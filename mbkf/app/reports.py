@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from mbkf.app.charts import Charts
+from mbkf.app.laboratory import laboratory_of
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.norms import read_norms, write_norms
@@ -26,10 +27,11 @@ Plain = dict[str, object]
 
 
 def choices(workspace: Workspace, session: str) -> Plain:
-    """Other sessions with results, and files of norms, for comparison with a session."""
+    """Other sessions with results, dated visits of the person among them, and files of norms."""
     others = [name for name in workspace.sessions() if name != session and _is_done(workspace, name)]
     return {
         "sessions": others,
+        "visits": len(_other_visits(workspace, session)),
         "norms": [path.name for path in norms_files(workspace)],
         "charts": asdict(workspace.charts),
         "chart_choices": {"convention": CONVENTIONS, "moments": MOMENTS, "colours": tuple(COLOURS)},
@@ -37,7 +39,14 @@ def choices(workspace: Workspace, session: str) -> Plain:
 
 
 def report_of(
-    workspace: Workspace, session: str, before: str, norms: str, language: str, charts: Charts | None = None
+    workspace: Workspace,
+    session: str,
+    before: str,
+    norms: str,
+    language: str,
+    charts: Charts | None = None,
+    *,
+    trend: bool = False,
 ) -> str:
     """The report of a session.
 
@@ -48,6 +57,7 @@ def report_of(
         norms: Name of a file of norms in the page's folder; empty without.
         language: Code of the report's language.
         charts: Convention and colours; None: those of the workspace.
+        trend: Whether to add the trend over all dated visits of the person.
 
     Raises:
         InvalidInput: Session, result, file of norms or language does not exist, or the norms hold this person.
@@ -67,7 +77,25 @@ def report_of(
             )
     earlier = read_whole(workspace, before, chosen.read) if before else None
     whole = read_whole(workspace, session, chosen.read)
-    return session_page(whole, earlier, bands, language, colours=chosen.colours)
+    names = _other_visits(workspace, session) if trend else []
+    visits = [read_whole(workspace, name, chosen.read) for name in names]
+    laboratory = laboratory_of(workspace)
+    return session_page(
+        whole, earlier, bands, language, colours=chosen.colours, laboratory=laboratory, visits=visits
+    )
+
+
+def _other_visits(workspace: Workspace, session: str) -> list[str]:
+    """Other sessions of the person with results and a date."""
+    person = _person(session)
+    return [
+        name
+        for name in workspace.sessions()
+        if name != session
+        and _person(name) == person
+        and workspace.stated(name).visit.date
+        and _is_done(workspace, name)
+    ]
 
 
 def read_whole(workspace: Workspace, session: str, convention: Convention) -> Session:

@@ -16,6 +16,7 @@ from mbkf.app.bodies import plain, stated_size, stream_body
 from mbkf.app.exports import export, session_curves
 from mbkf.app.failures import failed, language_of
 from mbkf.app.foot_events import set_events
+from mbkf.app.laboratory import change_laboratory, plain_laboratory
 from mbkf.app.live_command import live_offer, live_options, recording_folder
 from mbkf.app.live_run import LiveRun
 from mbkf.app.marker_sets import MarkerSets
@@ -138,7 +139,13 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
         language = query["language"] or ENGLISH
         charts = workspace.charts.chosen(query)
         return reports.report_of(
-            workspace, query["session"], query["before"], query["norms"], language, charts
+            workspace,
+            query["session"],
+            query["before"],
+            query["norms"],
+            language,
+            charts,
+            trend=bool(query["trend"]),
         )
 
     def selection(query: Query) -> object:
@@ -156,6 +163,8 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
 
     return [
         page("/report", report),
+        data("/laboratory", lambda _: plain_laboratory(workspace)),
+        action("/laboratory", lambda _, body: change_laboratory(workspace, plain(body))),
         data("/report/choices", lambda query: reports.choices(workspace, query["session"])),
         download("/report/curves", curves),
         data("/norms/selection", selection),

@@ -1,5 +1,7 @@
 """Reports in the page's folder: of what is done and not left out, compared, with norms of all sessions."""
 
+import shutil
+
 import pytest
 
 from mbkf.app import reports
@@ -9,6 +11,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.norms import read_norms
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import SessionNotes, TrialNotes
+from mbkf.io.visit import Visit
 from mbkf.study.session.norm_selection import REASONS
 from mbkf.trial.gait.convention import BY_CLINIC, BY_MODEL
 from mbkf.trial.results.summary import summarise
@@ -85,3 +88,19 @@ def test_what_is_not_there_is_told(workspace, tmp_path):
     study(tmp_path / "new", persons=1)
     with pytest.raises(InvalidInput, match="session 'P1' has no result yet"):
         reports.report_of(Workspace(tmp_path / "new"), "P1", "", "", "en")
+
+
+def test_dated_visits_of_the_person_make_a_trend(tmp_path):
+    study(tmp_path / "lab", persons=1, trials=2)
+    made = Workspace(tmp_path / "lab")
+    for day in ("monday", "tuesday", "friday"):
+        shutil.copytree(made.root / "P1", made.root / "P2" / day)
+        for k, r in enumerate(walks(2), start=1):
+            write_reconstruction(r, summarise(r), made.out / "P2" / day / f"walk{k}")
+    for day, date in (("monday", "2025-03-31"), ("tuesday", "2025-04-01")):
+        made.change(f"P2/{day}", SessionNotes(), SessionNotes(visit=Visit(date)))
+    assert reports.choices(made, "P2/friday")["visits"] == 2
+    made.change("P2/friday", SessionNotes(), SessionNotes(visit=Visit("2025-04-04")))
+    page = reports.report_of(made, "P2/friday", "", "", "en", trend=True)
+    assert 'id="trend"' in page and "<th>2025-03-31</th>" in page
+    assert 'id="trend"' not in reports.report_of(made, "P2/friday", "", "", "en")

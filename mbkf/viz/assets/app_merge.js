@@ -1,7 +1,7 @@
 // Fields that another page, person or program changed meanwhile: both values are shown, and the person chooses.
 "use strict";
 
-const FIELD_WORDS = { name: "name", mass_kg: "mass", height_m: "height", sex: "sex", age: "age", protocol: "marker_set", scaling: "scaled_by", kind: "kind", excluded: "why", event: "look" };
+const FIELD_WORDS = { name: "name", mass_kg: "mass", height_m: "height", sex: "sex", age: "age", protocol: "marker_set", scaling: "scaled_by", kind: "kind", excluded: "why", event: "look", date: "visit_date", birth_date: "birth_date", condition: "condition", side: "affected", diagnosis: "diagnosis", notes: "visit_notes", clinician: "clinician" };
 
 // choose(values): called with the chosen differences, those where the person keeps the own value.
 function differencesDialog(differences, choose, dialog) {

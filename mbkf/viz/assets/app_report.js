@@ -5,6 +5,7 @@ async function sessionReport(session, act) {
   const found = await ask("report/choices?" + query({ session }));
   const chosenBefore = choice(word("compare_with"), found.sessions, word("nothing"));
   const chosenNorms = choice(word("norms"), found.norms, word("none_of_them"));
+  const trend = element("input", { type: "checkbox" }), several = found.visits >= 2;
   const frame = element("iframe", { title: word("session_report") });
   const pick = (name, values) => {
     const select = element("select", {}, ...values.map((one) => new Option(word(one.replace("-", "_")), one)));
@@ -13,9 +14,10 @@ async function sessionReport(session, act) {
   };
   const picked = Object.entries(found.chart_choices).map(([name, values]) => [name, pick(name, values)]);
   const charts = () => Object.fromEntries(picked.map(([name, one]) => [name, one.select.value]));
-  const source = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language, ...charts() });
+  const source = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language, trend: trend.checked ? 1 : "", ...charts() });
   const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
   for (const one of [chosenBefore, chosenNorms, ...picked.map(([, one]) => one)]) one.select.onchange = () => { show(); link(); };
+  trend.onchange = () => show();
   const build = element("button", { type: "button", onclick: async () => {
     const chosen = await ask("norms/selection?" + query({ session, language }));
     const parts = [word("norms_of", chosen.persons.length, chosen.cycles), ...chosen.persons];
@@ -34,7 +36,7 @@ async function sessionReport(session, act) {
   const curves = ["csv", "parquet"].map((kind) => [kind, keep("", `${fileName(session)}-curves.${kind}`, kind.toUpperCase())]);
   const link = () => { for (const [kind, one] of curves) one.href = "report/curves?" + query({ session, as: kind, ...charts() }); };
   link();
-  act.dialog(session, frame, [chosenBefore.label, chosenNorms.label, ...picked.map(([, one]) => one.label), build, print, save, ...curves.map(([, one]) => one)]);
+  act.dialog(session, frame, [chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), build, print, save, ...curves.map(([, one]) => one)]);
   show();
 }
 

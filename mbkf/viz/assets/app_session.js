@@ -9,6 +9,7 @@ const STAGE_WORDS = { "Reading": "stage_reading", "Following markers alone": "st
 const PARTS = [
   ["heading", heading, (data) => [data.id, data.notes.name]],
   ["person", person, (data) => [data.id, data.notes, data.version, data.standing_kg]],
+  ["visit", visitSection, (data) => [data.id, data.notes, data.version, data.trials.map((one) => [one.name, one.kind, one.excluded])]],
   ["problems", problemsOf, (data) => [data.id, data.problems]],
   ["run", run, (data) => [data.id, data.run, data.scaled_from, data.trials.map((one) => one.status)]],
   ["live", liveSection, (data) => [data.id]],
@@ -40,7 +41,7 @@ function drawParts(main, data, act) {
 // A part with a text that is being written is left alone until that is done.
 function isTyping(part) {
   const focused = document.activeElement;
-  return document.hasFocus() && part.contains(focused) && /^(text|number|date)$/.test(focused.type) && focused.value !== focused.defaultValue;
+  return document.hasFocus() && part.contains(focused) && /^(text|textarea|number|date)$/.test(focused.type) && focused.value !== focused.defaultValue;
 }
 
 function heading(data, act) {

@@ -82,6 +82,7 @@ def shortened(text: str) -> str:
 
 
 def _cell(key: str, value: str, terms: Terms, own: bool = False, wide: bool = False) -> str:
-    title = key if own else words(terms.language, "visit")[key]
+    known = {**words(terms.language, "visit"), **words(terms.language, "sheet")}
+    title = key if own else known[key]
     kind = ' class="wide"' if wide else ""
     return f"<div{kind}><dt>{escape(title)}</dt><dd>{escape(value)}</dd></div>"
