@@ -19,6 +19,7 @@ from benchmarks.live import lost, synthetic
 from benchmarks.live.runs import Run, difference, play
 from benchmarks.parts import part_rows
 from benchmarks.robustness import stream_faults
+from benchmarks.streams.clients import client_rows
 from benchmarks.streams.faults import FAULTS
 from mbkf.trial.synth import synthesise, write_folder
 
@@ -44,6 +45,8 @@ def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
         yield Check(f"{trial.name}: difference from reconstruct --causal", difference(found), EQUAL, "<=")
         yield from latency(trial.name, found)
     yield from fault_rows(context, protocol)
+    if protocol == "qualisys":
+        yield from client_rows(context)
 
 
 def latency(name: str, found: Run) -> Iterator[Check]:

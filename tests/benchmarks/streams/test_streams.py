@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 
 from benchmarks import streams
+from benchmarks.checks import Context
 from benchmarks.live.runs import Run, wire_of
 from benchmarks.robustness.stream_schedule import Schedule
+from benchmarks.streams.clients import VARIABLE, client_rows
 from benchmarks.streams.faults import FAULTS
 from benchmarks.streams.wires import wire_of as player_of
 from mbkf.stream.played import played
 from tests.captures import made_capture
 from tests.stream.reading import connected, read
+from tests.waiting import until
 
 WALK = played(made_capture(140))
 
@@ -39,8 +42,7 @@ def test_a_wire_and_its_source_know_each_other(protocol):
     wire.listening()
     stream = connected(source)
     assert not wire.listening()
-    source.read(0.0)
-    assert wire.listening()
+    until(lambda: source.read(0.01) or wire.listening())
     assert wire.send(Schedule(WALK, 0).frames[7])
     (frame,) = read(source, 1)
     assert frame.number == 7 and len(frame.markers_m) == len(stream.marker_names)
@@ -50,6 +52,12 @@ def test_a_wire_and_its_source_know_each_other(protocol):
     wire.close()
     assert not wire.send(Schedule(WALK, 0).frames[8])
     source.close()
+
+
+def test_clients_that_are_not_installed_leave_their_rows_out(tmp_path, monkeypatch):
+    monkeypatch.delenv(VARIABLE, raising=False)
+    rows = list(client_rows(Context(None, tmp_path, True, None, None, 0, ())))
+    assert len(rows) == 3 and all(row.left_out for row in rows)
 
 
 def test_an_idle_process_is_subtracted(tmp_path):
