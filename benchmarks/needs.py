@@ -139,7 +139,7 @@ NEEDS: Mapping[str, Needs] = {
             "rehazenter_walk",
             "unipd_walk",
         ),
-        some_rows=("playwright",),
+        some_rows=("axe_playwright_python", "playwright"),
     ),
     "contact": Needs(captures=_MARKED),
     "double_pendulum": Needs(("matplotlib",)),

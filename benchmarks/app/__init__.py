@@ -37,7 +37,7 @@ def run(context: Context) -> list[Check]:
 def run_session(user: Visit) -> None:
     """Runs the session that a visit shows, and waits until it is done."""
     user.click("button.main")
-    user.wait("text=Done in")
+    user.wait("text=/Done in|Ended after/")
 
 
 def _fresh(folder: Path) -> Path:

@@ -57,7 +57,7 @@ def forty_rows(made: Any, out: Path, seed: int = 0) -> list[Check]:
     server.kill()
     server = Server(out / "lab")
     user = visit(made, server.url)
-    user.wait("text=Done in")
+    user.wait("text=/Done in|Ended after/")
     results = sorted((out / "lab" / "results").rglob("summary.json"))
     alone = _undisturbed(session, out)
     unlike = sum(not same(path.parent, alone[k % 2]) for k, path in enumerate(results))

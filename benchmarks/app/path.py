@@ -43,7 +43,7 @@ def path_rows(made: Any, out: Path, seed: int = 0) -> list[Check]:
         user.click(".offer button")
         user.page.wait_for_timeout(300)
         user.click("button.main")
-        user.wait("text=Done in")
+        user.wait("text=/Done in|Ended after/")
         user.click("#session-report")
         user.page.frame_locator("dialog iframe").locator("#gait-walk svg").first.wait_for()
         seconds = perf_counter() - begin

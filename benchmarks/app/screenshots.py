@@ -40,7 +40,7 @@ def take(made: Any, lab: Path, target: Path) -> None:
             user.page.locator(".offer button").first.click()
             user.page.wait_for_timeout(500)
             user.click("button.main")
-            user.wait("text=Done in")
+            user.wait("text=/Done in|Ended after/")
         user.page.set_viewport_size({"width": 1280, "height": 900})
         keep(user.page.screenshot(), target / "screenshot_app.png")
         user.click("button.marker-set")

@@ -11,6 +11,7 @@ from benchmarks.checks import Check, Context
 from benchmarks.clinic.convention import convention_rows
 from benchmarks.clinic.emg import emg_rows
 from benchmarks.clinic.norms import norms_rows
+from benchmarks.clinic.page import page_rows
 from benchmarks.clinic.scores import score_rows
 from benchmarks.clinic.words import words_rows
 from benchmarks.parts import Part, part_rows
@@ -19,6 +20,7 @@ PARTS: Mapping[str, Part] = {
     "convention": lambda context: convention_rows(context.require_data()),
     "emg": lambda context: emg_rows(context.require_data(), context.quick, context.out),
     "norms": lambda context: norms_rows(context.out),
+    "page": lambda context: page_rows(context.out, context.seed),
     "scores": lambda _: score_rows(),
     "words": lambda context: words_rows(context.require_data(), context.out),
 }
