@@ -9,6 +9,7 @@ from html import escape
 from mbkf.io.verdict import WORDS, Word, gravest
 from mbkf.study.session.records import Session, SessionTrial
 from mbkf.viz.report.verdict import KINDS
+from mbkf.viz.sentences import said
 from mbkf.viz.session.terms import Terms
 
 LETTERS_PER_LINE = 105
@@ -29,12 +30,12 @@ def warnings_box(session: Session, terms: Terms, lines: int) -> str:
     left = len(found) - kept
     more = f'<p class="more">{escape(terms.sheet("more_remarks", left))}</p>' if left else ""
     counts = Counter(trial.verdict for trial in session.trials)
-    said = ", ".join(f"{counts[word]} {_word(word, terms)}" for word in WORDS if counts[word])
+    words_of = ", ".join(f"{counts[word]} {_word(word, terms)}" for word in WORDS if counts[word])
     worst = session_word(session)
     line = terms.sheet(worst.replace(" ", "_"))
     return (
         f'<div class="verdict {KINDS[worst]}"><p class="line">{escape(line)}</p>'
-        f'<p class="parts">{escape(terms.sheet("trials_with", said))}</p>'
+        f'<p class="parts">{escape(terms.sheet("trials_with", words_of))}</p>'
         f"{f'<ul>{items}</ul>' if items else ''}{more}</div>"
     )
 
@@ -60,7 +61,7 @@ def fitting(texts: Iterable[str], lines: int) -> int:
 def _reasons(session: Session, terms: Terms) -> Iterable[tuple[str, Word]]:
     """Reasons and remarks, of the gravest trials first; trials of the same one stand together."""
     for one in session.disagreements:
-        yield one.sentence, one.word
+        yield said(one.sentence, terms.language), one.word
     together: dict[str, list[SessionTrial]] = {}
     for trial in sorted(session.trials, key=lambda one: -WORDS.index(_known(one.verdict))):
         for remark in dict.fromkeys(trial.remarks):
@@ -68,7 +69,7 @@ def _reasons(session: Session, terms: Terms) -> Iterable[tuple[str, Word]]:
     for remark, trials in together.items():
         everywhere = len(trials) == len(session.trials) > 1
         who = terms.sheet("all_trials") if everywhere else ", ".join(trial.name for trial in trials)
-        yield f"{who}: {remark}", gravest([_known(trial.verdict) for trial in trials])
+        yield f"{who}: {said(remark, terms.language)}", gravest([_known(trial.verdict) for trial in trials])
 
 
 def _known(word: str) -> Word:
