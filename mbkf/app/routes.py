@@ -26,6 +26,7 @@ from mbkf.app.replies import Query, action, change, data, download, page
 from mbkf.app.runs import Runs
 from mbkf.app.several_persons import separate
 from mbkf.app.trial_viewer import viewer_data, viewer_page
+from mbkf.app.videos import set_videos, video_data, video_route
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.lsl.discovery import marker_streams
@@ -98,7 +99,7 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
     def viewer(query: Query) -> str:
         session, trial = query["session"], query["trial"]
         others = [name for name in workspace.with_results(session) if name != trial]
-        return viewer_page(session, trial, others, shown(query))
+        return viewer_page(session, trial, others, shown(query), video_data(workspace, session, trial))
 
     def report(query: Query) -> str:
         session, trial = query["session"], query["trial"]
@@ -109,6 +110,9 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
     def events(query: Query, sent: object, version: str) -> object:
         return set_events(workspace, runs, query["session"], query["trial"], sent, version)
 
+    def videos(query: Query, sent: object, version: str) -> object:
+        return set_videos(workspace, query["session"], query["trial"], sent, version)
+
     def exported(query: Query) -> tuple[str, bytes]:
         content = export(workspace.result(query["session"], query["trial"]), query["to"])
         return f"{query['trial']}.{query['to']}", content
@@ -118,6 +122,8 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         page("/trial/report", report),
         data("/trial/recording", shown),
         change("/trial/events", events),
+        change("/trial/videos", videos),
+        video_route("/trial/video", workspace),
         download("/trial/export", exported),
     ]
 

@@ -17,7 +17,8 @@ from mbkf.viz.sentences import said
 
 SCRIPTS = (
     "element.js", "colours.js", "app_words.js", "scene.js", "plot.js", "panel.js", "player.js", "page.js",
-    "viewer_marks.js", "viewer_ghost.js", "viewer_events.js", "viewer_save.js", "viewer_strip.js", "trial_viewer.js",
+    "viewer_marks.js", "viewer_ghost.js", "viewer_events.js", "viewer_save.js", "viewer_strip.js", "viewer_video.js",
+    "trial_viewer.js",
 )  # fmt: skip
 """The page's scripts, in the order they are needed."""
 
@@ -60,7 +61,9 @@ def viewer_data(
     }
 
 
-def viewer_page(session: str, trial: str, others: Sequence[str], shown: dict[str, object]) -> str:
+def viewer_page(
+    session: str, trial: str, others: Sequence[str], shown: dict[str, object], videos: dict[str, object]
+) -> str:
     """The page.
 
     Args:
@@ -68,8 +71,9 @@ def viewer_page(session: str, trial: str, others: Sequence[str], shown: dict[str
         trial: Its name.
         others: Names of the session's other trials with results.
         shown: Of :func:`viewer_data`.
+        videos: Of :func:`mbkf.app.videos.video_data`.
     """
-    names = {"session": session, "trial": trial, "others": list(others)}
+    names = {"session": session, "trial": trial, "others": list(others), "videos": videos}
     return fill(
         "trial_viewer.html",
         style=asset("page.css") + asset("trial_viewer.css"),

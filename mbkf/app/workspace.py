@@ -139,7 +139,13 @@ class Workspace:
             before: The events that the change began from.
             after: The events with the change.
         """
-        old, new = (SessionNotes(trials={trial: TrialNotes(events=events)}) for events in (before, after))
+        return self.change_trial(session, trial, TrialNotes(events=before), TrialNotes(events=after))
+
+    def change_trial(
+        self, session: str, trial: str, before: TrialNotes, after: TrialNotes
+    ) -> ChangedSession:
+        """Lays a change of the statements about a trial over the session's file."""
+        old, new = (SessionNotes(trials={trial: notes}) for notes in (before, after))
         return self.change(session, old, new)
 
     def putting(self, name: str, size: int | None = None) -> AbstractContextManager[BinaryIO]:

@@ -21,6 +21,10 @@
     kind = "strike"
     time_s = 1.25
 
+    [[trial.walk4.video]]
+    file = "walk4_front.mp4"
+    begins_s = -0.35
+
 Everything is optional; :mod:`mbkf.io.visit` has the visit. A trial is named by its file without the suffix. Events
 are those that a user set, moved or kept; where a trial has any, they replace the detected ones.
 """
@@ -36,6 +40,7 @@ from types import MappingProxyType
 from mbkf.io import fields
 from mbkf.io.atomic import write_text
 from mbkf.io.toml import Entries, Origin, toml_text
+from mbkf.io.trial_video import VIDEO, TrialVideo, plain_videos, video_of
 from mbkf.io.visit import CONDITION, VISIT, Visit, plain_visit, visit_of
 
 SESSION_FILE = "session.toml"
@@ -94,7 +99,8 @@ _EXCLUDED = fields.text("excluded", "reason to leave it out", empty=True)
 _EVENTS = fields.part(
     "event", "strikes and toe-offs by hand, instead of the detected ones", "[[trial.NAME.event]]"
 )
-TRIAL = fields.record("trial", _KIND, _EXCLUDED, CONDITION, _EVENTS)
+_VIDEOS = fields.part("video", "videos beside the capture, that to show first", "[[trial.NAME.video]]")
+TRIAL = fields.record("trial", _KIND, _EXCLUDED, CONDITION, _EVENTS, _VIDEOS)
 """Entries of a trial in a session file."""
 
 _SIDE = fields.word("side", "foot", SIDES, required=True)
@@ -128,12 +134,14 @@ class TrialNotes:
         excluded: Reason to leave it out; empty for a trial that counts.
         events: Its events by hand; None for the detected ones.
         condition: Its condition; empty for that of the visit.
+        videos: Its videos, that to show first.
     """
 
     kind: TrialKind | None = None
     excluded: str = ""
     events: tuple[FootEvent, ...] | None = None
     condition: str = ""
+    videos: tuple[TrialVideo, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -255,6 +263,8 @@ def _plain_trial(trial: TrialNotes) -> dict[str, object]:
         found["condition"] = trial.condition
     if trial.events is not None:
         found["event"] = plain_events(trial.events)
+    if trial.videos:
+        found["video"] = plain_videos(trial.videos)
     return found
 
 
@@ -265,6 +275,7 @@ def _trial(read: Entries) -> TrialNotes:
         read.get(_EXCLUDED) or "",
         None if events is None else tuple(sorted((_event(one) for one in events), key=lambda e: e.time_s)),
         read.get(CONDITION) or "",
+        tuple(video_of(one) for one in read.list_of_tables(_VIDEOS, VIDEO) or ()),
     )
 
 

@@ -47,6 +47,7 @@ class Player {
     [this.recording, this.rate, this.playing, this.speed] = [recording, scene.rate_hz, false, 1];
     this.first = this.frame = this.position = scene.first_tracked;
     this.onDraw = null;
+    this.leader = null; // a video whose clock leads while it plays (viewer_video.js)
     this.view = new BodyScene(page.pane, scene);
     page.legend(this.view);
     this.panel = new Panel(page.column, scene.quantities, (time) => this.seek(time));
@@ -67,7 +68,7 @@ class Player {
     this.clock = element("span", { className: "clock", id: "clock" });
     this.speeds = element("select", { id: "speed", ariaLabel: word("speed") }, ...[0.1, 0.25, 0.5, 1, 2, 4].map((s) =>
       element("option", { value: s, textContent: `${shownNumber(s)}×`, selected: s === 1 })));
-    this.speeds.onchange = () => { this.speed = Number(this.speeds.value); };
+    this.speeds.onchange = () => { this.speed = Number(this.speeds.value); this.leader?.play(this.playing, this.speed); };
     const length = this.recording.frames / this.rate;
     this.span = length > 15 ? 10 : 0;
     this.spans = element("select", { id: "span", ariaLabel: word("span") }, ...[0, 5, 10, 20, 60].filter((s) => s < length).map((s) =>
@@ -89,6 +90,11 @@ class Player {
     this.button.textContent = on ? word("pause") : word("play");
     this.last = null;
     if (on && this.frame >= this.recording.frames - 1) this.go(this.first);
+    this.leader?.play(on, this.speed);
+  }
+
+  get time() {
+    return this.recording.times[0] + this.position / this.rate;
   }
 
   seek(time) {
@@ -99,6 +105,7 @@ class Player {
   go(frame) {
     this.frame = Math.min(this.recording.frames - 1, Math.max(0, frame));
     this.position = this.frame;
+    this.leader?.go(this.time);
     this.draw();
   }
 
@@ -106,8 +113,10 @@ class Player {
     if (!this.playing) return;
     const passed = this.last === null ? 0 : Math.min(0.25, (now - this.last) / 1000);
     this.last = now;
-    this.position = this.position + passed * this.speed * this.rate;
-    if (this.position >= this.recording.frames) this.position = this.first;
+    const led = this.leader?.clock(this.time) ?? null;
+    if (led === null) this.position = this.position + passed * this.speed * this.rate;
+    else this.position = (led - this.recording.times[0]) * this.rate;
+    if (this.position >= this.recording.frames) this.go(this.first);
     const frame = Math.floor(this.position);
     if (frame !== this.frame) {
       this.frame = frame;

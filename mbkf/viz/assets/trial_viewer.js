@@ -17,8 +17,13 @@ class TrialViewer {
     this.strip = new Strip(document.getElementById("strip"), player.slider, this.events, contacts, frame_s,
       () => player.recording.times[player.frame], (time) => player.seek(time));
     const address = "events?" + new URLSearchParams({ session: trial.session, trial: trial.trial });
-    this.saving = new Saving(address, { events, version }, (text, bad) => this.strip.say(text, bad), (theirs) => this.replace(theirs));
+    const say = (text, bad) => this.strip.say(text, bad), count = (list) => (list === null ? word("found") : list.length);
+    this.saving = new Saving(address, "events", { events, version }, {
+      say, take: (theirs) => this.replace(theirs), saved: ({ cycles }) => (cycles ? word("saved", ...cycles) : word("saved_later")),
+      overtaken: (theirs, mine) => word("overtaken", count(theirs), count(mine)),
+    });
     this.events.onChange = () => this.changed();
+    this.video = new TrialVideo(document.getElementById("film"), trial, player, say);
     this.others();
     player.panel.other = (q) => (this.ghost ? this.ghost.series(q) : null);
     player.onDraw = (row, time) => this.show(row, time);

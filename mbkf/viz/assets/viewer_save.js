@@ -1,31 +1,31 @@
-// Events go to the server soon after they change, one request at a time; what was not taken is said and kept.
+// Statements on a trial go to the server soon after they change, one request at a time; what was not taken is said and kept.
 "use strict";
 
 const SAVE_MS = 400, LONGEST_PARTING = 60000; // letters that a browser sends for a page that is closed
 
 class Saving {
-  // address: where to; known: {events, version} in the file; say(text, bad): tells how it went; take(events): the
-  // person prefers the events that somebody else has set.
-  constructor(address, known, say, take) {
-    Object.assign(this, { address, known, say, take, waiting: null, timer: 0, busy: false });
+  // address: where to; field: "events" or "video"; known: that field and its version in the file; say(text, bad): tells
+  // how it went; take(theirs): the person prefers those of somebody else; saved(reply), overtaken(theirs, mine): texts.
+  constructor(address, field, known, { say, take, saved, overtaken }) {
+    Object.assign(this, { address, field, known, say, take, saved, overtaken, waiting: null, timer: 0, busy: false });
     addEventListener("pagehide", () => { if (this.waiting) this.part(); });
   }
 
   part() {
-    const events = this.waiting(), whole = this.body(events);
-    this.post(whole.length < LONGEST_PARTING ? whole : JSON.stringify({ events }), { keepalive: true });
+    const mine = this.waiting(), whole = this.body(mine);
+    this.post(whole.length < LONGEST_PARTING ? whole : JSON.stringify({ [this.field]: mine }), { keepalive: true });
   }
 
-  // events(): those to send, asked for when they are sent.
-  soon(events) {
-    this.waiting = events;
+  // mine(): those to send, asked for when they are sent.
+  soon(mine) {
+    this.waiting = mine;
     this.say(word("saving"));
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.now(), SAVE_MS);
   }
 
-  body(events) {
-    return JSON.stringify({ base: this.known.events, events });
+  body(mine) {
+    return JSON.stringify({ base: this.known[this.field], [this.field]: mine });
   }
 
   post(body, options = {}) {
@@ -34,16 +34,16 @@ class Saving {
 
   async now() {
     if (this.busy || !this.waiting) return;
-    const events = this.waiting;
+    const mine = this.waiting;
     [this.busy, this.waiting] = [true, null];
     try {
-      const answer = await this.post(this.body(events())), said = await answer.json();
+      const answer = await this.post(this.body(mine())), said = await answer.json();
       if (!answer.ok && !said.differences) throw new Error(said.trouble);
-      this.known = { events: said.events, version: said.version };
-      if (said.differences) this.differ(said, events);
-      else if (!this.waiting) this.say(said.cycles ? word("saved", ...said.cycles) : word("saved_later"));
+      this.known = { [this.field]: said[this.field], version: said.version };
+      if (said.differences) this.differ(said, mine);
+      else if (!this.waiting) this.say(this.saved(said));
     } catch (error) {
-      this.waiting = this.waiting || events;
+      this.waiting = this.waiting || mine;
       this.say(word("not_saved", error instanceof TypeError ? word("lost") : error.message), true);
       this.busy = false;
       return;
@@ -52,15 +52,14 @@ class Saving {
     if (this.waiting) this.now();
   }
 
-  // Somebody else has set other events since this page loaded its own.
-  differ(said, events) {
-    const count = (list) => (list === null ? word("found") : list.length);
-    const mine = this.waiting || events;
-    if (confirm(word("overtaken", count(said.events), count(mine())))) this.waiting = mine;
+  // Somebody else has set others since this page loaded its own.
+  differ(said, sent) {
+    const theirs = said[this.field], mine = this.waiting || sent;
+    if (confirm(this.overtaken(theirs, mine()))) this.waiting = mine;
     else {
       this.waiting = null;
-      this.take(said.events);
-      this.say(said.cycles ? word("saved", ...said.cycles) : word("saved_later"));
+      this.take(theirs);
+      this.say(this.saved(said));
     }
   }
 }
