@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +44,7 @@ def numbered_video(path: Path, seconds: float) -> Path:
     import av
 
     with av.open(str(path), "w") as file:
-        stream = file.add_stream(CODECS[path.suffix], rate=VIDEO_HZ)
+        stream: Any = file.add_stream(CODECS[path.suffix], rate=VIDEO_HZ)
         stream.width, stream.height, stream.pix_fmt = BITS * CELL_PX, HEIGHT_PX, "yuv420p"
         stream.codec_context.gop_size = VIDEO_HZ
         stream.codec_context.time_base = Fraction(1, VIDEO_HZ)

@@ -8,7 +8,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from mbkf.io import body_covariance, inertia, laboratory, norms, preset, session, subject, visit
+from mbkf.io import body_covariance, inertia, laboratory, norms, preset, session, subject, trial_video, visit
 from mbkf.io.fields import Record
 from mbkf.io.imu import mount
 from mbkf.study.batch import lists
@@ -17,6 +17,7 @@ RECORDS: dict[str, Record] = {
     "session": session.SESSION,
     "session-trial": session.TRIAL,
     "session-event": session.EVENT,
+    "session-video": trial_video.VIDEO,
     "session-visit": visit.VISIT,
     "laboratory": laboratory.LABORATORY,
     "list-csv": lists.CSV_LIST,

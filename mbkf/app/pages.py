@@ -13,6 +13,7 @@ from mbkf.viz.language import ENGLISH, languages, words
 from mbkf.viz.markup import paragraph, section
 from mbkf.viz.page import BLUE_RED, asset, document, embedded_words, fill, report_style, scripts
 from mbkf.viz.report.document import report_page
+from mbkf.viz.report.video import LinkedVideo
 
 SCRIPTS = (
     "element.js", "app_words.js", "app_place.js", "app_focus.js", "app_merge.js", "app_live.js", "app_export.js",
@@ -48,7 +49,11 @@ def help_page(language: str) -> str:
 
 
 def trial_report(
-    folder: Path, charts: Charts, events: tuple[FootEvent, ...] | None = None, language: str = ENGLISH
+    folder: Path,
+    charts: Charts,
+    events: tuple[FootEvent, ...] | None = None,
+    language: str = ENGLISH,
+    video: LinkedVideo | None = None,
 ) -> str:
     """The report on a trial's result.
 
@@ -57,6 +62,7 @@ def trial_report(
         charts: Convention and colours.
         events: Strikes and toe-offs set by hand; None for the detected ones.
         language: Code of its language.
+        video: A video of the trial; None without.
 
     Raises:
         FileFormatError: The result is damaged.
@@ -69,6 +75,7 @@ def trial_report(
         convention=charts.read,
         colours=charts.colours,
         language=language,
+        video=video,
     )
 
 

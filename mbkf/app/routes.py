@@ -26,7 +26,7 @@ from mbkf.app.replies import Query, action, change, data, download, page
 from mbkf.app.runs import Runs
 from mbkf.app.several_persons import separate
 from mbkf.app.trial_viewer import viewer_data, viewer_page
-from mbkf.app.videos import set_videos, video_data, video_route
+from mbkf.app.videos import linked_video, set_videos, video_data, video_route
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.lsl.discovery import marker_streams
@@ -105,7 +105,9 @@ def _trial_routes(workspace: Workspace, runs: Runs) -> list[BaseRoute]:
         session, trial = query["session"], query["trial"]
         charts = workspace.charts.chosen(query)
         events = workspace.events(session, trial)
-        return trial_report(workspace.result(session, trial), charts, events, query["language"] or ENGLISH)
+        video = linked_video(workspace, session, trial, bool(query["save"]))
+        language = query["language"] or ENGLISH
+        return trial_report(workspace.result(session, trial), charts, events, language, video)
 
     def events(query: Query, sent: object, version: str) -> object:
         return set_events(workspace, runs, query["session"], query["trial"], sent, version)

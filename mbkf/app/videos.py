@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from urllib.parse import urlencode
 
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
@@ -18,6 +19,7 @@ from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.session import TrialNotes, session_of
 from mbkf.io.session_change import version_of
 from mbkf.io.trial_video import VIDEO_TYPES, TrialVideo, named_after, plain_videos, shown_video, videos_in
+from mbkf.viz.report.video import LinkedVideo
 
 MOST_VIDEOS = 100
 """Most videos that are stated for one trial; a laboratory has a dozen cameras."""
@@ -52,6 +54,26 @@ def video_data(workspace: Workspace, session: str, trial: str) -> Plain:
         "version": version_of(plain_videos(stated)),
         "shown": None if shown is None else plain_videos([shown])[0],
     }
+
+
+def linked_video(workspace: Workspace, session: str, trial: str, saved: bool) -> LinkedVideo | None:
+    """The video of a trial for its report; None without one.
+
+    Args:
+        workspace: The sessions.
+        session: The trial's session.
+        trial: Its name.
+        saved: Whether the report is to be saved as a file, which finds the video beside it.
+
+    Raises:
+        InvalidInput: The session does not exist.
+        FileFormatError: Its file is damaged.
+    """
+    there = videos_in(workspace.folder(session))
+    shown = shown_video(trial, workspace.notes(session).trial(trial).videos, there)
+    if shown is None or saved:
+        return None if shown is None else LinkedVideo.beside(shown)
+    return LinkedVideo(shown, "video?" + urlencode({"session": session, "file": shown.file}))
 
 
 def set_videos(workspace: Workspace, session: str, trial: str, sent: object, version: str) -> Plain:
@@ -104,7 +126,9 @@ def video_route(path: str, workspace: Workspace) -> Route:
     def found(session: str, name: str) -> Path:
         folder = workspace.folder(session)
         if name not in videos_in(folder):
-            raise Refused(NOT_FOUND, "this video is not beside the captures; put it there, or choose another one")
+            raise Refused(
+                NOT_FOUND, "this video is not beside the captures; put it there, or choose another one"
+            )
         return folder / name
 
     async def endpoint(request: Request) -> Response:

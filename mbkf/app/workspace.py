@@ -141,10 +141,15 @@ class Workspace:
         """
         return self.change_trial(session, trial, TrialNotes(events=before), TrialNotes(events=after))
 
-    def change_trial(
-        self, session: str, trial: str, before: TrialNotes, after: TrialNotes
-    ) -> ChangedSession:
-        """Lays a change of the statements about a trial over the session's file."""
+    def change_trial(self, session: str, trial: str, before: TrialNotes, after: TrialNotes) -> ChangedSession:
+        """Lays a change of the statements about a trial over the session's file.
+
+        Args:
+            session: Name of the session.
+            trial: Name of the trial.
+            before: The statements that the change began from.
+            after: The statements with the change.
+        """
         old, new = (SessionNotes(trials={trial: notes}) for notes in (before, after))
         return self.change(session, old, new)
 

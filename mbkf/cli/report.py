@@ -1,9 +1,10 @@
 """Write a page about a result or a session: quality, gait, angles, torques, reactions.
 
-The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait,
-angles, torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait
-cycle with means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and changes against an earlier
-session with 95 % intervals. It begins with two printed pages that state the visit ([visit] of session.toml).
+The page holds everything and loads nothing, except a video of the trial that lies beside it. Of one trial: markers,
+residuals, gaps and remarks first, then gait, angles, torques, reactions and settings. Of a session (a folder with
+several results, or several folders): every gait cycle with means, powers, jumps and squats, the laboratory's norms
+('mbkf norms build'), and changes against an earlier session with 95 % intervals. It
+begins with two printed pages that state the visit ([visit] of session.toml).
 
 Examples:
   mbkf report result                         one trial: writes result/report.html
@@ -111,6 +112,7 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
     from mbkf.io.results_folder import read_reconstruction, read_summary
     from mbkf.viz.language import ENGLISH
     from mbkf.viz.report.document import labels_of, read_labels, report_page
+    from mbkf.viz.report.video import video_beside
 
     result = read_reconstruction(folder)
     labels = labels_of(folder, result.trial) if args.labels is None else read_labels(args.labels)
@@ -122,6 +124,7 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
         convention=_convention(args),
         colours=args.colours,
         language=args.language or ENGLISH,
+        video=video_beside(out.parent, result.trial),
     )
     write_text(out, page)
     print(out)

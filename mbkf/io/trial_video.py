@@ -1,8 +1,8 @@
 """Videos of a trial: files beside its captures, and the time of the capture at which each begins.
 
-    [[trial.walk3.video]]
-    file = "walk3_front.mp4"
-    begins_s = -0.35
+[[trial.walk3.video]]
+file = "walk3_front.mp4"
+begins_s = -0.35
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mbkf.io import fields
+from mbkf.io.files_read import place_of
 from mbkf.io.toml import Entries
 
 VIDEO_TYPES = {
@@ -67,9 +68,9 @@ def videos_in(folder: Path) -> tuple[str, ...]:
     """
     if not folder.is_dir():
         return ()
-    place = folder.resolve()
+    place = place_of(folder)
     found = (one for one in folder.iterdir() if one.suffix.lower() in VIDEO_TYPES and one.is_file())
-    return tuple(sorted(one.name for one in found if one.resolve().parent == place))
+    return tuple(sorted(one.name for one in found if place_of(one).parent == place))
 
 
 def named_after(trial: str, videos: Iterable[str]) -> tuple[str, ...]:

@@ -35,7 +35,14 @@ def page(recording: dict[str, object] | None = None) -> str:
     )
 
 
-def document(language: str, title: str, style: str, sections: Iterable[tuple[str, str]], body: str) -> str:
+def document(
+    language: str,
+    title: str,
+    style: str,
+    sections: Iterable[tuple[str, str]],
+    body: str,
+    media: str = "'none'",
+) -> str:
     """A report: a page without scripts, with links to its sections; texts of the library are said in its language.
 
     Args:
@@ -44,9 +51,13 @@ def document(language: str, title: str, style: str, sections: Iterable[tuple[str
         style: Style sheets, one after another.
         sections: Identifier and title of each section that the page links to.
         body: Heading and sections, HTML.
+        media: Sources of videos that the page may load, as a content security policy names them.
     """
     links = "".join(f'<a href="#{name}">{escape(text)}</a>' for name, text in sections)
-    page = fill("report.html", language=language, title=escape(title), style=style, links=links, body=body)
+    page = fill(
+        "report.html",
+        language=language, title=escape(title), style=style, links=links, body=body, media=media,
+    )  # fmt: skip
     return translated(page, language)
 
 

@@ -37,11 +37,16 @@ def test_the_data_are_the_result_s_and_tell_found_from_set(folder):
 
 def test_the_page_is_one_text_that_loads_nothing(folder):
     name = "</script><b>x"
-    page = viewer_page("P1", name, ["<i>other"], viewer_data(folder))
+    page = viewer_page("P1", name, ["<i>other"], viewer_data(folder), {"files": []})
     assert "{{" not in page.split("<script>")[0] and name not in page and "<i>other" not in page
     assert re.findall(r"<(?:script|img|iframe|link)[^>]*\b(?:src|href)=[\"'](?!data:)", page) == []
     (told,) = re.findall(r'id="viewer">(.*?)</script>', page)
-    assert json.loads(told) == {"session": "P1", "trial": name, "others": ["<i>other"]}
+    assert json.loads(told) == {
+        "session": "P1",
+        "trial": name,
+        "others": ["<i>other"],
+        "videos": {"files": []},
+    }
 
 
 def test_texts_become_no_markup():

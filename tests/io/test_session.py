@@ -25,6 +25,7 @@ from mbkf.io.session import (
     write_session,
 )
 from mbkf.io.visit import AFFECTED, VISIT, Visit
+from mbkf.io.trial_video import TrialVideo
 
 TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
 EVENTS = st.builds(
@@ -33,12 +34,18 @@ EVENTS = st.builds(
     st.sampled_from(EventKind),
     st.floats(allow_nan=False, allow_infinity=False),
 )
+VIDEOS = st.builds(
+    TrialVideo,
+    TEXTS.filter(bool),
+    st.floats(-1e4, 1e4).map(lambda found: round(found, 2)),
+)
 TRIALS = st.builds(
     TrialNotes,
     st.none() | st.sampled_from(TrialKind),
     TEXTS,
     st.none() | st.lists(EVENTS, max_size=4).map(lambda found: tuple(sorted(found, key=lambda e: e.time_s))),
     TEXTS,
+    st.lists(VIDEOS, max_size=2).map(tuple),
 ).filter(lambda trial: trial != TrialNotes())
 DAYS = st.just("") | st.dates(date(1850, 1, 1)).map(date.isoformat)
 OWN = st.dictionaries(

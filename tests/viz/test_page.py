@@ -38,7 +38,9 @@ def test_embedded_data_come_back_whatever_they_contain():
 
 
 def test_a_part_that_looks_like_a_place_stays_as_it_is():
-    text = fill("report.html", language="en", title="{{body}}", style="", links="", body="<p>{{style}}</p>")
+    text = fill(
+        "report.html", language="en", title="{{body}}", style="", links="", media="", body="<p>{{style}}</p>"
+    )
     assert "<title>{{body}}</title>" in text and "<p>{{style}}</p>" in text
     with pytest.raises(KeyError):
         fill("report.html", language="en")

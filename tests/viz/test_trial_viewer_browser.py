@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.clinic.made_video import READ_NUMBER, VIDEO_HZ, numbered_video
 from mbkf.app.server import AppServer
 from mbkf.io.results_folder import write_result_files
 from mbkf.io.session import SESSION_FILE, EventKind, FootEvent, read_session
@@ -224,3 +225,35 @@ def test_measured_and_estimated_loads_look_different(page):
     page.get_by_label("Pressure, measured").uncheck()
     assert page.evaluate(seen)[0] == [False, False]
     assert page.locator(".contact.measured").count() > 2
+
+
+def test_a_video_follows_the_time_of_the_trial_from_its_begin_on(opened, server):
+    session = server.workspace.root / "P1"
+    numbered_video(session / "walk2.webm", 2.0)
+    numbered_video(session / "raw.avi", 0.2)
+    with opened(server.url) as page:
+        page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P1&trial=walk2")
+        until(page, "Boolean(window.viewer && viewer.video && viewer.video.usable)")
+        page.locator("#begins-s").fill("0.57")
+        page.locator("#begins-s").press("Tab")
+        until(
+            page,
+            "!viewer.video.saving.waiting && !viewer.video.saving.busy && viewer.video.saving.known.video[0]",
+        )
+        (kept,) = read_session(session / SESSION_FILE).trial("walk2").videos
+        assert (kept.file, kept.begins_s) == ("walk2.webm", 0.57)
+        page.evaluate("mbkf.seek(0.3)")
+        assert page.evaluate("viewer.video.note.textContent") == "The video begins later."
+        for time in (1.01, 1.94, 1.26):
+            page.evaluate(f"mbkf.seek({time})")
+            until(page, "!viewer.video.video.seeking")
+            number = int((page.evaluate("mbkf.time") - 0.57) * VIDEO_HZ)
+            until(page, f"({READ_NUMBER})() === {number}")
+        page.evaluate("mbkf.play(true)")
+        until(page, "mbkf.time > 1.5 && !viewer.video.video.paused")
+        page.evaluate("mbkf.play(false)")
+        assert page.evaluate("viewer.video.video.paused")
+        assert page.evaluate("Math.abs(mbkf.time - 0.57 - viewer.video.video.currentTime)") < 1.0 / VIDEO_HZ
+        page.locator("#video").select_option("raw.avi")
+        until(page, "viewer.video.note.textContent.includes('raw.avi')")
+        until(page, "viewer.video.saving.known.video[0].file === 'raw.avi'")

@@ -96,7 +96,11 @@ const act = {
     else if (view === "help") act.dialog(word("help"), frame("help?" + query({ language }) + (trial ? `#${trial}` : ""), word("help")));
     else if (view === "live") new LiveDialog(chosen, act, trial).open();
     else if (view === "marker_set") act.dialog(word(view), frame("marker_set?" + query({ session: chosen, language }), word(view)));
-    else act.dialog(trial, frame(`trial/${view}?` + query({ session: chosen, trial, language }), `${trial}: ${word(view)}`));
+    else {
+      const asked = { session: chosen, trial, language }, kept = `trial/report?${query({ ...asked, save: 1 })}`;
+      const save = element("a", { className: "button", href: kept, download: `${trial}.html` }, word("save"));
+      act.dialog(trial, frame(`trial/${view}?` + query(asked), `${trial}: ${word(view)}`), view === "report" ? [save] : []);
+    }
   },
   dialog(title, content, tools = []) {
     const dialog = element("dialog", { onclose: () => act.leave(dialog) });

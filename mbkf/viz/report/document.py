@@ -29,6 +29,7 @@ from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
 from mbkf.viz.report.trunk import trunk_section
 from mbkf.viz.report.verdict import verdict_banner
+from mbkf.viz.report.video import MEDIA, LinkedVideo, video_section
 from mbkf.viz.sentences import said
 
 ANGLES_READ = {
@@ -39,7 +40,8 @@ ANGLES_READ = {
 
 NAVIGATION = (
     ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("trunk", "Trunk"),
-    ("reactions", "Reactions"), ("contacts", "Contacts"), ("emg", "EMG"), ("settings", "Settings"),
+    ("reactions", "Reactions"), ("contacts", "Contacts"), ("emg", "EMG"), ("video", "Video"),
+    ("settings", "Settings"),
 )  # fmt: skip
 
 
@@ -51,6 +53,7 @@ def report_page(
     convention: Convention | None = None,
     colours: str = BLUE_RED,
     language: str = ENGLISH,
+    video: LinkedVideo | None = None,
 ) -> str:
     """The report.
 
@@ -62,6 +65,7 @@ def report_page(
         convention: Axes and signs of curves; None: the one that the result was reconstructed with.
         colours: Of right and left, one of :data:`mbkf.viz.page.COLOURS`.
         language: Code of the language; texts are written in English here, and said in it by the page.
+        video: A video to show; None without.
     """
     r, convention = reconstruction, convention or convention_of_result(reconstruction)
     gait = find_gait(r, by_hand) if r.tracked.any() else None
@@ -69,11 +73,13 @@ def report_page(
     if r.tracked.any():
         sections += [gait_section(gait, r.times_s), motion_section(r, gait, convention), trunk_section(r)]
         sections += [reaction_section(r, gait), contact_section(r), emg_section(r)]
+    sections += [] if video is None else [video_section(video, language)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)
+    media = "'none'" if video is None else MEDIA
     return document(
-        language, f"{r.trial} · {said('report', language)}", report_style(colours, "report.css"), there, body
+        language, f"{r.trial} · {said('report', language)}", report_style(colours, "report.css"), there, body, media
     )
 
 
