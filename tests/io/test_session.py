@@ -24,8 +24,8 @@ from mbkf.io.session import (
     session_of,
     write_session,
 )
-from mbkf.io.visit import AFFECTED, VISIT, Visit
 from mbkf.io.trial_video import TrialVideo
+from mbkf.io.visit import AFFECTED, VISIT, Visit
 
 TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
 EVENTS = st.builds(
