@@ -79,11 +79,12 @@ def report_page(
     body = _heading(r) + verdict_banner(verdict_of(r)) + "".join(sections)
     media = "'none'" if video is None else MEDIA
     return document(
-<<<<<<< HEAD
-        language, f"{r.trial} · {said('report', language)}", report_style(colours, "report.css"), there, body, media
-=======
-        language, f"{r.trial} · mbkf report", report_style(colours, "report.css"), there, body, media
->>>>>>> 8d45e08a (Trial reports: layout)
+        language,
+        f"{r.trial} · {said('report', language)}",
+        report_style(colours, "report.css"),
+        there,
+        body,
+        media,
     )
 
 
