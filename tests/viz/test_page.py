@@ -25,7 +25,7 @@ def test_all_scripts_and_the_viewer_are_inside():
     for name in SCRIPTS:
         assert asset(name).splitlines()[0] in text
     assert "MeshCat" in text
-    assert text.count("</script>") == 2, "markup inside a script would end it"
+    assert text.count("</script>") == 3, "markup inside a script would end it"
     assert "MIT License" in text, "the viewer's licence travels with it"
 
 
@@ -41,14 +41,18 @@ def test_a_part_that_looks_like_a_place_stays_as_it_is():
     text = fill(
         "report.html", language="en", title="{{body}}", style="", links="", media="", body="<p>{{style}}</p>"
     )
-    assert "<title>{{body}}</title>" in text and "<p>{{style}}</p>" in text
+    assert '<title translate="no">{{body}}</title>' in text and "<p>{{style}}</p>" in text
     with pytest.raises(KeyError):
         fill("report.html", language="en")
 
 
 def test_a_report_has_no_script_and_links_its_sections():
     text = document("es", "a <b>", "p {}", [("one", "One & two")], "<h1>x</h1>")
-    assert "<title>a &lt;b&gt;</title>" in text and '<html lang="es">' in text and "<h1>x</h1>" in text
+    assert (
+        '<title translate="no">a &lt;b&gt;</title>' in text
+        and '<html lang="es">' in text
+        and "<h1>x</h1>" in text
+    )
     assert (
         '<a href="#one">One &amp; two</a>' in text and "<script" not in text and "default-src 'none'" in text
     )
