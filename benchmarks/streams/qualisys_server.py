@@ -20,7 +20,7 @@ from mbkf.io.plate_corners import plate_axes
 from mbkf.stream.played import Played, PlayedFrame
 
 KNOWN_VERSIONS = tuple(f"1.{minor}" for minor in range(26))
-CAMERAS_CHANGED, CAPTURE_STARTED, CAPTURE_STOPPED = 11, 3, 4
+CAMERAS_CHANGED = 11
 COMPONENTS = {
     "3d": 1, "3dnolabels": 2, "analog": 3, "force": 4, "6d": 5, "6deuler": 6, "3dres": 9, "3dnolabelsres": 10,
 }  # fmt: skip
@@ -335,42 +335,3 @@ def _points(points_m: Array, residuals: bool, ids: bool) -> bytes:
         rows[:, 3] = np.arange(1, len(rows) + 1, dtype="<i4").view("<f4")
     rows.view("<u4")[np.isnan(points_m).any(axis=1), :3] = 0xFFFFFFFF
     return struct.pack("<Ihh", len(rows), 0, 0) + rows.tobytes()
-
-
-class Discovery:
-    """Answers broadcasts by which clients look for servers."""
-
-    def __init__(self, base_port: int, address: str = "", port: int = 22226) -> None:
-        """Listens for broadcasts.
-
-        Args:
-            base_port: The port to answer with.
-            address: Where to listen.
-            port: Likewise.
-        """
-        self._base_port = base_port
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        self._socket.bind((address, port))
-        self.port = self._socket.getsockname()[1]
-        self._socket.settimeout(0.1)
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self._thread.start()
-
-    def _run(self) -> None:
-        text = b"SIMULATOR, QTM 2.17 (build 4000), 8 cameras\0"
-        while not self._closing.is_set():
-            try:
-                data, (host, _) = self._socket.recvfrom(1024)
-            except TimeoutError:
-                continue
-            if len(data) >= 10 and struct.unpack_from("<II", data) == (10, 7):
-                reply = struct.pack("<II", 8 + len(text) + 2, 1) + text + struct.pack(">H", self._base_port)
-                self._socket.sendto(reply, (host, struct.unpack_from(">H", data, 8)[0]))
-
-    def close(self) -> None:
-        """Answers no more."""
-        self._closing.set()
-        self._thread.join()
-        self._socket.close()
