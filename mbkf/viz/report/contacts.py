@@ -9,9 +9,11 @@ import numpy as np
 
 from mbkf.io.contacts import ContactInterval, bearing
 from mbkf.io.results import Reconstruction
+from mbkf.trial.gait.facing import facing
 from mbkf.trial.verdict.judge import verdict_of
 from mbkf.viz.markup import folded, key, paragraph, section, table
-from mbkf.viz.report.motion import Cell, charts, facing, force_cells, is_long, time_chart
+from mbkf.viz.report.cells import Cell, force_cells
+from mbkf.viz.report.motion import charts, is_long, time_chart
 from mbkf.viz.report.spreads import Curve, band_key
 from mbkf.viz.svg import Bar, bar_chart, number
 from mbkf.viz.wording import part_wording

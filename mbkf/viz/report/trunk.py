@@ -8,7 +8,8 @@ from mbkf.conventions import Array
 from mbkf.io.dimensions import AXES
 from mbkf.io.results import Reconstruction
 from mbkf.viz.markup import folded, key, paragraph, section, table
-from mbkf.viz.report.motion import Cell, charts, is_long, time_chart
+from mbkf.viz.report.cells import Cell
+from mbkf.viz.report.motion import charts, is_long, time_chart
 from mbkf.viz.report.spreads import Curve
 from mbkf.viz.svg import number
 from mbkf.viz.wording import TRUNK_POSITIVE

@@ -24,7 +24,7 @@ from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH, words
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.page import BLUE_RED, document, report_style
-from mbkf.viz.report.motion import JointNames, joint_names
+from mbkf.viz.report.cells import JointNames, joint_names
 from mbkf.viz.session.charts import (
     Shown,
     angle_rows,

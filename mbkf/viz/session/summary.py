@@ -17,7 +17,7 @@ from mbkf.study.session.means import Mean
 from mbkf.study.session.records import MovementGroup, Session
 from mbkf.study.session.scores import VARIABLES
 from mbkf.viz.markup import Html, paragraph, table
-from mbkf.viz.report.motion import joint_names
+from mbkf.viz.report.cells import joint_names
 from mbkf.viz.session.charts import Shown, joint_rows, legend, session_chart
 from mbkf.viz.session.letterhead import condition_name, letterhead
 from mbkf.viz.session.norms import norms_at_speed, norms_in_report

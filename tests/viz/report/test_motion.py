@@ -8,15 +8,8 @@ import pytest
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
 from mbkf.trial.gait.cycles import find_gait
-from mbkf.viz.report.motion import (
-    angle_cells,
-    cycle_chart,
-    joint_names,
-    motion_section,
-    reaction_cells,
-    reaction_section,
-    torque_cells,
-)
+from mbkf.viz.report.cells import angle_cells, joint_names, reaction_cells, torque_cells
+from mbkf.viz.report.motion import cycle_chart, motion_section, reaction_section
 from tests.motions import assert_near
 from tests.recordings import walk
 

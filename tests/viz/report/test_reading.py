@@ -6,7 +6,7 @@ import numpy as np
 
 from mbkf.trial.gait.convention import BY_CLINIC, BY_MODEL
 from mbkf.trial.gait.convention_angles import convention_angles
-from mbkf.viz.report.motion import leg_angle_cells, torque_cells
+from mbkf.viz.report.cells import leg_angle_cells, torque_cells
 from mbkf.viz.report.reading import Reading, curve_of
 from tests.recordings import walk
 

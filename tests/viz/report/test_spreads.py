@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from mbkf.trial.gait.cycles import find_gait
-from mbkf.viz.report.motion import angle_cells, motion_section, reaction_cells, time_chart, torque_cells
+from mbkf.viz.report.cells import angle_cells, reaction_cells, torque_cells
+from mbkf.viz.report.motion import motion_section, time_chart
 from mbkf.viz.report.spreads import cycle_sd, offsets_known, spread_note
 from tests.motions import assert_near
 from tests.recordings import walk
