@@ -7,7 +7,7 @@ results name it, so they go into the bin when it gets another name or session; t
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,13 +18,18 @@ from mbkf.app.runs import Runs
 from mbkf.app.uploads import target_of
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
+from mbkf.io.files_read import place_of
+from mbkf.io.laboratory import LABORATORY_FILE
 from mbkf.io.plain_data import parse_toml
 from mbkf.io.session import SESSION_FILE, SessionNotes, TrialNotes, session_of
 from mbkf.io.session_change import change_session, current_session
-from mbkf.study.batch.folder import captures_in, forces_beside, person_and_session
+from mbkf.study.batch.folder import SUBJECT_FILE, captures_in, forces_beside, person_and_session
 from mbkf.study.batch.plan import Person, folder_name
 
 Plain = dict[str, object]
+
+OF_SESSION = {SESSION_FILE, SUBJECT_FILE, LABORATORY_FILE}
+"""Files of a whole session, which a trial of their name does not take along."""
 
 
 class Arranging:
@@ -38,7 +43,7 @@ class Arranging:
 
     def __init__(self, workspace: Workspace, runs: Runs, live: LiveRun) -> None:
         self._workspace, self._runs, self._live = workspace, runs, live
-        self._bin = Bin(workspace.root)
+        self._bin = Bin(workspace.root, self._restore)
 
     def listed(self) -> list[Plain]:
         """Everything that can be undone, the newest first."""
@@ -80,16 +85,16 @@ class Arranging:
         """
         with self._bin.held():
             self._idle(session)
-            key, to_session = self._bin.key(), to_session.strip()
+            key, root, to_session = self._bin.key(), self._workspace.root, to_session.strip()
             if trial:
                 return self._trial(Moved(key, "move", session, trial, to_session, to_trial.strip()))
-            folder, target = self._whole(session), target_of(self._workspace.root, to_session)
+            folder, target = self._whole(session), target_of(root, to_session)
             if target.is_relative_to(folder):
                 raise InvalidInput("a session cannot lie in itself; choose another name")
-            root = self._workspace.root
             results = self._workspace.place(session), self._place(target)
             moves = [_move(root, folder, target), _move(root, *results)]
-            return self._carry_out(Moved(key, "move", session, to_session=to_session, moves=tuple(moves)))
+            name = target.relative_to(root).as_posix()
+            return self._carry_out(Moved(key, "move", session, to_session=name, moves=tuple(moves)))
 
     def undo(self, key: str) -> Plain:
         """Takes back a deletion, a change of name or a move.
@@ -100,19 +105,25 @@ class Arranging:
             FileFormatError: A session file cannot be changed.
         """
         with self._bin.held():
+            aside: list[Path] = []
             for one in self._bin.listed():
-                if one.key == key and one.to_session:
-                    self._idle(one.to_session)
-            undone = self._bin.undo(key, self._restore)
-            if undone.to_session and not undone.trial:
-                self._runs.take(undone.to_session)
-            if undone.state is not None:
-                self._runs.give(undone.session, undone.trial, undone.state)
+                if one.key == key:
+                    for session in {one.session, one.to_session} - {""}:
+                        self._idle(session)
+                    aside = self._results(one.to_session, one.to_trial) if one.to_trial else []
+            undone = self._bin.undo(key, aside)
+            state = undone.state
+            if undone.to_session:
+                if not undone.trial:  # its results come along, as they are by now
+                    state = self._runs.plain_state(undone.to_session)
+                self._runs.take(undone.to_session, undone.to_trial)
+            if state is not None:
+                self._runs.give(undone.session, undone.trial, state)
             return {"session": undone.session, "trial": undone.trial}
 
-    def _carry_out(self, wanted: Moved, rewrite: Callable[[], Sequence[Rewritten]] | None = None) -> Plain:
+    def _carry_out(self, wanted: Moved, rewriting: Iterable[Rewritten] = ()) -> Plain:
         state = self._runs.plain_state(wanted.session, wanted.trial)
-        made = self._bin.carry_out(replace(wanted, state=state), rewrite)
+        made = self._bin.carry_out(replace(wanted, state=state), rewriting)
         self._runs.take(wanted.session, wanted.trial)
         if state is not None and made.to_session and not made.trial:
             self._runs.give(made.to_session, "", state)
@@ -124,29 +135,30 @@ class Arranging:
         results = self._results(wanted.session, wanted.trial)
         into_bin = [self._bin.into(wanted.key, one) for one in results]
         recorded = wanted.trial in self._workspace.recordings(wanted.session)
-        if recorded and wanted.to_session:
+        if recorded and wanted.act == "move":
             raise InvalidInput("a live recording keeps its name and session")
         files = [] if recorded else _files_of(folder, wanted.trial)
-        if not wanted.to_session:
+        places = [(folder, wanted.trial, False)]
+        if wanted.act == "delete":
             moves = [self._bin.into(wanted.key, one) for one in files]
-            places = [(folder, wanted.trial, False)]
         else:
             target = self._target_of_trial(wanted, folder)
+            name = target.relative_to(self._workspace.root).as_posix()
+            wanted = replace(wanted, to_session=name)
             moves = [
                 _move(self._workspace.root, one, target / _renamed(one, wanted.trial, wanted.to_trial))
                 for one in files
             ]
-            places = [(folder, wanted.trial, False), (target, wanted.to_trial, True)]
+            places.insert(
+                0, (target, wanted.to_trial, True)
+            )  # statements stand in one of the files at any moment
         stated = current_session(folder / SESSION_FILE).trial(wanted.trial)
-
-        def rewrite() -> list[Rewritten]:
-            return [
-                self._restated(place / SESSION_FILE, name, stated, added)
-                for place, name, added in places
-                if stated != TrialNotes()
-            ]
-
-        return self._carry_out(replace(wanted, moves=(*moves, *into_bin)), rewrite)
+        rewriting = (
+            self._restated(place / SESSION_FILE, name, stated, added)
+            for place, name, added in places
+            if stated != TrialNotes()
+        )
+        return self._carry_out(replace(wanted, moves=(*moves, *into_bin)), rewriting)
 
     def _target_of_trial(self, wanted: Moved, folder: Path) -> Path:
         """The folder of a trial's new session.
@@ -156,14 +168,20 @@ class Arranging:
             Refused: The session has a trial of this name.
         """
         root = self._workspace.root
-        same = wanted.to_session == wanted.session
-        target = folder if same else root if wanted.to_session == "." else target_of(root, wanted.to_session)
+        target = folder
+        if wanted.to_session not in {wanted.session, "."}:
+            target = target_of(root, wanted.to_session)
+        elif wanted.to_session == ".":
+            target = root
+        same = target == folder
         if not wanted.to_trial or "/" in wanted.to_trial:
             raise InvalidInput(f"'{wanted.to_trial}' cannot be the name of a trial")
         target_of(root, wanted.to_trial)
+        if not place_of(target).is_relative_to(place_of(root)):
+            raise InvalidInput(f"'{wanted.to_session}' leads out of the folder; choose another session")
         if same and wanted.to_trial == wanted.trial:
             raise InvalidInput("the name and the session are as they were; nothing was changed")
-        self._idle(wanted.to_session)
+        self._idle(target.relative_to(root).as_posix())
         taken = {one.stem.lower() for one in captures_in(target)} if target.is_dir() else set()
         if same:
             taken.discard(wanted.trial.lower())
@@ -192,7 +210,7 @@ class Arranging:
 
     def _results(self, session: str, trial: str) -> list[Path]:
         """The folder of a trial's results; empty without."""
-        place = self._workspace.place(session) / folder_name(trial)
+        place = self._place(self._workspace.root / session) / folder_name(trial)
         return [place] if os.path.lexists(place) else []
 
     def _place(self, folder: Path) -> Path:
@@ -249,7 +267,7 @@ def _files_of(folder: Path, trial: str) -> list[Path]:
     if capture is None:
         raise Refused(NOT_FOUND, f"there is no trial '{trial}'; load the page again", "gone", trial)
     files = sorted(one for one in folder.iterdir() if one.is_file() and not one.name.startswith("."))
-    own = [one for one in files if one.stem.lower() == trial.lower() and one.name != SESSION_FILE]
+    own = [one for one in files if one.stem.lower() == trial.lower() and one.name not in OF_SESSION]
     forces = forces_beside(capture, files)
     return own if forces is None or forces in own else [*own, forces]
 

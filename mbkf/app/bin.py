@@ -12,7 +12,7 @@ import os
 import secrets
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -76,10 +76,11 @@ class Bin:
 
     Args:
         root: The folder.
+        restore: Takes a change of a session file back where the file was changed since.
     """
 
-    def __init__(self, root: Path) -> None:
-        self._root, self._place = root, root / BIN
+    def __init__(self, root: Path, restore: Callable[[Rewritten], None]) -> None:
+        self._root, self._place, self._restore = root, root / BIN, restore
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -101,12 +102,12 @@ class Bin:
         inside = path.relative_to(self._root).as_posix()
         return inside, f"{BIN}/{key}/{inside}"
 
-    def carry_out(self, wanted: Moved, rewrite: Callable[[], Sequence[Rewritten]] | None = None) -> Moved:
+    def carry_out(self, wanted: Moved, rewriting: Iterable[Rewritten] = ()) -> Moved:
         """Carries out a set of moves, whole or not at all.
 
         Args:
             wanted: The set.
-            rewrite: Changes session files after the moves, and returns these changes.
+            rewriting: Changes session files one by one after the moves, and yields each change once it is made.
 
         Raises:
             Refused: A file is in the way.
@@ -118,21 +119,22 @@ class Bin:
         self._write(made)
         try:
             self._move(made.moves)
-            if rewrite is not None:
-                made = replace(made, rewritten=tuple(rewrite()))
+            for one in rewriting:
+                made = replace(made, rewritten=(*made.rewritten, one))
                 self._write(made)
         except BaseException:
             self._move(_back(made.moves))
+            self._give_all_back(made)
             self._write(replace(made, undone=True))
             raise
         return made
 
-    def undo(self, key: str, restore: Callable[[Rewritten], None]) -> Moved:
+    def undo(self, key: str, aside: Iterable[Path] = ()) -> Moved:
         """Moves everything of a set back.
 
         Args:
             key: Of the set.
-            restore: Takes a change of a session file back where the file was changed since.
+            aside: Files or folders of what the set moved that came into being since; they go into the bin.
 
         Raises:
             Refused: There is no such set, or a file is in the way.
@@ -144,13 +146,15 @@ class Bin:
             raise Refused(NOT_FOUND, "this has been undone already; load the page again", "undone_already")
         moves = [one for one in _back(found.moves) if os.path.lexists(self._root / one[0])]
         if not moves:
-            raise Refused(
-                NOT_FOUND, f"the files are no longer in '{BIN}/{key}'", "bin_emptied", f"{BIN}/{key}"
-            )
+            raise _gone(found)
         self._free(moves)
+        moves += [self._undone(key, one.relative_to(self._root).as_posix()) for one in aside]
         self._move(moves)
-        for one in reversed(found.rewritten):
-            self._give_back(key, one, restore)
+        try:
+            self._give_all_back(found)
+        except BaseException:
+            self._move(_back(moves))
+            raise
         done = replace(found, undone=True)
         self._write(done)
         return done
@@ -169,15 +173,23 @@ class Bin:
             return read_state_bytes(self._root / file).decode("utf-8", "surrogateescape")
         return None
 
-    def _give_back(self, key: str, one: Rewritten, restore: Callable[[Rewritten], None]) -> None:
+    def _give_all_back(self, found: Moved) -> None:
+        for one in reversed(found.rewritten):
+            self._give_back(found.key, one)
+
+    def _give_back(self, key: str, one: Rewritten) -> None:
         """The text before a change, byte for byte where nobody changed the file since."""
         if self.text(one.file) != one.after:
-            restore(one)
+            self._restore(one)
         elif one.before is not None:
             with replacing(self._root / one.file, edits=True) as partial:
                 partial.write_bytes(one.before.encode("utf-8", "surrogateescape"))
         elif one.after is not None:
-            self._move([(one.file, f"{BIN}/{key}/undone/{one.file}")])
+            self._move([self._undone(key, one.file)])
+
+    def _undone(self, key: str, inside: str) -> Move:
+        """The move of a file that came into being since a set of moves, into the bin."""
+        return inside, f"{BIN}/{key}/undone/{inside}"
 
     def _free(self, moves: Sequence[Move]) -> None:
         """Refuses moves onto files that are there.
@@ -221,6 +233,15 @@ class Bin:
             return Moved(**plain, moves=moves, rewritten=rewritten)
         except (OSError, ValueError, TypeError, AttributeError, KeyError):
             return None
+
+
+def _gone(found: Moved) -> Refused:
+    """The refusal to undo a set whose files are at their new places no more."""
+    if found.to_session:
+        text = f"the files are no longer in '{found.to_session}'; undo the later change first"
+        return Refused(NOT_FOUND, text, "moved_on", found.to_session)
+    place = f"{BIN}/{found.key}"
+    return Refused(NOT_FOUND, f"the files are no longer in '{place}'", "bin_emptied", place)
 
 
 def _back(moves: Sequence[Move]) -> list[Move]:

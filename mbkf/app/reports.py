@@ -57,7 +57,7 @@ def report_of(
         norms: Name of a file of norms in the page's folder; empty without.
         language: Code of the report's language.
         charts: Convention and colours; None: those of the workspace.
-        trend: Whether to add the trend over all dated visits of the person.
+        trend: Adds the trend over all dated visits of the person.
 
     Raises:
         InvalidInput: Session, result, file of norms or language does not exist, or the norms hold this person.

@@ -137,7 +137,9 @@ def _arranging_routes(arranging: Arranging) -> list[BaseRoute]:
             return arranging.delete(session, trial)
         if query["do"] == "undo":
             return arranging.undo(query["key"])
-        return arranging.move(session, trial, query["to_session"], query["to_trial"])
+        if query["do"] == "move":
+            return arranging.move(session, trial, query["to_session"], query["to_trial"])
+        raise InvalidInput("the page asked neither to delete nor to move nor to undo; load the page again")
 
     return [action("/arrange", arrange), data("/bin", lambda _: {"moved": arranging.listed()})]
 

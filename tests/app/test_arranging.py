@@ -5,13 +5,14 @@ from pathlib import Path
 
 import pytest
 
+import mbkf.app.arranging as arranging_module
 from mbkf.app.arranging import Arranging
 from mbkf.app.bin import BIN
 from mbkf.app.failures import Refused
 from mbkf.app.live_run import LiveRun
 from mbkf.app.runs import FINISHED, RunState
 from mbkf.app.workspace import RESULTS, Workspace
-from mbkf.errors import InvalidInput
+from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.session import TrialKind, read_session
 
 STATED = '# by hand\r\nmass_kg = 70.0\n\n[trial.walk1]  # the best\nkind = "turn"\n'
@@ -155,11 +156,16 @@ def test_statements_made_meanwhile_stay_when_a_trial_comes_back(arranging, lab):
         ("P1", "walk1", "P1", "walk1", "as they were"),
         ("P1", "walk1", "P1", "a/b", "cannot be the name"),
         ("P1", "walk1", "P1", "", "cannot be the name"),
+        ("P1", "walk1", "", "x", "cannot be a file"),
+        ("P1", "walk1", "../out", "x", "cannot be a file"),
+        ("P1", "walk1", "linked", "x", "leads out"),
         ("P1", "walk1", "P1", ".hidden", "cannot be a file"),
         ("P1", "walk9", "P1", "x", "no trial 'walk9'"),
     ],
 )
 def test_names_that_are_not_possible_change_nothing(session, trial, to, name, said, arranging, lab):
+    (lab.parent / "outside").mkdir()
+    (lab / "linked").symlink_to(lab.parent / "outside")
     before = files(lab)
     with pytest.raises((InvalidInput, Refused), match=re.escape(said)):
         arranging.move(session, trial, to, name)
@@ -175,8 +181,13 @@ def test_results_of_a_former_session_are_not_mixed_with_others(arranging, lab):
 
 
 def test_what_a_run_works_with_stays(arranging, lab, runs):
+    key = arranging.delete("P1", "static")["key"]
     runs.busy = "P1"
-    for act in (lambda: arranging.delete("P1"), lambda: arranging.move("P2", "walk1", "P1", "w")):
+    for act in (
+        lambda: arranging.delete("P1"),
+        lambda: arranging.move("P2", "walk1", "P1/", "w"),
+        lambda: arranging.undo(key),
+    ):
         with pytest.raises(Refused, match="being calculated"):
             act()
     assert (lab / "P1" / "walk1.c3d").is_file()
@@ -222,6 +233,63 @@ def test_a_move_that_fails_half_way_is_taken_back(arranging, lab, monkeypatch):
     with pytest.raises(OSError, match="no space"):
         arranging.delete("P1", "walk1")
     assert files(lab) == before and arranging.listed() == []
+
+
+def test_statements_are_whole_after_a_change_that_fails_half_way(arranging, lab, monkeypatch):
+    before, change = files(lab), arranging_module.change_session
+
+    def full(path, *notes):
+        if path.parent.name == "P1":
+            raise OSError(28, "no space", str(path))
+        return change(path, *notes)
+
+    monkeypatch.setattr(arranging_module, "change_session", full)
+    with pytest.raises(OSError, match="no space"):
+        arranging.move("P1", "walk1", "P3", "turn2")
+    assert files(lab) == before and arranging.listed() == []
+
+
+def test_a_file_that_cannot_be_restored_leaves_the_trial_in_the_bin(arranging, lab):
+    made, file = arranging.delete("P1", "walk1"), lab / "P1" / "session.toml"
+    text = file.read_text()
+    file.write_text("mass_kg = [")
+    with pytest.raises(FileFormatError):
+        arranging.undo(made["key"])
+    assert not (lab / "P1" / "walk1.c3d").exists() and len(arranging.listed()) == 1
+    file.write_text(text)
+    arranging.undo(made["key"])
+    assert (lab / "P1" / "walk1.c3d").is_file() and read_session(file).trial("walk1").kind == TrialKind.TURN
+
+
+def test_results_made_under_the_new_name(arranging, lab, runs):
+    """Those of a session come back with it; those of a trial never become another trial's."""
+    trial = arranging.move("P1", "walk1", "P3/", "turn2")
+    assert trial["session"] == "P3"
+    (lab / RESULTS / "P3" / "turn2").mkdir(parents=True)
+    runs.states["P3"] = {"turn2": ["done", ""]}
+    arranging.undo(trial["key"])
+    assert not (lab / RESULTS / "P3" / "turn2").exists() and runs.states["P3"] == {}
+    whole = arranging.move("P1", "", "Q//x/", "")
+    assert whole["session"] == "Q/x"
+    runs.states["Q/x"] = {"walk1": ["failed", "why"]}
+    arranging.undo(whole["key"])
+    assert runs.states["P1"] == {"walk1": ["failed", "why"]} and "Q/x" not in runs.states
+
+
+def test_a_session_that_moved_on_is_named(arranging):
+    first = arranging.move("P1", "", "Q", "")
+    second = arranging.move("Q", "", "R", "")
+    with pytest.raises(Refused, match="undo the later change first"):
+        arranging.undo(first["key"])
+    arranging.undo(second["key"])
+    assert arranging.undo(first["key"])["session"] == "P1"
+
+
+def test_a_scaled_person_stays_with_the_session(arranging, lab):
+    for name in ("subject.c3d", "subject.toml"):
+        (lab / "P1" / name).write_text(name)
+    arranging.delete("P1", "subject")
+    assert (lab / "P1" / "subject.toml").is_file() and not (lab / "P1" / "subject.c3d").exists()
 
 
 def test_a_recording_goes_into_the_bin_and_keeps_its_name(arranging, lab):

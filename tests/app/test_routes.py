@@ -68,6 +68,8 @@ def test_a_session_is_renamed_deleted_and_comes_back(server, cookie):
     ]
     status, said = plain(server, cookie, "/arrange?do=move&session=P1&to_session=P9", "POST")
     assert (status, said["key"], said["values"]) == (409, "refused_in_the_way", ["P9"])
+    assert plain(server, cookie, "/arrange?session=P1&trial=trial", "POST")[0] == 400
+    assert plain(server, cookie, "/arrange?do=delete&session=P1")[0] == 405
     for one in moved:
         assert plain(server, cookie, f"/arrange?do=undo&key={one['key']}", "POST")[0] == 200
     assert (server.workspace.root / "P8" / "walk.c3d").read_bytes() == content

@@ -22,7 +22,7 @@ from mbkf.study.session.records import MovementGroup, Session
 from mbkf.study.session.trend import Trend, trend
 from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH, words
-from mbkf.viz.markup import folded, grid, key, paragraph, section, table
+from mbkf.viz.markup import folded, grid, kept, key, paragraph, section, table
 from mbkf.viz.page import BLUE_RED, document, report_style
 from mbkf.viz.report.cells import JointNames, joint_names
 from mbkf.viz.session.charts import (
@@ -143,7 +143,7 @@ def _gait_title(gait: MovementGroup, terms: Terms) -> str:
 def _whole_texts(session: Session, terms: Terms) -> str:
     """Texts that the sheet shortens."""
     own = words(terms.language, "visit")
-    return "".join(f"<h4>{escape(own[key])}</h4>{paragraph(text)}" for key, text in long_texts(session))
+    return "".join(f"<h4>{escape(own[key])}</h4>{kept(text)}" for key, text in long_texts(session))
 
 
 def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms | None, terms: Terms) -> str:

@@ -15,6 +15,9 @@ from mbkf.viz.svg import number
 MOST_TEXT = 330
 """Most letters of diagnosis and of notes on the sheet; the whole text stands with the trials."""
 
+WRITTEN = {"patient", "condition", "clinician", "diagnosis", "visit_notes"}
+"""Facts in people's own words, which the page leaves as they are."""
+
 
 def letterhead(session: Session, laboratory: Laboratory, terms: Terms) -> str:
     """Logo, name and address of the laboratory beside the title, and the facts of person and visit below.
@@ -30,7 +33,7 @@ def letterhead(session: Session, laboratory: Laboratory, terms: Terms) -> str:
         logo = f'<img alt="" src="data:{laboratory.media_type};base64,{data}">'
     address = "<br>".join(escape(line) for line in laboratory.address.splitlines() if line.strip())
     name = f"<b>{escape(laboratory.name)}</b>" if laboratory.name else ""
-    owner = f'<div class="owner">{logo}<p>{name}{"<br>" if name and address else ""}{address}</p></div>'
+    owner = f'<div class="owner">{logo}<p translate="no">{name}{"<br>" if name and address else ""}{address}</p></div>'
     title = f'<p class="sheet-title">{escape(terms.sheet("title"))}</p>'
     return f'<div class="letterhead">{owner}{title}</div>{_facts(session, terms)}'
 
@@ -84,5 +87,5 @@ def shortened(text: str) -> str:
 def _cell(key: str, value: str, terms: Terms, own: bool = False, wide: bool = False) -> str:
     known = {**words(terms.language, "visit"), **words(terms.language, "sheet")}
     title = key if own else known[key]
-    kind = ' class="wide"' if wide else ""
-    return f"<div{kind}><dt>{escape(title)}</dt><dd>{escape(value)}</dd></div>"
+    kind, kept = ' class="wide"' if wide else "", ' translate="no"' if own or key in WRITTEN else ""
+    return f"<div{kind}><dt{kept}>{escape(title)}</dt><dd{kept}>{escape(value)}</dd></div>"

@@ -17,7 +17,7 @@ from mbkf.viz.svg import number
 GDI = "GDI"
 
 LEAST_CYCLES = 3
-"""Intervals of fewer cycles cover the mean, but from ± 0 to ± 12° where three cycles have ± 1.5°."""
+"""Sides with fewer cycles have no interval: with one degree of freedom it is wide or narrow by chance."""
 
 
 @dataclass(frozen=True)

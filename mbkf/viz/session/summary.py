@@ -76,7 +76,7 @@ def summary_part(session: Session, norms: Norms | None, laboratory: Laboratory, 
 
 
 def _gait_line(session: Session, gait: MovementGroup, terms: Terms) -> str:
-    """Which gait the sheet is of."""
+    """The gait of the sheet, with its numbers of trials and cycles."""
     condition = condition_name(gait.condition, terms.language)
     title = ": ".join(text for text in (terms.say(gait.kind.value), condition) if text)
     counts = terms.say("counts", len(gait.trials), *(len(side.cycles) for side in gait.sides))

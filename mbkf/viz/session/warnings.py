@@ -48,7 +48,7 @@ def session_word(session: Session) -> Word:
 
 
 def fitting(texts: Iterable[str], lines: int) -> int:
-    """How many of the texts, from the first on, fit into so many lines."""
+    """The number of texts, from the first on, that fit into so many lines."""
     used = kept = 0
     for text in texts:
         used += -(-len(text) // LETTERS_PER_LINE)

@@ -1,5 +1,6 @@
 """The head of the sheet: facts that are stated, in the report's language, own entries under their names."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -9,6 +10,7 @@ from mbkf.io.visit import CONDITIONS, Visit
 from mbkf.viz.language import words
 from mbkf.viz.session.letterhead import MOST_TEXT, condition_name, letterhead, long_texts, shortened
 from mbkf.viz.session.terms import Terms
+from mbkf.viz.translation import translated
 from tests.study.session.sessions import session
 
 VISIT = Visit("2025-03-31", "1988-11-02", "barefoot", "left", "Hemi<b>", "n" * 400, "Dr. A", {"ward": "B 2"})
@@ -31,8 +33,17 @@ def test_facts_are_shown_in_the_language(language):
         "Ours",
     ):
         assert text in page, text
-    assert "<dt>ward</dt>" in page and "Hemi&lt;b&gt;" in page and "Road<br>Town" in page
+    assert '<dt translate="no">ward</dt>' in page and "Hemi&lt;b&gt;" in page and "Road<br>Town" in page
     assert 'src="data:image/png;base64,iVBORw0KGgo="' in page and "n" * 400 not in page
+
+
+def test_words_of_people_stay_and_numbers_have_the_sign_of_the_language():
+    visit = Visit(diagnosis="scale again, 2.5 cm", others={"unit": "left"})
+    one = replace(session(), patient="right", visit=visit)
+    page = translated(letterhead(one, Laboratory("left", "1.5 Road"), Terms("es")), "es")
+    for text in (">right<", ">scale again, 2.5 cm<", ">left<", "<b>left</b><br>1.5 Road"):
+        assert text in page, text
+    assert re.search(r">[\d, m]*\d,\d kg<", page)
 
 
 def test_facts_that_are_not_stated_have_no_heading():
