@@ -46,9 +46,9 @@ _MARK = """(all) => {
   let n = 0;
   for (const one of document.querySelectorAll("svg")) {
     const box = one.viewBox.baseVal, top = `beg${n}q`, end = `end${n}q`;
-    for (const [text, y] of [[top, 3], [end, box.height]]) {
+    for (const [text, y] of [[top, 3], [end, box.height - 2]]) {
       const made = document.createElementNS("http://www.w3.org/2000/svg", "text");
-      made.setAttribute("x", 1); made.setAttribute("y", y); made.textContent = text; made.style.fontSize = "2px";
+      made.setAttribute("x", 3); made.setAttribute("y", y); made.textContent = text; made.style.fontSize = "2px";
       one.append(made);
     }
     n++;
