@@ -8,6 +8,7 @@ trend = ["Speed", "Step length"]
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -101,7 +102,8 @@ def write_laboratory(laboratory: Laboratory, folder: Path) -> None:
     """
     name = ""
     if laboratory.logo:
-        name = f"logo.{laboratory.media_type.removeprefix('image/')}"
+        content = hashlib.sha256(laboratory.logo).hexdigest()[:8]  # so that no other picture is replaced
+        name = f"logo-{content}.{laboratory.media_type.removeprefix('image/')}"
         with replacing(folder / name, edits=True) as partial:
             partial.write_bytes(laboratory.logo)
     table = {"name": laboratory.name, "address": laboratory.address, "logo": name}

@@ -17,6 +17,7 @@ def test_entries_are_changed_one_by_one(tmp_path):
     assert plain_laboratory(workspace) == {"name": "", "address": "", "logo": False}
     (tmp_path / LABORATORY_FILE).write_text('trend = ["Speed"]\n')
     change_laboratory(workspace, {"name": "Ours"})
+    (tmp_path / "logo.png").write_text("another picture")
     change_laboratory(workspace, {"logo": base64.b64encode(PNG).decode()})
     assert change_laboratory(workspace, {"address": "Road"}) == {
         "name": "Ours",
@@ -25,6 +26,7 @@ def test_entries_are_changed_one_by_one(tmp_path):
     }
     assert laboratory_of(workspace) == Laboratory("Ours", "Road", PNG, "image/png", ("Speed",))
     assert change_laboratory(workspace, {"logo": ""})["logo"] is False
+    assert (tmp_path / "logo.png").read_text() == "another picture"
 
 
 @pytest.mark.parametrize(
