@@ -31,7 +31,10 @@ from mbkf.trial.gait.convention import BY_CLINIC
 from mbkf.viz.sentences import said
 from mbkf.viz.session.document import session_page
 
-PAPERS, SUMMARY_PAGES = ("A4", "Letter"), 2
+PAPERS = {"A4": 703, "Letter": 725}
+"""Width of the printed area of each paper, CSS pixels: the paper's less 12 mm at both sides."""
+
+SUMMARY_PAGES = 2
 PATIENT, DAY = "Patient 0421", "2025-03-31"
 LABORATORY = Laboratory("Gait laboratory", "1 Example Road\nExampletown")
 
@@ -41,6 +44,13 @@ LONG = (
 )
 
 OWN = 'name = "P"\n[visit]\ndate = 2025-03-31 # ours\nward = "B 2"\nbed = 7\n'
+
+_BEYOND = """() => Math.max(...[...document.querySelectorAll(".leaf")].flatMap((leaf) => {
+  const end = leaf.getBoundingClientRect();
+  return [...leaf.querySelectorAll("*")].map((one) => one.getBoundingClientRect()).filter((box) => box.width)
+    .map((box) => Math.max(box.bottom - end.bottom, box.right - end.right));
+}))"""
+"""How far anything in a page of the sheet reaches beyond it, below or on the right."""
 
 _MARK = """(all) => {
   let n = 0;
@@ -78,10 +88,12 @@ class Printed:
     Attributes:
         pages: (N,) text of each page.
         marked: How many charts and rows.
+        beyond_px: How far content of the sheet reaches beyond the end of its page.
     """
 
     pages: tuple[str, ...]
     marked: int
+    beyond_px: float
 
 
 def sheet_rows(data: Path, out: Path) -> Iterator[Check]:
@@ -152,6 +164,7 @@ def _printed_rows(name: str, one: Session, page: str, paper: str) -> Iterator[Ch
     remarks = {said(remark, language) for trial in one.trials for remark in trial.remarks}
     missing = sum(_squeezed(remark) not in whole for remark in remarks)
     yield Check(f"{name}: warnings not printed, of {len(remarks)}", missing, 0, "<=")
+    yield Check(f"{name}: reach of content beyond a page of the sheet", printed.beyond_px, 1.0, "<=", "px")
     yield Check(f"{name}: charts and rows cut, of {printed.marked}", _cut(printed), 0, "<=")
 
 
@@ -180,10 +193,14 @@ def printed_pages(page: str, paper: str) -> Printed:
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"))
         tab = browser.new_page()
         tab.set_content(page)
+        tab.emulate_media(media="print")
+        tab.set_viewport_size({"width": PAPERS[paper], "height": 1000})
+        beyond = float(tab.evaluate(_BEYOND))
         marked = int(tab.evaluate(_MARK))
         content = tab.pdf(format=paper)
         browser.close()
-    return Printed(tuple(_squeezed(one.extract_text()) for one in PdfReader(BytesIO(content)).pages), marked)
+    pages = tuple(_squeezed(one.extract_text()) for one in PdfReader(BytesIO(content)).pages)
+    return Printed(pages, marked, beyond)
 
 
 def _squeezed(text: str) -> str:

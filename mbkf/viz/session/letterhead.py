@@ -12,7 +12,7 @@ from mbkf.viz.language import words
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.svg import number
 
-MOST_TEXT = 330
+MOST_TEXT = 220
 """Most letters of diagnosis and of notes on the sheet; the whole text stands with the trials."""
 
 WRITTEN = {"patient", "condition", "clinician", "diagnosis", "visit_notes"}

@@ -46,7 +46,7 @@ CHART = (230.0, 118.0)
 OUTSIDE = 2.0
 """Standard deviations of the norm, beyond which a parameter is bold."""
 
-LINES, LINES_WITHOUT_SCORES = 7, 16
+LINES, LINES_WITHOUT_SCORES = 5, 14
 """Lines for warnings."""
 
 
