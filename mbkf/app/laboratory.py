@@ -53,7 +53,7 @@ def change_laboratory(workspace: Workspace, sent: object) -> Plain:
     found = replace(found, name=sent.get("name", found.name), address=sent.get("address", found.address))
     if "logo" in sent:
         content = _picture(sent["logo"])
-        found = replace(found, logo=content, media_type=media_type_of(content))
+        found = replace(found, logo=content, media_type=media_type_of(content), logo_file="")
     write_laboratory(found, workspace.root)
     return plain_laboratory(workspace)
 

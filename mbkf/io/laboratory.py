@@ -15,9 +15,11 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io import fields
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import replacing, write_text
+from mbkf.io.edited_toml import edited_toml
 from mbkf.io.files_read import read_bytes
-from mbkf.io.toml import Entries, write_toml
+from mbkf.io.plain_data import plain_text
+from mbkf.io.toml import Entries, toml_text
 
 LABORATORY_FILE = "laboratory.toml"
 
@@ -46,6 +48,7 @@ class Laboratory:
         logo: Content of the picture.
         media_type: "image/png" or "image/jpeg"; empty without a logo.
         trend: Measures of the page on several visits; empty for the usual ones.
+        logo_file: Name of the picture beside the file; empty for one that is not written yet.
     """
 
     name: str = ""
@@ -53,6 +56,7 @@ class Laboratory:
     logo: bytes = b""
     media_type: str = ""
     trend: tuple[str, ...] = ()
+    logo_file: str = ""
 
 
 def read_laboratory(path: str | Path) -> Laboratory:
@@ -71,6 +75,7 @@ def read_laboratory(path: str | Path) -> Laboratory:
         content,
         media_type_of(content),
         read.get(_TREND) or (),
+        logo,
     )
 
 
@@ -95,13 +100,13 @@ def media_type_of(content: bytes) -> str:
 
 
 def write_laboratory(laboratory: Laboratory, folder: Path) -> None:
-    """Writes a laboratory's file into a folder, and its logo beside it.
+    """Writes a laboratory's file into a folder, and a new logo beside it; comments of people in the file stay.
 
     Raises:
         OSError: A file cannot be written.
     """
-    name = ""
-    if laboratory.logo:
+    name = laboratory.logo_file
+    if laboratory.logo and not name:
         content = hashlib.sha256(laboratory.logo).hexdigest()[:8]  # so that no other picture is replaced
         name = f"logo-{content}.{laboratory.media_type.removeprefix('image/')}"
         with replacing(folder / name, edits=True) as partial:
@@ -110,7 +115,8 @@ def write_laboratory(laboratory: Laboratory, folder: Path) -> None:
     found: dict[str, object] = {key: text for key, text in table.items() if text}
     if laboratory.trend:
         found["trend"] = list(laboratory.trend)
-    write_toml(folder / LABORATORY_FILE, "A laboratory, for the head of its reports.", found, edits=True)
+    file, text = folder / LABORATORY_FILE, toml_text("A laboratory, for the head of its reports.", found)
+    write_text(file, edited_toml(plain_text(file), text) if file.is_file() else text, edits=True)
 
 
 def _logo(file: Path, name: str, read: Entries) -> bytes:

@@ -20,7 +20,7 @@ _TOKEN = re.compile(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<raw>.*?)(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)"
     r"|<!DOCTYPE[^\[>]*(?:\[[^\]]*\]?\s*)?>?"
     r"|</\s*(?P<end>[\w.:-]+)[^<>]*>?"
-    r"|<(?P<start>[A-Za-z_][\w.:-]*)(?P<attributes>[^<>]*)>"
+    r"|<(?P<start>[A-Za-z_][\w.:-]*+)(?P<attributes>[^<>]*)>"
     r"|(?P<text>[^<]+|<)",
     re.DOTALL | re.IGNORECASE,
 )

@@ -56,7 +56,7 @@ class KnownStream:
         markers = np.full((len(self._place), 3), np.nan)
         for name, one in found.items():
             if name in self._place and one is not None:
-                markers[self._place[name]] = one
+                markers[self._place[name]] = np.asarray(one, dtype=float).reshape(3)
         return markers
 
     def in_order(self, found_m: Array) -> Array:

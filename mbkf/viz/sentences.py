@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, lru_cache
+from itertools import accumulate
 from typing import NamedTuple
 
 from mbkf.viz.language import ENGLISH, contractions, decimal_sign, filled, languages, words
@@ -27,9 +28,13 @@ LEAST_LETTERS = 10
 FEW_LETTERS = 4
 """A sentence with fewer letters is recognised only if its values are known or numbers."""
 
+MOST_LETTERS, MOST_PARTS, MOST_NESTED = 4000, 60, 8
+"""Longest text that is recognised, its separators and its brackets within brackets; one beyond stays as it is, since
+recognition costs the square of its parts. Sentences of the library stay far below."""
+
 _PLACE = re.compile(r"\{(\d)\}")
-_NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?=(?:e[+-]?\d+)?(?![\w.]*\w))")
-_FOLDERS = re.compile(r"""(?:^|(?<=[\s'"(]))/(?:[^/:;\n]+/)+(?=[^/\s])""")
+_NUMBER = re.compile(r"(?<![\w.])(\d++)\.(\d++)(?=(?:e[+-]?\d+)?(?![\w.]*\w))")
+_FOLDERS = re.compile(r"""(?:^|(?<=[\s'"(]))/(?:[^\s/:;][^/:;\n]*/)+(?=[^/\s])""")
 _PLAIN = re.compile(r"[\W\d_]*")
 _SIZE = re.compile(r"[\W\d_]*(?:[\d.]+ \S+)?")
 _IN_BRACKETS = re.compile(r"(\S+(?: …)?) \((.*)\)")
@@ -58,7 +63,7 @@ def said(text: str, language: str) -> str:
         text: A sentence, or several one after another.
         language: Code of the page's language.
     """
-    if _PLAIN.fullmatch(text):
+    if _PLAIN.fullmatch(text) or _excessive(text):
         return with_decimals(text, language)
     return _said(_FOLDERS.sub("", text), language)
 
@@ -75,7 +80,14 @@ def in_languages(texts: Iterable[str]) -> dict[str, dict[str, str]]:
 
 def recognised(text: str) -> Sentence | None:
     """The sentence that a text is, with its values; None where it is not known as a whole."""
-    return _recognised(text)
+    return None if _excessive(text) else _recognised(text)
+
+
+def _excessive(text: str) -> bool:
+    """True for a text that no sentence of the library comes near, such as one of a damaged file."""
+    if len(text) > MOST_LETTERS or sum(1 for _ in _SEPARATOR.finditer(text)) > MOST_PARTS:
+        return True
+    return max(accumulate((one == "(") - (one == ")") for one in text), default=0) > MOST_NESTED
 
 
 def with_decimals(text: str, language: str) -> str:

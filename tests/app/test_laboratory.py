@@ -24,7 +24,9 @@ def test_entries_are_changed_one_by_one(tmp_path):
         "address": "Road",
         "logo": True,
     }
-    assert laboratory_of(workspace) == Laboratory("Ours", "Road", PNG, "image/png", ("Speed",))
+    assert laboratory_of(workspace) == Laboratory(
+        "Ours", "Road", PNG, "image/png", ("Speed",), "logo-d9c9bcbb.png"
+    )
     assert change_laboratory(workspace, {"logo": ""})["logo"] is False
     assert (tmp_path / "logo.png").read_text() == "another picture"
 

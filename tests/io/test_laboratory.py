@@ -1,5 +1,7 @@
 """A laboratory's file: what is written comes back with its logo, and what is no picture is refused."""
 
+from dataclasses import replace
+
 import pytest
 
 from mbkf.errors import FileFormatError
@@ -22,7 +24,18 @@ OURS = Laboratory("Gait laboratory", "1 Road\nTown", PNG, "image/png", ("Speed",
 def test_what_is_written_comes_back(tmp_path, one):
     write_laboratory(one, tmp_path)
     write_laboratory(one, tmp_path)
-    assert read_laboratory(tmp_path / LABORATORY_FILE) == one
+    found = read_laboratory(tmp_path / LABORATORY_FILE)
+    assert replace(found, logo_file="") == one and bool(found.logo_file) == bool(one.logo)
+
+
+def test_comments_and_the_own_picture_stay(tmp_path):
+    file = tmp_path / LABORATORY_FILE
+    file.write_text("# Ours.\nname = 'A'  # for letters\nlogo = 'ours.png'\n")
+    (tmp_path / "ours.png").write_bytes(PNG)
+    write_laboratory(replace(read_laboratory(file), address="1 Road"), tmp_path)
+    assert file.read_text().startswith("# Ours.\nname = 'A'  # for letters\nlogo = 'ours.png'\n")
+    assert read_laboratory(file) == Laboratory("A", "1 Road", PNG, "image/png", logo_file="ours.png")
+    assert [one.name for one in tmp_path.glob("*.png")] == ["ours.png"]
 
 
 def test_the_first_folder_with_a_file_counts(tmp_path):
@@ -30,7 +43,7 @@ def test_the_first_folder_with_a_file_counts(tmp_path):
     inner.mkdir(parents=True)
     assert laboratory_above([inner, tmp_path]) == Laboratory()
     write_laboratory(OURS, tmp_path)
-    assert laboratory_above([inner, *inner.parents]) == OURS
+    assert laboratory_above([inner, *inner.parents]) == replace(OURS, logo_file="logo-d9c9bcbb.png")
     write_laboratory(Laboratory("nearer"), inner)
     assert laboratory_above([inner, *inner.parents]).name == "nearer"
 

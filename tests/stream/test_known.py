@@ -77,3 +77,10 @@ def test_plates_of_another_rate_are_not_read():
     )
     assert "another rate" in known.describe(described(plates=[other]))[0][1]
     assert np.isnan(known.plate_samples(PlateSamples(np.array([4]), np.ones((1, 1, 6)))).wrench).all()
+
+
+@pytest.mark.parametrize("one", [0.5, [0.5], "5", [1, 2], [1, 2, 3, 4], {}, [[[1]]]])
+def test_a_marker_of_other_than_three_numbers_is_refused(one):
+    known = KnownStream(described())
+    with pytest.raises((ValueError, TypeError)):
+        known.by_name({"B": one})

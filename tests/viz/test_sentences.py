@@ -123,3 +123,10 @@ def test_files_are_named_without_their_folders():
 )  # fmt: skip
 def test_lists_brackets_and_values_within_values(text, shown):
     assert said(text, "es") == shown
+
+
+@pytest.mark.parametrize(
+    "text", ["a: " * 1500 + "x", "a (" * 400 + "b" + ")" * 400, "3 of 4 frames, " * 1000, "a" + " /" * 5000]
+)
+def test_texts_beyond_every_sentence_stay(text):
+    assert said(text, "es") == text and recognised(text) is None

@@ -25,6 +25,9 @@ CHUNK = 65536
 
 PARAMETERS = "GetParameters General 3D Force"
 
+UNANSWERING = (packets.DATA, packets.NO_DATA, packets.EVENT)
+"""Types of packets that may come without end while an answer is waited for."""
+
 
 class Packet(NamedTuple):
     """A packet that arrived: time on the clock of ``time.perf_counter``, type and payload."""
@@ -71,6 +74,9 @@ class QtmClient:
                 self._datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 self._datagrams.bind((self._socket.getsockname()[0], 0))
                 self._datagrams.setblocking(False)
+        except InvalidPacket as error:
+            self.close()
+            raise InvalidInput(f"Qualisys: {host}, port {port + 1} is not QTM ({error})") from error
         except BaseException:
             self.close()
             raise
@@ -81,6 +87,7 @@ class QtmClient:
         Raises:
             InvalidInput: QTM refuses it.
             OSError: The connection broke off, or no answer came.
+            InvalidPacket: As for :meth:`take`.
         """
         self.send(text)
         return self._answer()
@@ -148,7 +155,7 @@ class QtmClient:
         try:
             while True:
                 found = self.take(max(0.0, until - time.perf_counter()))
-                if found is None:
+                if found is None or (found.kind in UNANSWERING and time.perf_counter() > until):
                     raise TimeoutError("QTM does not answer")
                 if found.kind in (packets.COMMAND, packets.XML):
                     return packets.text_of(found.payload)
@@ -168,8 +175,8 @@ class QtmClient:
             self._received += data
             self._split(time.perf_counter())
         if self._datagrams is not None and self._datagrams in ready:
-            data = self._datagrams.recv(CHUNK)
-            if len(data) >= packets.HEADER.size:
+            data, (sender, _) = self._datagrams.recvfrom(CHUNK)
+            if sender == self._socket.getpeername()[0] and len(data) >= packets.HEADER.size:
                 size, kind = packets.HEADER.unpack_from(data)
                 if size == len(data):
                     self._waiting.append(Packet(time.perf_counter(), kind, data[packets.HEADER.size :]))

@@ -28,6 +28,9 @@ LARGEST = 16 * 1024 * 1024
 
 MOST_COMPONENTS = 64
 
+MOST_SAMPLES = 20_000
+"""Samples of a plate in one packet, at most: a fifth of a second at the highest rate of plates that is read."""
+
 _FRAME, _PART = struct.Struct("<QII"), struct.Struct("<II")
 _COUNT, _PLATE = struct.Struct("<I"), struct.Struct("<III")
 _FLOATS = {MARKERS: 3, POINTS: 4, MARKERS_RESIDUAL: 4, POINTS_RESIDUAL: 5}
@@ -130,6 +133,8 @@ def _forces(data: bytes, at: int, end: int) -> tuple[PlateForces, ...]:
             raise InvalidPacket("QTM: a plate is cut off")
         plate, samples, first = _PLATE.unpack_from(data, at)
         at += _PLATE.size
+        if samples > MOST_SAMPLES:
+            raise InvalidPacket(f"QTM: {samples} forces of a plate in one packet")
         if samples * FORCE_NUMBERS * 4 > end - at:
             raise InvalidPacket(f"QTM: {samples} forces cannot stand in {end - at} bytes")
         values = np.frombuffer(data, "<f4", samples * FORCE_NUMBERS, at).reshape(samples, FORCE_NUMBERS)

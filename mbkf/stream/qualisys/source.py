@@ -27,6 +27,9 @@ FORCES_WITHIN_S, SILENT_S = 0.1, 1.0
 """A frame waits so long for the forces of its time, which QTM hands on in chunks; after so long without any it does not
 wait."""
 
+HELD_SAMPLES = 20_000
+"""Samples of the plates that wait for their frame, at most."""
+
 MOST_VAIN = 20
 """After so many frames in a row that waited in vain, forces are numbered otherwise than frames, or come later."""
 
@@ -186,7 +189,7 @@ class QualisysSource:
                 self._client.command("Start")
             components = "3DRes 3DNoLabelsRes" if self._known.stream.marker_names else "3DNoLabelsRes"
             self._client.stream(f"{components} Force" if self._known.stream.plates else components)
-        except OSError as error:
+        except (OSError, InvalidPacket) as error:
             self._lose(str(error))
         except InvalidInput as error:
             self._control = None
@@ -219,6 +222,8 @@ class QualisysSource:
                 self._news.append(("plates axes", f"QTM states forces in axes of the {self._plates.axes}"))
             if len(samples.index):
                 self._samples.append(samples)
+                while len(self._samples) > 1 and sum(len(one.index) for one in self._samples) > HELD_SAMPLES:
+                    self._samples.pop(0)
                 self._newest, self._forces_s = int(samples.index[-1]), arrival_s
         labelled = frame.points.get(packets.MARKERS_RESIDUAL, frame.points.get(packets.MARKERS))
         bare = frame.points.get(packets.POINTS_RESIDUAL, frame.points.get(packets.POINTS))
@@ -311,7 +316,11 @@ def _same(one: QtmDescription, other: QtmDescription) -> bool:
         == (second.marker_names, second.rate_hz, other.plate_ids)
         and np.array_equal(one.rotation, other.rotation)
         and all(
-            plate.rate_hz == known.rate_hz and np.array_equal(plate.origin_m, known.origin_m)
+            plate.rate_hz == known.rate_hz and _alike(plate.corners_m, known.corners_m)
             for plate, known in zip(first.plates, second.plates, strict=True)
         )
     )
+
+
+def _alike(one: Array | None, other: Array | None) -> bool:
+    return one is None or other is None or np.array_equal(one, other)

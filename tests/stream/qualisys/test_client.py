@@ -7,10 +7,11 @@ import pytest
 from benchmarks.streams.qualisys_server import QtmServer
 from mbkf.errors import InvalidInput
 from mbkf.stream.played import played
+from mbkf.stream.qualisys import client as client_module
 from mbkf.stream.qualisys import packets
 from mbkf.stream.qualisys.client import QtmClient
 from tests.captures import made_capture
-from tests.waiting import PATIENCE_S
+from tests.waiting import PATIENCE_S, until
 
 
 @pytest.fixture
@@ -40,6 +41,16 @@ def test_a_packet_in_pieces_is_put_together(server, client):
     assert client.take(0.02) is None
     server.raw_to_all(whole[3:] + whole)
     assert [client.take(PATIENCE_S).payload for _ in range(2)] == [b"pieces", b"pieces"]
+
+
+def test_data_without_end_are_no_answer(server, client, monkeypatch):
+    monkeypatch.setattr(client_module, "ANSWER_S", 0.0)
+    server.to_all(packets.DATA, b"first")
+    until(lambda: client.take(0.01) is not None)
+    server.to_all(packets.DATA, b"second")
+    client._receive(PATIENCE_S)
+    with pytest.raises(TimeoutError, match="does not answer"):
+        client._answer()
 
 
 def test_a_refusal_is_an_error(client):

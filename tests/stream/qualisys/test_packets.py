@@ -68,6 +68,8 @@ def test_a_packet_that_is_cut_off_is_refused(end):
         struct.pack("<QII", 1, 2, 1) + part(packets.FORCE, b"12"),
         struct.pack("<QII", 1, 2, 1) + part(packets.FORCE, struct.pack("<I", 10**6)),
         struct.pack("<QII", 1, 2, 1) + part(packets.FORCE, struct.pack("<IIII", 1, 1, 10**6, 0)),
+        struct.pack("<QII", 1, 2, 1)
+        + part(packets.FORCE, struct.pack("<IIII", 1, 1, 20_001, 0) + bytes(20_001 * 36)),
     ],
 )
 def test_counts_that_do_not_fit_are_refused(payload):

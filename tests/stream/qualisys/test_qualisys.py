@@ -9,8 +9,9 @@ import pytest
 from benchmarks.streams.qualisys_server import CAMERAS_CHANGED, QtmServer
 from mbkf.errors import InvalidInput
 from mbkf.stream.played import played
+from mbkf.stream.qualisys import packets
 from mbkf.stream.qualisys import source as source_module
-from mbkf.stream.qualisys.client import QtmClient
+from mbkf.stream.qualisys.client import Packet, QtmClient
 from mbkf.stream.qualisys.source import QualisysSource
 from tests.captures import made_capture
 from tests.stream.reading import connected, read
@@ -204,6 +205,16 @@ def test_forces_that_come_late_are_waited_for(laboratory, monkeypatch):
     assert one.source.read(0.05) is None
 
 
+def test_forces_without_frames_do_not_pile_up(laboratory, monkeypatch):
+    monkeypatch.setattr(source_module, "HELD_SAMPLES", 20)
+    one = laboratory()
+    frames = [f for f in one.played.frames() if f.number in range(5)]
+    for frame in frames:
+        one.source._put(Packet(0.0, packets.DATA, one.server.data(frame, (4,))))
+    assert sum(len(chunk.index) for chunk in one.source._samples) == 20
+    assert one.source._samples[-1].index[-1] == frames[-1].plates.index[-1]
+
+
 def test_frames_do_not_wait_for_ever_for_forces_numbered_otherwise(laboratory, monkeypatch):
     monkeypatch.setattr(source_module, "FORCES_WITHIN_S", 0.001)
     one = laboratory()
@@ -242,13 +253,13 @@ def test_an_older_qtm_is_spoken_to_in_its_version():
     server.close()
 
 
-def test_another_server_is_refused():
+@pytest.mark.parametrize("greeting", [b"\x11\0\0\0\1\0\0\0" + b"220 mail\0", b"SSH-2.0-OpenSSH_9.6\r\n"])
+def test_another_server_is_refused(greeting):
     listener = socket.create_server((HERE, 0))
 
     def greet():
         connection, _ = listener.accept()
-        text = b"220 mail\0"
-        connection.sendall((8 + len(text)).to_bytes(4, "little") + (1).to_bytes(4, "little") + text)
+        connection.sendall(greeting)
         connection.close()
 
     thread = threading.Thread(target=greet)
