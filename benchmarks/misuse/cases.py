@@ -21,8 +21,9 @@ from mbkf.model.body_file import load_body
 OUT = "OUT"
 NO_FILES = {
     "acc=g,gyr=deg/s", "ADDRESS", "[ADDRESS:]PORT", "AXIS", "A,B", "A,B,C", "A,B@T0:T1", "CODE", "E",
-    "FIRST:LAST:COUNT", "FRACTION", "HZ", "I/N", "IP", "KG", "KG|auto", "LABEL", "LIST", "M", "MS", "N", "NAME",
-    "NAME=VALUE", "NAME|N", "PERSON", "S", "SD", "TEXT", "T0:T1", "UNIT", "WORD", "W,X,Y,Z|compared", "X", "X,Y,Z",
+    "FIRST:LAST:COUNT", "FRACTION", "FROM-TO", "HZ", "I/N", "IP", "KG", "KG|auto", "LABEL", "LIST", "M", "MS", "N",
+    "NAME", "NAME=VALUE", "NAME[=FROM-TO]", "NAME|N", "PASSWORD", "PERSON", "S", "SD", "TEXT", "T0:T1", "UNIT", "WORD",
+    "W,X,Y,Z|compared", "X", "X,Y,Z",
 }  # fmt: skip
 """Values in help texts that name no file."""
 
@@ -109,6 +110,7 @@ CASES = (
     Case("label", "{raw} --subject {subject} --truth {trial} --out {OUT}", "new.c3d", (".json",)),
     Case("label", "{raw} --static {static} --protocol {protocol} --mass 70 --out {OUT}", "new.c3d", (".json", ".toml")),
     Case("reconstruct", "{trc} " + ON_TRIAL + " --out {OUT}", "new"),
+    Case("reconstruct", "{trial} --subject {subject} --forces {forces} --emg {emg} --out {OUT}", "new"),
     Case("reconstruct", "{trial} --subject {subject} --imu {imus} --imu-mounts {mounts} --out {OUT}", "new"),
     Case("batch", "{study} --workers 1 --preset {preset} --filter dynamic --out {OUT}", "new"),
     Case("batch", "{list} --workers 1 --out {OUT}", "new"),
@@ -122,9 +124,13 @@ CASES = (
     Case("view", "{result} --html {OUT}", "new.html"),
     Case("report", "{result} --labels {labels} --out {OUT}", "new.html"),
     Case("report", "{session} --against {result} --norms {norms} --out {OUT}", "new.html", rewrites=("report.html",)),
+    Case("report", "{session} --visits {earlier} --session {visit} --laboratory {laboratory} --out {OUT}", "new.html",
+         rewrites=("report.html",)),
     Case("report", "{session} --curves {OUT}", "new.csv"),
     Case("report", "{session} --curves {OUT}", "new.parquet"),
     Case("norms build", "{session} --out {OUT}", "new.toml"),
+    Case("norms import", "{bands} --age 20-40 --speed 1.1-1.4 --out {OUT}", "new.toml"),
+    Case("norms export", "{norms} --out {OUT}", "new.csv"),
     Case("app", "{study} --no-browser", runs=False, serves=True),
     Case("tune", "{trc} {trial} --subject {subject} --forces {forces} --preset {preset} --hold-out {trial} --name new"
          " --runs 1 --out {OUT}", "new.toml", slow=True),

@@ -127,7 +127,7 @@ def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run
 @pytest.mark.parametrize(
     ("address", "body", "told"),
     [
-        (EVENTS, "no json", "no JSON"),
+        (EVENTS, "no json", "cannot be read; load it again"),
         (EVENTS, "[]", "sent no events"),
         (EVENTS, "{}", "sent no events"),
         (EVENTS, '{"events": 3}', "event must be a list"),

@@ -20,7 +20,7 @@ def test_the_page_and_what_it_says(server, cookie):
     status, said = plain(server, cookie, say, "POST", json.dumps({"do": "done"}))
     assert (status, said) == (200, {"done": True})
     status, said = plain(server, cookie, say, "POST", b"\xff")
-    assert status == 200 and "JSON" in said["trouble"]
+    assert status == 200 and "cannot be read; load it again" in said["trouble"]
     assert asked(server, "/marker_set?session=P9", Cookie=cookie)[0].status == 404
 
 

@@ -85,7 +85,7 @@ def read_pages(data: Path, out: Path) -> tuple[list[Read], set[str], list[bool]]
     found: list[Read] = []
     with browser() as made, served(lab) as server:
         user = visit(made, server.url)
-        user.page.evaluate("localStorage.setItem('mbkf language', 'es')")
+        user.page.evaluate("remember('mbkf language', 'es')")
         for session in (*CAPTURES, BROKEN):
             user.page.goto(server.url.split("?")[0] + f"?session={session}")
             user.wait("table")

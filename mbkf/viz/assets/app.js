@@ -272,7 +272,7 @@ async function sessionOf(folders) {
 }
 
 function chooseLanguage() {
-  const select = element("select", { onchange: () => { language = select.value; localStorage.setItem("mbkf language", language); start(); } },
+  const select = element("select", { onchange: () => { language = select.value; remember("mbkf language", language); start(); } },
     ...Object.keys(WORDS).map((name) => element("option", { value: name, selected: name === language }, WORDS[name].name)));
   place("language").replaceChildren(word("language") + " ", select);
 }

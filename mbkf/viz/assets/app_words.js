@@ -1,10 +1,24 @@
-// The page's words in the language that was chosen; WORDS comes from the language files.
+// The page's words in the language that was chosen, which the browser remembers; WORDS comes from the language files.
 "use strict";
 
 const WORDS = JSON.parse(document.getElementById("words").textContent);
 
+function remembered(key) {
+  try {
+    return JSON.parse(localStorage.getItem(key));
+  } catch {
+    return null;
+  }
+}
+
+function remember(key, value) {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch { /* a page opened from a file or written into a window may have no storage */ }
+}
+
 const known = (name) => (name in WORDS ? name : null);
-let language = known(new URLSearchParams(location.search).get("language")) || known(localStorage.getItem("mbkf language")) || known(navigator.language.slice(0, 2)) || "en";
+let language = known(new URLSearchParams(location.search).get("language")) || known(remembered("mbkf language")) || known(navigator.language.slice(0, 2)) || "en";
 
 // Every request states the language that the page is read in, so that the server's sentences come in it.
 const fetchPlain = window.fetch.bind(window);

@@ -3,12 +3,8 @@
 "use strict";
 
 window.film = {
-  async begin([width, height, title]) {
-    while (!window.mbkf) {
-      const trouble = document.getElementById("trouble").textContent;
-      if (trouble) throw new Error(trouble);
-      await new Promise((done) => setTimeout(done, 10));
-    }
+  begin([width, height, title]) {
+    if (!window.mbkf) throw new Error(document.getElementById("trouble").textContent);
     const { view, recording } = window.mbkf, canvas = element("canvas", { width, height });
     Object.assign(view.pane.style, { position: "fixed", inset: "0 auto auto 0", width: `${width}px`, height: `${height}px` });
     view.viewer.renderer.setPixelRatio(1);

@@ -3,20 +3,6 @@
 
 const DEFAULTS = ["angle:knee_angle_r", "torque:ankle_angle_r", "reaction:vertical_r", "reaction:vertical_l"];
 
-function remembered(key) {
-  try {
-    return JSON.parse(localStorage.getItem(key));
-  } catch {
-    return null;
-  }
-}
-
-function remember(key, value) {
-  try {
-    localStorage.setItem(key, JSON.stringify(value));
-  } catch { /* a page opened from a file may have no storage */ }
-}
-
 class Panel {
   // column: the element to fill; onSeek(time): called when a plot is clicked, or null.
   constructor(column, quantities, onSeek) {

@@ -22,6 +22,13 @@ Picture = NDArray[np.uint8]
 """(height, width, 3) red, green, blue."""
 
 
+STARTED = "() => window.mbkf || document.getElementById('trouble').textContent"
+"""True in a page whose view has started or has stated why it cannot."""
+
+STARTS_WITHIN_MS = 120_000.0
+"""A view starts in 1 to 2 s; one whose script ended in an error never does."""
+
+
 @dataclass(frozen=True)
 class FilmSettings:
     """Rate and size of a film.
@@ -59,6 +66,7 @@ def film_pictures(
     times = r.times_s[:: round(r.rate_hz / scene["rate_hz"])]
     size = settings.width, settings.height
     with shown_page(page(played), *size) as shown:
+        shown.wait_for_function(STARTED, timeout=STARTS_WITHIN_MS)
         shown.evaluate(asset("film.js"))
         shown.evaluate("words => film.begin(words)", [*size, scene["title"]])
         rows = film_rows(times, scene["first_tracked"], settings.rate_hz)
