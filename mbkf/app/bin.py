@@ -238,8 +238,12 @@ class Bin:
 def _gone(found: Moved) -> Refused:
     """The refusal to undo a set whose files are at their new places no more."""
     if found.to_session:
-        text = f"the files are no longer in '{found.to_session}'; undo the later change first"
-        return Refused(NOT_FOUND, text, "moved_on", found.to_session)
+        return Refused(
+            NOT_FOUND,
+            f"the files are no longer in '{found.to_session}'; undo the later change first",
+            "moved_on",
+            found.to_session,
+        )
     place = f"{BIN}/{found.key}"
     return Refused(NOT_FOUND, f"the files are no longer in '{place}'", "bin_emptied", place)
 

@@ -146,12 +146,12 @@ def sinks(
         served = WebSocketResults(setup.model, *parse_address(args.websocket), args.token)
         say(f"results: {served.url}")
         found.append(served)
-    for option, to in (("json", args.send_json), ("osc", args.send_osc)):
+    for kind, option, to in (("json", "--send-json", args.send_json), ("osc", "--send-osc", args.send_osc)):
         if to is not None:
             from mbkf.stream.results.datagrams import DatagramResults
             from mbkf.stream.results.websocket import parse_address
 
-            found.append(DatagramResults(setup.model, option, *parse_address(to, f"--send-{option}")))
+            found.append(DatagramResults(setup.model, kind, *parse_address(to, option)))
     if args.view:
         from mbkf.viz.live.page import LivePage
 

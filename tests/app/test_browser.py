@@ -96,6 +96,7 @@ def test_the_whole_job_by_keyboard(page, lab, tmp_path):
     source = study(tmp_path / "disk", trials=1) / "P1"
     (source / "broken.c3d").write_bytes(b"nothing")
     page.wait_for_selector(".drop")
+    until(page, "document.querySelector('[data-key^=\"choose true\"]') !== null")
     stops_at(page, "choose true")
     with page.expect_file_chooser() as chosen:
         page.keyboard.press("Enter")
