@@ -1,6 +1,7 @@
 """The page in a browser: a new user's clicks, the keyboard alone, narrow screens, failures, undo and accessibility.
 
-The folder is made: a standing trial, a walk, and a file that is no capture, which must never make the session green.
+The benchmark writes a folder with a standing trial, a walk and a text file named as a capture; the text file fails,
+so the page must not show the session in green.
 """
 
 from __future__ import annotations

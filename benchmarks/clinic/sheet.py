@@ -50,7 +50,7 @@ _BEYOND = """() => Math.max(...[...document.querySelectorAll(".leaf")].flatMap((
   return [...leaf.querySelectorAll("*")].map((one) => one.getBoundingClientRect()).filter((box) => box.width)
     .map((box) => Math.max(box.bottom - end.bottom, box.right - end.right));
 }))"""
-"""How far anything in a page of the sheet reaches beyond it, below or on the right."""
+"""Script that returns the largest reach of an element beyond its sheet page, below or on the right, px."""
 
 _MARK = """(all) => {
   let n = 0;

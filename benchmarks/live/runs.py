@@ -76,7 +76,7 @@ class Run:
 
 
 class Wire(NamedTuple):
-    """How a capture is sent and received.
+    """Settings by which a capture is sent and received.
 
     Attributes:
         receive: Options of ``mbkf live``.

@@ -101,7 +101,7 @@ def wire_of(protocol: str, walk: Played, name: str, counted: bool) -> Wire:
 def outcome(
     protocol: str, fault: Fault, seed: int, walk: Played, folder: Path, make: MakeWire = wire_of
 ) -> dict[str, object]:
-    """What becomes of a run with a fault.
+    """Runs a live reconstruction on a stream with a fault, and returns its end.
 
     Args:
         protocol: Of the stream.

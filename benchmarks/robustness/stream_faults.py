@@ -72,7 +72,7 @@ def chunks(times: int, alternate: bool, first: int) -> list[tuple[str, list[str]
 
 
 def rows(found: dict[str, Told], over: str = "LSL and NatNet") -> Iterator[Check]:
-    """What became of the runs, by protocol, fault and seed; ``over`` names the protocols."""
+    """Ends of the runs, by protocol, fault and seed; ``over`` names the protocols."""
     kinds = len({word.split(" ", 1)[1].rsplit(":", 1)[0] for word in found})
     name = f"{kinds} stream faults × {TIMES if len(found) >= TIMES * kinds else 1} over {over}"
     died = {word: told["died"] for word, told in found.items() if told.get("died")}

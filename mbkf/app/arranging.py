@@ -261,11 +261,11 @@ def _files_of(folder: Path, trial: str) -> list[Path]:
     """The files of a trial.
 
     Raises:
-        Refused: There is no such trial.
+        Refused: The session lacks the trial.
     """
     capture = next((one for one in captures_in(folder) if one.stem == trial), None)
     if capture is None:
-        raise Refused(NOT_FOUND, f"there is no trial '{trial}'; load the page again", "gone", trial)
+        raise Refused(NOT_FOUND, f"the session has no trial '{trial}'; load the page again", "gone", trial)
     files = sorted(one for one in folder.iterdir() if one.is_file() and not one.name.startswith("."))
     own = [one for one in files if one.stem.lower() == trial.lower() and one.name not in OF_SESSION]
     forces = forces_beside(capture, files)

@@ -25,7 +25,7 @@ CAPTURES: Mapping[str, tuple[str, ...]] = {
 """Sessions: a walk with a late clock, one without a static trial, one that no mass is known of, two persons."""
 
 BROKEN = "S5"
-"""A session of a file that is no capture, beside one that is cut short."""
+"""A session with a text file named as a C3D and a C3D that is cut short."""
 
 SPANISH = "es"
 

@@ -53,7 +53,7 @@ def scores_part(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
         )
         for one in lines
     ]
-    right, left = (None if side is None else side.gdi for side in scores.sides)
+    right, left = _gdi(scores)
     if right is not None or left is not None:
         rows.append((terms.score(GDI), _text(right), _text(left), "–", "100 ± 10"))
     note = terms.say("scores_note", norms.name)
@@ -84,7 +84,7 @@ def scores_of_sheet(gait: MovementGroup, norms: Norms | None, terms: Terms) -> s
     if norms is None or scores is None:
         return ""
     lines = _lines(gait, scores, norms, terms)
-    right, left = (None if side is None else side.gdi for side in scores.sides)
+    right, left = _gdi(scores)
     total = lines[-1]
     texts = [
         terms.sheet("gps", *(_text(one) for one in (total.both, total.right, total.left)), _norm(total.norm))
@@ -132,6 +132,12 @@ def _gps(scores: GaitScores) -> tuple[Mean | None, Mean | None]:
     """The score of right and left."""
     right, left = scores.sides
     return None if right is None else right.gps, None if left is None else left.gps
+
+
+def _gdi(scores: GaitScores) -> tuple[Mean | None, Mean | None]:
+    """The Gait Deviation Index of right and left."""
+    right, left = scores.sides
+    return None if right is None else right.gdi, None if left is None else left.gdi
 
 
 def _pair(mean: Mean | None) -> tuple[float, float] | None:
