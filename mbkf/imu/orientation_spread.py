@@ -9,7 +9,6 @@ mean(R) b / g. A field that is read late by τ appears turned by ω in between, 
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import lfilter
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.imu.frames import rotate
@@ -96,6 +95,8 @@ def _recent_mean(values: Array, samples: float, smooth: bool) -> Array:
     keep = np.exp(-1.0 / samples)
 
     def sums(series: Array) -> Array:
+        from scipy.signal import lfilter  # loads slowly, and a body's motion does without
+
         return np.asarray(lfilter([1.0], [1.0, -keep], series, axis=0))
 
     def total(series: Array) -> Array:

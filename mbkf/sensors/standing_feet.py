@@ -83,6 +83,10 @@ class Rest(NamedTuple):
     places: Places = (None, None)
 
 
+RESTING_ROWS, ROLLING_ROWS = 6 + SOLE_ENDS + 2, 3 + 1
+"""The most rows of a foot at rest, and of one that rolls."""
+
+
 class StandingFeet(Block[State, None, StandingDecision, Rest]):
     """Feet that stand, on a state that begins with (q, v)."""
 

@@ -25,6 +25,7 @@ _KIND = (
 _WORD_OF_KIND = re.compile(rf"(?:{_KIND})(?P<axis>[wxyz])?", re.IGNORECASE)
 _SHORT = re.compile(r"(?P<kind>[agmqw])(?P<axis>[wxyz])", re.IGNORECASE)
 _SHORT_KINDS = {"a": "acc", "g": "gyr", "w": "gyr", "m": "mag", "q": "quat"}
+_LETTER = re.compile(r"[A-Za-z]")
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 _PAIRS = {"specific", "angular", "rotation", "turn", "magnetic", "ang", "mag"}
 _BRACKETS = re.compile(r"[\s_.:\-]*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?[^\[\]()]*)[\])]\s*$")
@@ -76,6 +77,8 @@ def parse_column_name(name: str, kind: str = "") -> ColumnName | None:
 
     ``kind`` is the quantity of a name that is an axis alone ("X (m/s^2)"), by the file's own name.
     """
+    if _LETTER.search(name) is None:  # most cells of a table
+        return None
     plain, bracketed = split_unit(_HEADS.sub("", name.strip()))
     words = [(word[0], word.start(), word.end()) for word in _WORD.finditer(plain)]
     lower = [word.lower() for word, _, _ in words]

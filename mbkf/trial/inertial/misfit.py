@@ -2,7 +2,8 @@
 
 A body whose sensors are exchanged, or strapped on the other way round than it takes them to be, cannot stand on feet
 that rest while its sensors turn as they do. The gyroscopes' innovations times the motion of feet
-that should rest is least for the true mounting.
+that should rest is least for the true mounting. Innovations only add to their sum of squares, so that most wrong
+mountings are refused long before the end.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.sensors.block import AnyBlock, Rows
 from mbkf.sensors.body_sensors import BodySensors
-from mbkf.sensors.standing_feet import StandingFeet
+from mbkf.sensors.standing_feet import FOOT_REST, RESTING_ROWS, ROLLING_ROWS, StandingFeet
 
 MOVING_RAD_S = 1.0
 """A sensor that turns faster shows that the person moves."""
@@ -29,26 +30,62 @@ SETTLED_S = 0.3
 """The first frames still find out how fast the body moves."""
 
 
-def misfit(filter: TrackingFilter, recording: Recording) -> float:
+class _Squares:
+    """Innovations as they come, and the least root mean square that they can end with."""
+
+    def __init__(self, most: Array) -> None:
+        """Args: (T,) the most innovations of each frame."""
+        self._most = most
+        self._values: list[Array] = []
+        self._sum, self._count = 0.0, 0
+
+    def add(self, values: Array) -> None:
+        """Adds a frame's."""
+        self._values.append(values)
+        self._sum += float(values @ values)
+        self._count += len(values)
+
+    def least(self, t: int) -> float:
+        """Least root mean square at the end, when the innovations up to frame t are in."""
+        return float(np.sqrt(self._sum / max(self._count + self._most[t + 1 :].sum(), 1)))
+
+    def rms(self) -> float:
+        """The root mean square; 0 without innovations."""
+        values = np.concatenate([np.zeros(0), *self._values])
+        return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
+
+
+def misfit(filter: TrackingFilter, recording: Recording, beyond: float = np.inf) -> float:
     """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand; inf: implausible.
 
     Args:
         filter: The filter.
         recording: Its readings; their beginning is looked at.
+        beyond: The answer is inf, too, as soon as the misfit is certain to exceed this.
     """
+    assert recording.imus is not None
     first, last = round(SETTLED_S / recording.dt_s), looked_at(recording)
-    rates, feet = [], []
+    rates, feet = _Squares(np.full(last, 3 * recording.imus.shape[1])), _Squares(_most_rows(recording)[:last])
+    seen = False
     for t, posterior, _ in followed(TrackingLoop(filter), recording):
         if t >= last:
             break
         if t >= first:
             assert posterior.record.step is not None
-            parts = posterior.record.step.readings.parts
-            rates.append(_of(filter, parts, BodySensors).reshape(-1, 2, 3)[:, 0].ravel())
-            feet.append(_of(filter, parts, StandingFeet))
-    if not rates:
-        return np.inf
-    return _rms(np.concatenate(rates)) * (_rms(np.concatenate(feet)) or 1.0)
+            parts, seen = posterior.record.step.readings.parts, True
+            rates.add(_of(filter, parts, BodySensors).reshape(-1, 2, 3)[:, 0].ravel())
+            feet.add(_of(filter, parts, StandingFeet))
+            if rates.least(t) * feet.least(t) > beyond:
+                return np.inf
+    return rates.rms() * (feet.rms() or 1.0) if seen else np.inf
+
+
+def _most_rows(recording: Recording) -> Array:
+    """(T,) the most innovations of standing feet."""
+    rest = recording.readings.get(FOOT_REST)
+    if rest is None:
+        return np.full(len(recording), 2 * ROLLING_ROWS)
+    return np.where(rest > 0.5, RESTING_ROWS, ROLLING_ROWS).sum(axis=1)
 
 
 def looked_at(recording: Recording) -> int:
@@ -65,7 +102,3 @@ def _of(filter: TrackingFilter, parts: Sequence[Sequence[Rows]], kind: type[AnyB
         if isinstance(block, kind):
             return np.concatenate([np.zeros(0), *(one.innovation for one in own)])
     return np.zeros(0)
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0

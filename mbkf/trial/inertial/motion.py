@@ -174,7 +174,9 @@ def inertial_motion(
             ),
         )
         found = mounted_reversed(
-            model, segments, lambda turned, names: misfit(*_filter(_renamed(plan, turned, names)))
+            model,
+            segments,
+            lambda turned, names, beyond: misfit(*_filter(_renamed(plan, turned, names)), beyond),
         )
         plan = replace(plan, turned=found.turned)
         worn = _worn(plan)

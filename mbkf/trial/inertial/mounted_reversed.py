@@ -23,8 +23,9 @@ TURNED, TURNED_TOO = 0.7, 0.99
 smaller for a person who else follows custom, smaller at all for one who does not. The mounting of pelvis and trunk
 shows little in walking."""
 
-Judge = Callable[[frozenset[str], Mapping[str, str]], float]
-"""Misfit with sensors on some segments the other way round, and some segments named anew."""
+Judge = Callable[[frozenset[str], Mapping[str, str], float], float]
+"""Misfit with sensors on some segments the other way round, and some segments named anew; it may be inf where it
+exceeds a bound, the last argument."""
 
 
 @dataclass(frozen=True)
@@ -87,22 +88,24 @@ def mounted_reversed(model: HumanModel, segments: Sequence[str], judge: Judge) -
         segments: Segments that carry sensors.
         judge: Misfit of a way in which they may be worn.
     """
-    found, least = SensorPlacement(), judge(frozenset(), {})
+    found, least = SensorPlacement(), judge(frozenset(), {}, np.inf)
     if not np.isfinite(least):
         return found
     open_groups = list(groups(model, segments))
     while True:
-        turns = [(judge(found.turned | one, found.names), one) for one in open_groups]
-        turn, group = min(turns, key=lambda one: one[0], default=(np.inf, frozenset()))
-        swaps = (
-            []
-            if found.exchange
-            else [(judge(found.turned, both_ways(p)), p) for p in likely(model, segments)]
-        )
-        swap, pair = min(swaps, default=(np.inf, ("", "")))
-        if swap < min(CLEARLY * least, turn):
+        turn, group = (TURNED_TOO if found.turned else TURNED) * least, frozenset[str]()
+        for one in open_groups:
+            other = judge(found.turned | one, found.names, turn)
+            if other < turn:
+                turn, group = other, one
+        swap, pair = min(CLEARLY * least, turn), None
+        for both in () if found.exchange else likely(model, segments):
+            other = judge(found.turned, both_ways(both), swap)
+            if other < swap:
+                swap, pair = other, both
+        if pair is not None:
             found, least = SensorPlacement(found.turned, Exchange(pair, swap / least)), swap
-        elif turn < (TURNED_TOO if found.turned else TURNED) * least:
+        elif group:
             found, least = SensorPlacement(found.turned | group, found.exchange), turn
             open_groups.remove(group)
         else:

@@ -21,7 +21,23 @@ def test_sensors_the_other_way_round_fit_worse():
         known = worn_mounts(one.model, segments, one.standing, one.moving, one.posture, True, turned=turned)
         filter = worn_filter(inputs, known, first, settings, one.posture)
         found.append(misfit(filter, recording))
+        assert misfit(filter, recording, 1.001 * found[-1]) == found[-1]
+        assert misfit(filter, recording, 0.999 * found[-1]) == np.inf
     assert found[0] < 0.6 * min(found[1:])
+
+
+def test_a_misfit_far_beyond_the_bound_is_left_off_early(monkeypatch):
+    one = worn("squat", 2.0)
+    segments, settings = tuple(sensor.name for sensor in one.moving), MotionSettings()
+    inputs = motion_inputs(one.model, 0.01, segments)
+    recording = motion_recording(one.moving, segments, one.model, one.motion.times_s, settings)
+    first = first_posture(one.model, segments, one.motion.q[:2], 0.01, True)
+    known = worn_mounts(one.model, segments, one.standing, one.moving, one.posture, True)
+    filter, steps = worn_filter(inputs, known, first, settings, one.posture), []
+    step = filter.step
+    monkeypatch.setattr(filter, "step", lambda *known: steps.append(known) or step(*known))
+    assert misfit(filter, recording, 0.1 * misfit(filter, recording)) == np.inf
+    assert len(steps) < 1.6 * len(recording)
 
 
 def test_standing_before_a_movement_does_not_count():

@@ -22,11 +22,12 @@ def test_groups_are_worn_alike_and_hold_every_sensor_once():
 def judged(best_turned, best_names, seen=None):
     """A misfit that is least for one way of wearing sensors."""
 
-    def judge(turned, names):
+    def judge(turned, names, beyond):
         if seen is not None:
             seen.append((turned, dict(names)))
         wrong = len(turned ^ best_turned) + len(set(names.items()) ^ set(best_names.items()))
-        return 1.0 + wrong
+        assert beyond > 0.0
+        return np.inf if 1.0 + wrong > beyond else 1.0 + wrong  # as a misfit that is left off early
 
     return judge
 
