@@ -12,6 +12,7 @@ far smaller than any cut through one body.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -70,7 +71,7 @@ def bodies_of(positions_m: Array) -> tuple[Indices, ...]:
         return (np.arange(positions_m.shape[1]),)
     seen = (~np.isnan(shown[:, :, 0])).mean(axis=0)
     often = np.flatnonzero(seen >= LEAST_SEEN)
-    parts = _parted(shown, often)
+    parts = _parted(shown.tobytes(), shown.shape[1], tuple(often.tolist()))
     owner = np.full(len(seen), -1)
     for number, part in enumerate(parts):
         owner[part] = number
@@ -90,9 +91,17 @@ def _frames(positions_m: Array) -> Array:
     return positions_m[good[spread_indices(len(good), FRAMES)]]
 
 
-def _parted(shown: Array, columns: Indices) -> list[Indices]:
-    """The columns of each body among some, by repeated cuts."""
-    bodies, open_parts = [], [columns]
+@lru_cache(maxsize=4)
+def _parted(frames: bytes, points: int, columns: tuple[int, ...]) -> tuple[Indices, ...]:
+    """The columns of each body among some, by repeated cuts; cached, since several stages ask.
+
+    Args:
+        frames: (F, M, 3) positions.
+        points: Their number M.
+        columns: Those to part.
+    """
+    shown = np.frombuffer(frames).reshape(-1, points, 3)
+    bodies, open_parts = [], [np.array(columns, dtype=np.intp)]
     while open_parts:  # every cut leaves fewer columns in each part
         part = open_parts.pop()
         first = _two_bodies(shown[:, part])
@@ -100,7 +109,7 @@ def _parted(shown: Array, columns: Indices) -> list[Indices]:
             bodies.append(part)
         else:
             open_parts += [part[~first], part[first]]
-    return bodies
+    return tuple(bodies)
 
 
 def _two_bodies(shown: Array) -> BoolArray | None:

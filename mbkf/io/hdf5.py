@@ -9,12 +9,15 @@ from __future__ import annotations
 import zlib
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.io.files_read import opened, read_bytes
+
+if TYPE_CHECKING:
+    import h5py
 
 DAMAGED = (
     OSError, RuntimeError, KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError, MemoryError,

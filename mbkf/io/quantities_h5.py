@@ -11,11 +11,9 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-import h5py
 import numpy as np
-from h5py import h5a, h5s, h5t
 
 from mbkf.conventions import Array
 from mbkf.io.dimensions import AXES, axes_text
@@ -23,13 +21,14 @@ from mbkf.io.hdf5 import array
 from mbkf.io.quantities import Quantity, attributes, quantities
 from mbkf.io.utf8 import without_noughts
 
+if TYPE_CHECKING:
+    import h5py
+
 Fields: TypeAlias = dict[str, Any]
 """Values by the name of a record's field."""
 
 PLAIN = (str, bool, int, float)
 """Attributes that HDF5 holds as they are; others are JSON."""
-
-_TEXT = h5t.py_create(h5py.string_dtype(), logical=True)
 
 _PACKED_FROM = 256
 """Arrays of more numbers are compressed."""
@@ -82,6 +81,8 @@ def write_labels(file: h5py.File, key: str, labels: Sequence[str], meaning: str)
         labels: One for each entry of the axis.
         meaning: Of the entries.
     """
+    import h5py
+
     dataset = file.create_dataset(
         key, data=[without_noughts(label) for label in labels], dtype=h5py.string_dtype()
     )
@@ -121,8 +122,11 @@ def write_array(file: h5py.File, one: Quantity, value: Array) -> None:
 
 def _describe(dataset: h5py.Dataset, **texts: str) -> None:
     """Writes attributes, five times as fast as ``dataset.attrs``: a result has hundreds of them."""
+    import h5py
+
+    kind = h5py.h5t.py_create(h5py.string_dtype(), logical=True)
     for name, text in texts.items():
-        attribute = h5a.create(dataset.id, name.encode(), _TEXT, h5s.create(h5s.SCALAR))
+        attribute = h5py.h5a.create(dataset.id, name.encode(), kind, h5py.h5s.create(h5py.h5s.SCALAR))
         attribute.write(np.array(without_noughts(text), dtype=h5py.string_dtype()))
 
 

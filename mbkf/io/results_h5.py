@@ -6,9 +6,8 @@ import dataclasses
 import io
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
 
 from mbkf.conventions import read_only
@@ -24,6 +23,9 @@ from mbkf.io.quantities import Quantity
 from mbkf.io.quantities_h5 import plain_json, read_record, write_array, write_labels, write_record
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
+
+if TYPE_CHECKING:
+    import h5py
 
 FORMAT = "mbkf reconstruction"
 FORMAT_VERSION = 1
@@ -47,6 +49,8 @@ def write_h5(reconstruction: Reconstruction, path: str | Path, run_id: str = "")
     Raises:
         OSError: The file cannot be written.
     """
+    import h5py
+
     made = io.BytesIO()  # HDF5 itself does not survive a disk that is full
     with h5py.File(made, "w", userblock_size=USER_BLOCK) as file:
         file.attrs["format"] = FORMAT
@@ -71,6 +75,8 @@ def read_h5(path: str | Path) -> Reconstruction:
     Raises:
         FileFormatError: The file is missing, damaged or something else.
     """
+    import h5py
+
     source = Path(path)
     check_input(source, "make it with 'mbkf reconstruct'")
     try:

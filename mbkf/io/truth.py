@@ -8,7 +8,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 
 from mbkf.conventions import Array
@@ -77,6 +76,8 @@ def write_truth(truth: Truth, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
+    import h5py
+
     made = BytesIO()
     with h5py.File(made, "w", userblock_size=USER_BLOCK) as file:
         file.attrs["format"] = FORMAT
@@ -93,6 +94,8 @@ def read_truth(path: str | Path) -> Truth:
     Raises:
         FileFormatError: The file is missing, damaged or something else.
     """
+    import h5py
+
     source = Path(path)
     check_input(source, "make it with 'mbkf synth'")
     try:

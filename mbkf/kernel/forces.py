@@ -11,7 +11,7 @@ import numpy as np
 
 from mbkf.conventions import Array, Int32Array
 from mbkf.kernel.loading import Library, library
-from mbkf.numerics.forced_error import GAUSS_RULES, ForceDensity, ForcedRates, LightStep, MotionStep
+from mbkf.numerics.forced_error import ForceDensity, ForcedRates, LightStep, MotionStep, gauss_rules
 
 
 def light_step(P: Array, step: LightStep, joints: Int32Array, density: ForceDensity) -> Array:
@@ -42,7 +42,7 @@ def exact_step(
     """
     A, U = rates.motion(order="F"), np.asfortranarray(rates.by_u)
     terms, motion, push, after = _kernel().exact_forces(
-        P, A, U, joints, dt_s, density.velocities, density.forces, GAUSS_RULES
+        P, A, U, joints, dt_s, density.velocities, density.forces, gauss_rules()
     )
     return (MotionStep(motion, push), after) if terms else None
 

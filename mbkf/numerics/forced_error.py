@@ -9,6 +9,7 @@ for a fraction of its products. Noise is white: a density per velocity, and one 
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -26,17 +27,14 @@ LARGEST = 5.0
 _MOST = TERMS // 3 + 1
 
 
-def _rules() -> Array:
-    """Gauss's rules of 1 to so many points, one a row: points in 0 … 1 and weights, 0 behind them."""
+@cache
+def gauss_rules() -> Array:
+    """(most, most, 2) Gauss's rules of 1 to so many points, one a row: points in 0 … 1 and weights, 0 behind them."""
     rules = np.zeros((_MOST, _MOST, 2))
     for points in range(1, _MOST + 1):
         nodes, weights = np.polynomial.legendre.leggauss(points)
         rules[points - 1, :points] = np.stack([(nodes + 1.0) / 2.0, weights / 2.0], axis=1)
     return rules
-
-
-GAUSS_RULES = _rules()
-"""(most, most, 2) rules of integrals over a step."""
 
 
 class ForcedRates(NamedTuple):
@@ -294,7 +292,7 @@ def _terms(A: Array, dt_s: float) -> Array | None:
 def _gauss(terms: int, dt_s: float) -> tuple[Array, Array]:
     """Nodes in 0 … 1 and weights, s, of the integral over a step: so many that the error is rounding."""
     points = terms // 3 + 1
-    nodes, weights = GAUSS_RULES[points - 1, :points].T
+    nodes, weights = gauss_rules()[points - 1, :points].T
     return nodes, dt_s * weights
 
 

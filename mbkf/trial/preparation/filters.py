@@ -20,8 +20,6 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.warm_start import WarmStart
 from mbkf.filters.plant import PlantMaker
 from mbkf.filters.report import AnyReport
-from mbkf.filters.torque.filter import TorqueFilter
-from mbkf.filters.torque.report import TorqueReport
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.io.records import PlateReadings
@@ -120,6 +118,9 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
 
 
 def _torque(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
+    from mbkf.filters.torque.filter import TorqueFilter  # loads slowly, and most trials do without
+    from mbkf.filters.torque.report import TorqueReport
+
     _refuse(own, "the torque filter is the thesis's")
     if inputs.torque.plates == "inputs" and not inputs.plates:
         raise InvalidInput(
