@@ -12,6 +12,8 @@ from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.standing_feet import (
     FOOT_REST,
+    RESTING_ROWS,
+    ROLLING_ROWS,
     Rest,
     StandingDecision,
     StandingFeet,
@@ -69,6 +71,16 @@ def test_a_body_at_rest_on_the_floor_it_stood_on_has_nothing_to_correct():
     block = StandingFeet(MODEL, 0.01, standing_q=q)
     _, innovation = stacked(block.linearise(at(q, np.zeros(MODEL.nv)), StandingDecision((0,), (0.0,))))
     np.testing.assert_allclose(innovation, 0.0, atol=1e-9)
+
+
+def test_no_decision_has_more_rows_than_stated():
+    block, place = StandingFeet(MODEL, 0.01), np.zeros(2)
+    for decision, most in (
+        (StandingDecision((0, 1), (0.4, 0.0), (), (place, place)), 2 * RESTING_ROWS),
+        (StandingDecision((1,), (0.4,), (0,), (None, place)), RESTING_ROWS + ROLLING_ROWS),
+        (StandingDecision((), (), (0, 1)), 2 * ROLLING_ROWS),
+    ):
+        assert len(stacked(block.linearise(at(Q, V), decision))[1]) == most
 
 
 REST = np.zeros(MODEL.nv)
