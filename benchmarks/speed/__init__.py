@@ -1,14 +1,18 @@
 """Time of a frame, as a multiple of P, and of whole commands; how it grows with markers and plates.
 
-Times are ratios within one run to a product of matrices that is measured between the frames (``products.py``). The
-synthetic walk needs no reference captures; the real one is left out without them. What labels add is measured by the
-benchmark ``labelling``, how many frames a second a stream may have by ``live``.
+Times of frames are ratios within one run to a product of matrices that is measured between the frames
+(``products.py``). The synthetic walk needs no reference captures; the real one is left out without them. The benchmark
+``labelling`` measures the cost of labels, ``live`` the frames a second that a stream may have.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 from benchmarks.checks import Check, Context, information
-from benchmarks.speed import bodies, commands, growth
+from benchmarks.parts import Part, part_rows
+from benchmarks.speed import bodies, commands, growth, processor_time
 from benchmarks.speed.products import Times
 from benchmarks.speed.steps import (
     INVERSE_DYNAMICS,
@@ -28,22 +32,30 @@ STEP_P, TAIL, FRAME_P, KINEMATIC_P = 1.5, 1.5, 3.0, 0.6
 
 
 def run(context: Context) -> list[Check]:
-    """All rows; the synthetic walk's alone, and fewer steps, when quick."""
+    """Rows of all parts, or of those of ``--only``; time of a frame alone when quick."""
+    if context.quick and not context.only:
+        context = replace(context, only=("frames",))
+    return part_rows(context, PARTS)
+
+
+def frame_rows(context: Context) -> Iterator[Check]:
+    """Time of a frame; the synthetic walk's alone, and fewer steps, when quick."""
     seconds, steps = (QUICK_SECONDS, QUICK_STEPS) if context.quick else (SECONDS, LEAST_STEPS)
     walks: dict[str, Walk] = {"synthetic walk": synthetic(seconds)}
     if context.data is not None and not context.quick:
         walks[REAL] = real(context.data)
-    checks: list[Check] = []
     for name, walk in walks.items():
-        checks += [
-            *_dynamic(name, dynamic_times(walk, steps)),
-            *_kinematic(name, kinematic_times(walk, steps)),
-        ]
-    if not context.quick:
-        checks += growth.rows(seconds, steps // 4)
-        checks += bodies.rows(context.data)
-        checks += commands.rows(context.out)
-    return checks
+        yield from _dynamic(name, dynamic_times(walk, steps))
+        yield from _kinematic(name, kinematic_times(walk, steps))
+
+
+PARTS: dict[str, Part] = {
+    "frames": frame_rows,
+    "growth": lambda _: growth.rows(SECONDS, LEAST_STEPS // 4),
+    "bodies": lambda context: bodies.rows(context.data),
+    "commands": lambda context: commands.rows(context.out),
+    "processor": processor_time.rows,
+}
 
 
 def _dynamic(name: str, times: Times) -> list[Check]:

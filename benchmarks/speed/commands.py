@@ -65,15 +65,19 @@ def _median_s(words: Sequence[str | Path], folder: Path, runs: int) -> dict[str,
 
 
 def _seconds(*words: str | Path) -> float:
-    """Wall time of a command, as an installed package runs it: with modules that are compiled once and kept.
+    """Wall time of a command.
 
     Raises:
         InvalidInput: It fails.
     """
-    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     command = [sys.executable, "-m", "mbkf", *words]
     begin = perf_counter()
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=kept)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=as_installed())
     if done.returncode:
         raise InvalidInput(done.stderr.strip().splitlines()[-1])
     return perf_counter() - begin
+
+
+def as_installed() -> dict[str, str]:
+    """Environment of a command that runs as an installed package does: its modules are compiled once and kept."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
