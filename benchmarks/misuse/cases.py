@@ -121,6 +121,7 @@ CASES = (
     Case("live", "--from file:{trial} --mass 70 --protocol {protocol} --speed 0 --out {OUT}", "new", runs=False,
          writes=LIVE),
     Case("live", "--recover {result}", runs=False),
+    Case("live", "--list --from udp", runs=False),
     Case("view", "{result} --html {OUT}", "new.html"),
     Case("report", "{result} --labels {labels} --out {OUT}", "new.html"),
     Case("report", "{session} --against {result} --norms {norms} --out {OUT}", "new.html", rewrites=("report.html",)),

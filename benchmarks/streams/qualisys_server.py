@@ -56,7 +56,12 @@ class QtmServer:
     """
 
     def __init__(
-        self, played: Played, address: str = "127.0.0.1", port: int = 0, most_version: str = "1.25"
+        self,
+        played: Played,
+        address: str = "127.0.0.1",
+        port: int = 0,
+        most_version: str = "1.25",
+        discover_port: int | None = None,
     ) -> None:
         """Listens at the port after the base port.
 
@@ -65,6 +70,7 @@ class QtmServer:
             address: Address of this computer.
             port: Base port; 0 for any.
             most_version: The newest version of the protocol that it knows.
+            discover_port: Port at which it answers clients that look for it, 0 for any; None for none.
         """
         self.played = played
         self.names = list(played.stream.marker_names)
@@ -83,6 +89,7 @@ class QtmServer:
         self._closing = False
         self._threads = [threading.Thread(target=self._accept, name="qtm-accept", daemon=True)]
         self._threads[0].start()
+        self._finder = self._discoverable(address, discover_port)
 
     def listening(self) -> bool:
         """True once a client asked for frames."""
@@ -130,6 +137,11 @@ class QtmServer:
             with suppress(OSError), one.lock:
                 one.connection.sendall(data)
 
+    @property
+    def discover_port(self) -> int | None:
+        """The port at which it answers clients that look for it."""
+        return None if self._finder is None else int(self._finder.getsockname()[1])
+
     def streaming(self) -> list[Client]:
         """Clients that asked for frames."""
         return [one for one in self._clients if one.components]
@@ -143,6 +155,10 @@ class QtmServer:
         for one in list(self._clients):
             with suppress(OSError):
                 one.connection.shutdown(socket.SHUT_RDWR)
+        if self._finder is not None:
+            with suppress(OSError):
+                self._finder.shutdown(socket.SHUT_RDWR)
+            self._finder.close()
         for thread in self._threads:
             thread.join(5.0)
         self._datagrams.close()
@@ -153,6 +169,34 @@ class QtmServer:
         everything = "all" in wanted
         text = "".join(block() for name, block in blocks.items() if everything or name in wanted)
         return f"<QTM_Parameters_Ver_1.25>{text}</QTM_Parameters_Ver_1.25>"
+
+    def _discoverable(self, address: str, port: int | None) -> socket.socket | None:
+        """The socket at which it is looked for; None without one."""
+        if port is None:
+            return None
+        finder = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        finder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        finder.bind((address, port))
+        finder.settimeout(0.1)
+        thread = threading.Thread(target=self._be_found, args=(finder,), name="qtm-discover", daemon=True)
+        self._threads.append(thread)
+        thread.start()
+        return finder
+
+    def _be_found(self, finder: socket.socket) -> None:
+        """Answers a discover packet: ten bytes, the last two the port for the answer, in network byte order."""
+        answer = b"simulator, QTM 2.17 (build 4000), 8 cameras\0"
+        while not self._closing:
+            try:
+                data, (sender, *_) = finder.recvfrom(1024)
+            except TimeoutError:
+                continue
+            except OSError:
+                return
+            if len(data) == 10 and struct.unpack_from("<II", data) == (10, 7):
+                head = struct.pack("<II", 10 + len(answer), 1)
+                to = (sender, struct.unpack_from(">H", data, 8)[0])
+                finder.sendto(head + answer + struct.pack(">H", self.port), to)
 
     def _accept(self) -> None:
         while not self._closing:

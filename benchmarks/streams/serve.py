@@ -23,6 +23,7 @@ def main(words: Sequence[str]) -> None:
     parser.add_argument("protocol", choices=("qualisys",))
     parser.add_argument("trial")
     parser.add_argument("--port", type=int, default=0)
+    parser.add_argument("--discover-port", type=int)
     parser.add_argument("--forces")
     parser.add_argument("--speed", type=float, default=1.0)
     parser.add_argument("--jitter", type=float, default=0.0)
@@ -30,7 +31,7 @@ def main(words: Sequence[str]) -> None:
     parser.add_argument("--unlabelled", action="store_true")
     args = parser.parse_args(words)
     stream = played(read_capture(args.trial, forces=args.forces), args.unlabelled)
-    player: Player = QtmServer(stream, port=args.port)
+    player: Player = QtmServer(stream, port=args.port, discover_port=args.discover_port)
     try:
         replay(stream, player, ReplaySettings(args.speed, args.jitter / 1e3, args.loss), threading.Event())
     finally:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mbkf.app.workspace import Workspace
@@ -10,8 +10,11 @@ from mbkf.errors import InvalidInput
 from mbkf.io.session import TrialKind
 from mbkf.study.survey.session import SurveyedSession
 
-LSL, NATNET, FILE = "lsl", "natnet", "file"
+LSL, NATNET, QUALISYS, UDP, FILE = "lsl", "natnet", "qualisys", "udp", "file"
 """Sources of the frames."""
+
+MOTIVE = ("server", "local", "port", "multicast")
+"""Options of NatNet; the first two have to be given."""
 
 SUBJECT, STANDING = "subject", "standing"
 """Bodies: the session's scaled one, or one that is scaled while the person stands still."""
@@ -19,7 +22,11 @@ SUBJECT, STANDING = "subject", "standing"
 MOST_LETTERS = 500
 """Longest text that the page may send."""
 
-MISSING = {"stream": "choose a stream", "trial": "choose a capture"}
+MISSING = {
+    "stream": "choose a stream",
+    "trial": "choose a capture",
+    "place": "the address of QTM's computer is missing",
+}
 """Messages for texts that are missing; others are addresses."""
 
 
@@ -52,8 +59,8 @@ def live_options(workspace: Workspace, session: str, wanted: object) -> list[str
     Args:
         workspace: The sessions.
         session: Name of the session.
-        wanted: ``source`` ("lsl", "natnet" or "file") with ``stream``, ``server`` and ``local``, or ``trial``; ``body``
-            ("subject" or "standing").
+        wanted: ``source`` with ``stream`` ("lsl"), :data:`MOTIVE` ("natnet"), ``place`` (what follows "qualisys:" or
+            "udp:") and ``local`` ("udp"), or ``trial`` ("file"); ``body`` ("subject" or "standing").
 
     Raises:
         InvalidInput: The session does not exist, or an entry is missing or not possible.
@@ -69,9 +76,15 @@ def _source(session: SurveyedSession, wanted: Mapping[str, object]) -> list[str]
     if source == LSL:
         return ["--from=lsl", f"--stream={_needed(wanted, 'stream')}"]
     if source == NATNET:
-        return ["--from=natnet", *(f"--{key}={_needed(wanted, key)}" for key in ("server", "local"))]
+        needed = [f"--{key}={_needed(wanted, key)}" for key in MOTIVE[:2]]
+        return ["--from=natnet", *needed, *_given(wanted, MOTIVE[2:])]
+    if source == QUALISYS:
+        return [f"--from=qualisys:{_needed(wanted, 'place')}"]
+    if source == UDP:
+        place = _text(wanted, "place")
+        return [f"--from=udp:{place}" if place else "--from=udp", *_given(wanted, ("local",))]
     if source != FILE:
-        raise InvalidInput("choose a stream, Motive or a capture")
+        raise InvalidInput("choose a stream, a camera system or a capture")
     name = _needed(wanted, "trial")
     for trial in session.trials:
         if trial.name == name:
@@ -94,6 +107,11 @@ def _body(workspace: Workspace, session: str, wanted: Mapping[str, object]) -> l
     return mass + ([] if notes.protocol is None else [f"--protocol={notes.protocol}"])
 
 
+def _given(wanted: Mapping[str, object], keys: Sequence[str]) -> list[str]:
+    """Options whose texts are not empty."""
+    return [f"--{key}={text}" for key in keys if (text := _text(wanted, key))]
+
+
 def _needed(wanted: Mapping[str, object], key: str) -> str:
     text = _text(wanted, key)
     if not text:
@@ -110,7 +128,7 @@ def _text(wanted: Mapping[str, object], key: str) -> str:
     text = wanted.get(key, "")
     if not isinstance(text, str) or len(text) > MOST_LETTERS or "\0" in text:
         raise InvalidInput(f"the {key} must be a short text")
-    return text.strip() if key in {"server", "local"} else text
+    return text if key in {"stream", "trial"} else text.strip()
 
 
 def recording_folder(workspace: Workspace, session: str, stamp: str) -> Path:

@@ -29,7 +29,7 @@ from mbkf.app.trial_viewer import viewer_data, viewer_page
 from mbkf.app.videos import linked_video, set_videos, video_data, video_route
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput, MbkfError
-from mbkf.stream.lsl.discovery import marker_streams
+from mbkf.stream.discovery import find_streams
 from mbkf.viz.language import ENGLISH
 
 
@@ -212,6 +212,6 @@ def _live_routes(workspace: Workspace, live: LiveRun) -> list[BaseRoute]:
         data("/live", lambda query: {**live_offer(workspace, query["session"]), **answers.live_state(live)}),
         action("/live", run),
         data("/live/state", lambda _: answers.live_state(live)),
-        data("/live/streams", lambda _: {"streams": [asdict(one) for one in marker_streams()]}),
+        data("/live/streams", lambda _: {"streams": [asdict(one) for one in find_streams().streams]}),
         page("/live/page", frame),
     ]

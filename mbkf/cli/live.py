@@ -10,6 +10,7 @@ Examples:
   mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
   mbkf live --from lsl --subject subject.toml --lag 60 --out result       (each frame 60 ms later, and more exact)
   mbkf live --recover result
+  mbkf live --list
 
 Ctrl-C or --seconds ends it. Then DIR holds the files of 'mbkf reconstruct', and live.json: frames received and lost,
 latencies from arrival to result (a lag not counted), and events. Marker positions are those of the subject file. If the
@@ -19,6 +20,8 @@ Without --subject a person who stands still for a second is scaled from those fr
 static trial, and tracked from then on; DIR/subject.toml keeps the person. Points without names need --protocol.
 Without --mass the plates weigh the person if both feet stand on them; set their amplifiers to zero first. With --view
 the page shows these prompts to the person, and then the measurement.
+
+--list asks the network for two seconds which streams there are, and prints each with the words that follow it.
 """
 
 from __future__ import annotations
@@ -83,6 +86,11 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--recover", metavar="DIR", help="make the results of a run that broke off, from its log in DIR"
     )
+    parser.add_argument(
+        "--list",
+        action="store_true",
+        help="print the streams of the network (with --from KIND those of one kind; see --local)",
+    )
     add_source_options(parser)
     add_following_options(parser)
 
@@ -104,6 +112,10 @@ def run(args: argparse.Namespace) -> int:
 
     if args.recover is not None:
         return _recover(Path(args.recover))
+    if args.list:
+        from mbkf.cli.stream_list import list_streams
+
+        return list_streams(args.source, args.local)
     for option, given in (("--from", args.source), ("--out", args.out)):
         if given is None:
             raise InvalidInput(f"{option} is missing; see mbkf live --help")

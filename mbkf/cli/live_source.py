@@ -25,7 +25,10 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     stream.add_argument("--plates-stream", metavar="NAME", help="LSL: name of the plate stream")
     stream.add_argument("--server", default="127.0.0.1", metavar="ADDRESS", help="NatNet: camera computer")
     stream.add_argument(
-        "--local", default="127.0.0.1", metavar="ADDRESS", help="NatNet, udp: address of this computer"
+        "--local",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="NatNet, udp, --list: address of this computer",
     )
     stream.add_argument("--port", type=port, default=1510, metavar="N", help="NatNet: command port")
     stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")

@@ -5,7 +5,8 @@ import pytest
 from mbkf.app import routes as module
 from mbkf.app.server import AppServer
 from mbkf.io.c3d_write import write_c3d
-from mbkf.stream.lsl.discovery import FoundStream
+from mbkf.stream.discovery import Found
+from mbkf.stream.found import FoundStream
 from mbkf.trial.synth import synthesise
 from tests.app.test_recordings import record
 from tests.studies import study
@@ -83,11 +84,20 @@ def test_a_download_is_named_after_its_trial(opened, lab):
 
 
 def test_names_of_streams_are_text_and_failures_are_told(opened, lab, monkeypatch):
-    monkeypatch.setattr(module, "marker_streams", lambda: (FoundStream(HOSTILE, "lab", 120.0),))
+    found = (
+        FoundStream("lsl", HOSTILE, "lab", "", {"stream": HOSTILE}, 36, 120.0, 2),
+        FoundStream("qualisys", "QTM", "10.0.0.2", "10.0.0.2:22232", {}, 0, 100.0, 0),
+    )
+    monkeypatch.setattr(module, "find_streams", lambda: Found(found, ()))
     with opened(lab.url) as page:
         page.click("button.live")
-        until(page, "document.querySelectorAll('select[name=stream] option').length === 1")
-        assert page.text_content("select[name=stream]") == f"{HOSTILE} (on lab, 120 Hz)"
+        until(page, "document.querySelectorAll('select.found option').length === 3")
+        assert page.input_value("input[name=stream]") == HOSTILE
+        listed = page.text_content("select.found option:nth-child(2)")
+        assert listed == f"{HOSTILE} (LSL stream on lab; markers: 36, 120 Hz, force plates: 2)"
+        page.select_option("select.found", "1")
+        assert page.input_value("select[name=source]") == "qualisys"
+        assert page.input_value("input[name=place]") == "10.0.0.2:22232"
         assert page.title() == "P1 · mbkf" and page.locator("dialog img").count() == 0
         page.select_option("select[name=source]", "natnet")
         page.fill("input[name=local]", "nowhere.invalid")

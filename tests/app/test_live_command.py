@@ -38,6 +38,25 @@ def test_motive_is_asked_at_its_address(workspace):
     assert (args.source, args.server, args.local, args.out) == ("natnet", "192.168.1.10", "--out=y", "x")
 
 
+def test_a_group_that_motive_streams_to_is_named(workspace):
+    said = {"source": "natnet", "server": "a", "local": "b", "port": "1512", "multicast": "239.1.2.3"}
+    args = parsed(live_options(workspace, "P1", {**said, "body": "standing"}))
+    assert (args.port, args.multicast) == (1512, "239.1.2.3")
+
+
+@pytest.mark.parametrize(
+    ("said", "source", "local"),
+    [
+        ({"source": "qualisys", "place": "192.168.1.10:22232 "}, "qualisys:192.168.1.10:22232", "127.0.0.1"),
+        ({"source": "udp", "place": "15200", "local": "0.0.0.0"}, "udp:15200", "0.0.0.0"),
+        ({"source": "udp", "place": "", "local": ""}, "udp", "127.0.0.1"),
+    ],
+)
+def test_other_streams_are_followed_at_their_places(workspace, said, source, local):
+    args = parsed(live_options(workspace, "P1", {**said, "body": "standing"}))
+    assert (args.source, args.local, args.out) == (source, local, "x")
+
+
 def test_a_capture_of_the_session_is_played(workspace, lab):
     args = parsed(live_options(workspace, "P1", {"source": "file", "trial": "walk1", "body": "standing"}))
     assert args.source == f"file:{lab / 'P1' / 'walk1.c3d'}" and args.forces is None
@@ -76,9 +95,10 @@ def test_the_scaled_body_is_taken_where_there_is_one(workspace, lab):
     ("said", "why"),
     [
         ([], "needs a source and a body"),
-        ({}, "choose a stream, Motive or a capture"),
-        ({"source": "file:/etc/passwd", "body": "standing"}, "choose a stream, Motive or a capture"),
+        ({}, "choose a stream, a camera system or a capture"),
+        ({"source": "file:/etc/passwd", "body": "standing"}, "choose a stream, a camera system or a capture"),
         ({"source": "lsl", "body": "standing"}, "choose a stream"),
+        ({"source": "qualisys", "place": " ", "body": "standing"}, "address of QTM's computer is missing"),
         ({"source": "natnet", "server": "1.2.3.4", "body": "standing"}, "the local address is missing"),
         ({"source": "file", "trial": "../P2/walk1", "body": "standing"}, "no capture"),
         ({"source": "file", "trial": 3, "body": "standing"}, "short text"),

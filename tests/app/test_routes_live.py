@@ -1,12 +1,14 @@
 """A live run from the page: asked for, framed, ended, and then a trial of the session with playback and report."""
 
 import json
+from dataclasses import asdict
 
 import pytest
 
 from mbkf.app import routes as module
 from mbkf.app.pages import live_frame_page
-from mbkf.stream.lsl.discovery import FoundStream
+from mbkf.stream.discovery import Found
+from mbkf.stream.found import FoundStream
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.trial.live.log import FRAMES_FILE
 from tests.app.asking import asked, plain
@@ -102,9 +104,9 @@ def test_the_frame_may_hold_the_live_page_and_nothing_else():
 def test_what_can_be_followed_is_offered(server, cookie, monkeypatch):
     status, offer = plain(server, cookie, "/live?session=P1")
     assert status == 200 and [one["name"] for one in offer["captures"]] == ["walk1", "static"]
-    found = (FoundStream("<b>QTM</b>", "lab", 120.0),)
-    monkeypatch.setattr(module, "marker_streams", lambda: found)
-    told = {"streams": [{"name": "<b>QTM</b>", "host": "lab", "rate_hz": 120.0}]}
+    found = FoundStream("lsl", "<b>QTM</b>", "lab", "", {"stream": "<b>QTM</b>"}, 36, 120.0, 2)
+    monkeypatch.setattr(module, "find_streams", lambda: Found((found,), ()))
+    told = {"streams": [asdict(found)]}
     assert plain(server, cookie, "/live/streams") == (200, told)
 
 

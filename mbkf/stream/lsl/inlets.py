@@ -21,6 +21,18 @@ KEPT_S = 10
 """Duration of samples that liblsl buffers."""
 
 
+def streams_of(library: ModuleType, types: tuple[str, ...], timeout_s: float) -> list[StreamInfo]:
+    """The streams of some types that answer in time, in the order of their names.
+
+    Args:
+        library: pylsl.
+        types: In lower case.
+        timeout_s: How long to listen.
+    """
+    found = [stream for stream in library.resolve_streams(timeout_s) if stream.type().lower() in types]
+    return sorted(found, key=lambda stream: str(stream.name()))
+
+
 def inlet_of(library: ModuleType, info: StreamInfo, synchronised: bool) -> Inlet:
     """An inlet that receives nothing yet.
 

@@ -12,9 +12,8 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.identity import moved_counts, named_columns, same_rate
 from mbkf.stream.libraries import lsl
-from mbkf.stream.lsl.discovery import streams_of
 from mbkf.stream.lsl.format import MARKER_TYPES, MarkerLayout, StreamInfo, read_marker_info
-from mbkf.stream.lsl.inlets import OPEN_S, Inlet, LostStream, inlet_of, opened
+from mbkf.stream.lsl.inlets import OPEN_S, Inlet, LostStream, inlet_of, opened, streams_of
 from mbkf.stream.lsl.plate_stream import FoundPlates, PlateStream, described_plates, from_first_frame
 from mbkf.stream.lsl.stamp_numbering import StampedItems, StampNumbering
 from mbkf.stream.source import UNCOUNTED, PlateSamples, SourceFrame, StreamDescription, counts

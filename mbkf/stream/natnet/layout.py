@@ -54,7 +54,7 @@ class StreamLayout:
             InvalidInput: The time stamps give no rate, or plates send raw voltages.
         """
         self._rotation = rotation
-        self._sets = _own_sets(described)
+        self._sets = own_sets(described)
         self._known = _markers_of(self._sets)
         self._columns: Columns | None = None
         self.outdated = False
@@ -79,7 +79,7 @@ class StreamLayout:
         """Takes a later description: markers are found by name, plates by where they lie. Returns events."""
         self.outdated = False
         news: list[tuple[str, str]] = []
-        sets = _own_sets(described)
+        sets = own_sets(described)
         places = [_place(one, _markers_of(sets)) for one in self._known]
         missing = [name for (_, name), place in zip(self._known, places, strict=True) if place < 0]
         if self._known and len(missing) == len(places):
@@ -169,7 +169,8 @@ class StreamLayout:
         return PlateSamples(np.arange(first, first + each), wrench)
 
 
-def _own_sets(described: Descriptions) -> list[MarkerSet]:
+def own_sets(described: Descriptions) -> list[MarkerSet]:
+    """Marker sets but the one that holds all markers once more."""
     return [one for one in described.sets if one.name.lower() != EVERYTHING]
 
 

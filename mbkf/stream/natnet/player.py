@@ -20,6 +20,9 @@ from mbkf.stream.played import Played, PlayedFrame
 UP = "y"
 """Motive's default."""
 
+STAYS_S = 0.1
+"""A client that leaves sooner after its question only looked for streams."""
+
 FORGET_S = 5.0
 """Silence after which a client counts as gone."""
 
@@ -56,14 +59,14 @@ class NatNetPlayer:
             [_description(k, plate) for k, plate in enumerate(played.stream.plates)],
         )
         self._last_seen: dict[tuple[str, int], float] = {}
-        self._asked: set[tuple[str, int]] = set()
+        self._asked: dict[tuple[str, int], float] = {}
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="mbkf-natnet", daemon=True)
         self._thread.start()
 
     def listening(self) -> bool:
-        """True once a client has requested the stream's description."""
-        return bool(self._asked)
+        """True once a client has requested the stream's description, and stays."""
+        return any(time.monotonic() - asked > STAYS_S for asked in list(self._asked.values()))
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:
         """Sends a frame to all clients."""
@@ -73,7 +76,7 @@ class NatNetPlayer:
         for client, seen in list(self._last_seen.items()):
             if now - seen > FORGET_S:
                 del self._last_seen[client]
-                self._asked.discard(client)
+                self._asked.pop(client, None)
                 continue
             self._answer(packet, client)
 
@@ -107,17 +110,17 @@ class NatNetPlayer:
                 self._answer(packets.server_info("mbkf replay", self.port), client)
             elif number == packets.REQUEST_DESCRIPTIONS:
                 self._answer(self._described, client)
-                self._asked.add(client)
+                self._asked.setdefault(client, time.monotonic())
             elif number == packets.DISCONNECT:
                 self._last_seen.pop(client, None)
-                self._asked.discard(client)
+                self._asked.pop(client, None)
 
     def _answer(self, packet: bytes, client: tuple[str, int]) -> None:
         try:
             self._socket.sendto(packet, client)
         except OSError:  # it is gone
             self._last_seen.pop(client, None)
-            self._asked.discard(client)
+            self._asked.pop(client, None)
 
 
 def plates_in_frames(played: Played) -> Array:

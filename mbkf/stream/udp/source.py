@@ -68,6 +68,11 @@ class UdpSource:
         self._waiting: list[PlateSamples] = []
         self._news: list[tuple[str, str]] = []
 
+    @property
+    def sender(self) -> str | None:
+        """Address of the sender; None before its first readable message."""
+        return None if self._datagrams.sender is None else self._datagrams.sender[0]
+
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The stream, once it has described itself and its markers are known; frames flow from the first read on.
 

@@ -17,6 +17,13 @@ async function askLive(path, options = {}) {
   return said;
 }
 
+function streamText(one) {
+  const carries = one.markers === null ? [word("live_unknown")] : [one.markers ? word("live_markers", one.markers) : word("live_points")];
+  if (one.rate_hz !== null) carries.push(word("live_hz", Math.round(one.rate_hz)));
+  if (one.plates !== null) carries.push(word("live_plates", one.plates));
+  return word("live_stream_of", one.name, word(`live_${one.kind}`), one.address, carries.join(", "));
+}
+
 class LiveDialog {
   // trial: the capture to rehearse with; null for any.
   constructor(session, act, trial = null) {
@@ -67,53 +74,70 @@ class LiveDialog {
   form(offer) {
     this.tell("");
     const select = (name, choices) => element("select", { name }, ...choices.map(([value, text]) => element("option", { value }, text)));
-    const sources = [["lsl", word("live_lsl")], ["natnet", word("live_natnet")]];
-    if (offer.captures.length) sources.push(["file", word("live_file")]);
+    const sources = ["lsl", "natnet", "qualisys", "udp", ...(offer.captures.length ? ["file"] : [])].map((kind) => [kind, word(`live_${kind}`)]);
     const source = select("source", sources), captures = offer.captures.map(({ name, file, kind }) => [name, `${file} (${word(KIND_WORDS[kind])})`]), place = element("div", { className: "fields" });
     const bodies = [["standing", word("live_standing")]];
     if (offer.subject) bodies.unshift(["subject", word("live_subject")]);
     const body = select("body", bodies), note = element("p", {});
     const weigh = () => { note.textContent = body.value === "subject" ? "" : offer.mass_kg === null ? word("live_weigh") : word("live_mass", offer.mass_kg); };
-    const parts = { lsl: () => this.streams(), natnet: () => this.addresses(), file: () => [field(word("live_capture"), select("trial", captures))] };
-    source.onchange = () => { this.tell(""); place.replaceChildren(...parts[source.value]()); };
+    const input = (name, value = "", type = "text") => element("input", { name, type, value, spellcheck: false });
+    const local = (known) => field(word("live_local"), input("local", known.local || "127.0.0.1"));
+    const parts = {
+      lsl: (known) => [field(word("live_stream"), input("stream", known.stream))],
+      natnet: (known) => [field(word("live_server"), input("server", known.server || "127.0.0.1")), local(known),
+        input("port", known.port, "hidden"), input("multicast", known.multicast, "hidden")],
+      qualisys: (known) => [field(word("live_qtm"), input("place", known.place || "127.0.0.1"))],
+      udp: (known) => [field(word("live_port"), input("place", known.place || "15100")), local(known)],
+      file: () => [field(word("live_capture"), select("trial", captures))],
+    };
+    const fill = (known = {}) => place.replaceChildren(...parts[source.value](known));
+    source.onchange = () => { this.tell(""); fill(); };
+    const rehearsed = captures.some(([name]) => name === this.trial);
+    const search = this.search((found) => {
+      source.value = found.kind;
+      fill({ place: found.place, ...found.options });
+    }, () => !rehearsed && place.querySelector("input[name=stream]")?.value === "");
     body.onchange = weigh;
-    const form = element("form", { className: "live" }, field(word("live_source"), source), place, field(word("live_body"), body), note,
+    const form = element("form", { className: "live" }, ...search, field(word("live_source"), source), place, field(word("live_body"), body), note,
       element("p", {}, word("live_targets")), element("button", { className: "main" }, word("live_start")));
     form.onsubmit = (event) => {
       event.preventDefault();
       this.start(Object.fromEntries(new FormData(form)));
     };
     this.inside.replaceChildren(form);
-    const rehearsed = captures.some(([name]) => name === this.trial);
     if (rehearsed) source.value = "file";
-    source.onchange();
+    fill();
     if (rehearsed) form.elements.trial.value = this.trial;
     weigh();
     source.focus();
   }
 
-  streams() {
-    const choice = element("select", { name: "stream" }), again = element("button", { type: "button" }, word("live_look"));
+  // The streams of the network, looked for now and at the press of a button; pick takes the chosen one, and the first one
+  // while untouched() is true.
+  search(pick, untouched) {
+    const choice = element("select", { className: "found" }), again = element("button", { type: "button" }, word("live_look"));
+    let streams = [];
     const look = () => this.trying(async () => {
       again.disabled = true;
       this.tell(word("live_looking"));
       try {
-        const { streams } = await askLive("live/streams");
+        ({ streams } = await askLive("live/streams"));
         if (!choice.isConnected) return;
-        choice.replaceChildren(...streams.map((one) => element("option", { value: one.name }, word("live_stream_of", one.name, one.host, Math.round(one.rate_hz)))));
+        choice.replaceChildren(element("option", { value: -1 }, streams.length ? word("live_choose") : word("live_none")),
+          ...streams.map((one, k) => element("option", { value: k }, streamText(one))));
         this.tell(streams.length ? "" : word("live_none"));
+        if (streams.length && untouched()) {
+          choice.value = 0;
+          pick(streams[0]);
+        }
       } finally {
         again.disabled = false;
       }
     });
+    choice.onchange = () => { if (streams[choice.value]) pick(streams[choice.value]); };
     again.onclick = look;
     queueMicrotask(look);
-    return [field(word("live_stream"), choice), again];
-  }
-
-  addresses() {
-    const input = (name) => element("input", { name, type: "text", value: "127.0.0.1", spellcheck: false });
-    return [field(word("live_server"), input("server")), field(word("live_local"), input("local"))];
+    return [field(word("live_found"), choice), again];
   }
 
   start(wanted) {

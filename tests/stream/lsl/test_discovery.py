@@ -5,7 +5,8 @@ from types import SimpleNamespace
 
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl import discovery
-from mbkf.stream.lsl.discovery import marker_streams, streams_of
+from mbkf.stream.lsl.discovery import marker_streams
+from mbkf.stream.lsl.inlets import streams_of
 
 LOOK_S = 2.0
 
@@ -23,6 +24,7 @@ def test_streams_of_markers_are_found_in_the_order_of_their_names(monkeypatch):
     monkeypatch.setattr(discovery, "lsl", lambda: library)
     found = [one for one in marker_streams(LOOK_S) if one.name.startswith(base)]
     assert [one.name for one in found] == [f"{base}-a", f"{base}-b"] and asked == [LOOK_S]
-    assert {one.rate_hz for one in found} == {120.0} and all(one.host for one in found)
+    assert all(one.address for one in found) and found[0].options == {"stream": f"{base}-a"}
+    assert {one.markers for one in found} == {None}, "they do not say which channels are markers"
     assert f"{base}-c" in [one.name() for one in streams_of(library, ("eeg",), LOOK_S)]
     del kept

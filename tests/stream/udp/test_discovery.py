@@ -1,0 +1,34 @@
+"""A sender of JSON lines is found by listening; a port that another program has is no error."""
+
+import threading
+from contextlib import closing
+
+from mbkf.stream.played import played
+from mbkf.stream.udp.discovery import udp_streams
+from mbkf.stream.udp.player import UdpPlayer
+from mbkf.stream.udp.source import UdpSource
+from tests.captures import made_capture
+from tests.stream.discovering import HERE
+
+
+def test_a_sender_of_lines_is_heard():
+    with closing(UdpSource(0, HERE)) as one:
+        port = one.port
+    done = threading.Event()
+    with closing(UdpPlayer(played(made_capture(3)), HERE, port)) as player:
+
+        def send():
+            while not done.wait(0.001):
+                player.listening()
+
+        thread = threading.Thread(target=send)
+        thread.start()
+        (found,) = udp_streams(HERE, 30.0, port)
+        done.set()
+        thread.join()
+    assert (found.source, found.address, found.markers) == (f"udp:{port}", HERE, 36)
+
+
+def test_a_port_that_is_taken_is_no_error():
+    with closing(UdpSource(0, HERE)) as other:
+        assert udp_streams(HERE, 0.0, other.port) == []
