@@ -16,6 +16,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
+from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import typical_mounts
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.newton_euler import NewtonEuler
@@ -27,6 +28,7 @@ from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.worn_orientations import ORIENTATIONS
 from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, singer, trial
 
 LAST, LIVED = 130, 115
@@ -46,12 +48,17 @@ SIZES = {"goniometer": 1}
 
 
 class AnyReading(Mapping):
-    """Readings (3,) under every name but those of :data:`SIZES`, the same whenever asked; all NaN if so asked."""
+    """Readings (3,) under every name but those of :data:`SIZES`, the same whenever asked; all NaN if so asked.
 
-    def __init__(self, missing=False):
-        self._missing = missing
+    Orientations are those given.
+    """
+
+    def __init__(self, orientations, missing=False):
+        self._missing, self._orientations = missing, orientations
 
     def __getitem__(self, name):
+        if name == ORIENTATIONS:
+            return np.full_like(self._orientations, np.nan) if self._missing else self._orientations
         if self._missing:
             return np.full(SIZES.get(name, 3), np.nan)
         return 0.1 * np.random.default_rng(sum(name.encode())).normal(size=SIZES.get(name, 3))
@@ -185,7 +192,8 @@ class Scene:
         if hidden:
             markers[[segment.endswith(HIDDEN) for segment in self.sensor.segments]] = np.nan
         imus = self.inertial.values(m.q[t], m.v[t], m.a[t]) if worn else NO_IMUS
-        return Frame(markers, m.foot_wrench[t][self.order[1]], imus, AnyReading())
+        turns = matrix_quaternion(self.inertial.orientations(m.q[t]))
+        return Frame(markers, m.foot_wrench[t][self.order[1]], imus, AnyReading(turns))
 
     def situation(self, name):
         """Everything seen; limbs hidden; hidden, with inertial sensors; joints bent too far; a step without plates;
@@ -214,7 +222,8 @@ class Scene:
         """A frame in which no instrument reads; absent ones are not even named."""
         markers, plates = np.full((len(self.noise_m), 3), np.nan), np.full((len(self.order[1]), 6), np.nan)
         imus = None if absent else np.full((len(self.order[2]), 6), np.nan)
-        return Frame(markers, plates, imus, NO_NAMES if absent else AnyReading(missing=True))
+        turns = np.full((len(self.order[2]), 4), np.nan)
+        return Frame(markers, plates, imus, NO_NAMES if absent else AnyReading(turns, missing=True))
 
     def near(self, true, plant, seed):
         """A state a little off the true motion, with a full covariance; what blocks add is as they start."""

@@ -7,6 +7,7 @@ Examples:
   mbkf live --from lsl --mass 63.6 --out result                     (stand still for a second, then move)
   mbkf live --from natnet --server 192.168.1.10 --local 192.168.1.20 --subject subject.toml --view --out result
   mbkf live --from qualisys:192.168.1.10 --subject subject.toml --view --out result
+  mbkf live --from xsens --subject subject.toml --view --out result       (Xsens MVN's network streamer)
   mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
   mbkf live --from lsl --subject subject.toml --lag 60 --out result       (each frame 60 ms later, and more exact)
   mbkf live --recover result
@@ -119,6 +120,8 @@ def run(args: argparse.Namespace) -> int:
     for option, given in (("--from", args.source), ("--out", args.out)):
         if given is None:
             raise InvalidInput(f"{option} is missing; see mbkf live --help")
+    if args.source.partition(":")[0] == "xsens":
+        return _follow_sensors(args)
     scaled = (SUBJECT_FILE,) if args.subject is None else ()
     person, folder = _person(args), check_folder(args.out, (LIVE_FILE, *scaled, *RESULT_FILES))
     settings = ReconstructSettings(
@@ -146,6 +149,28 @@ def run(args: argparse.Namespace) -> int:
         outcome = follow(args, source, begin, waiting)
     told = None if outcome.summary is None else outcome.summary["verdict"]
     return report_outcome(outcome, folder) or strict_exit(args, told)
+
+
+def _follow_sensors(args: argparse.Namespace) -> int:
+    """Follows a suit of inertial sensors as ``mbkf imu live`` does.
+
+    Raises:
+        InvalidInput: An option is for markers, or no person is named.
+    """
+    from mbkf.cli.imu_live import follow_sensors
+    from mbkf.errors import InvalidInput
+    from mbkf.io.subject import read_subject
+
+    for name in ("mass", "protocol", "filter", "preset"):
+        if getattr(args, name) is not None:
+            raise InvalidInput(
+                f"--{name} is for markers, and xsens brings orientations; see mbkf imu live --help"
+            )
+    if args.subject is None:
+        raise InvalidInput(
+            "--subject is missing; a person who is not scaled: mbkf imu live --from xsens --mass KG --height M"
+        )
+    return follow_sensors(args, source_of(args), read_subject(args.subject))
 
 
 def _person(args: argparse.Namespace) -> Subject | KnownPerson:

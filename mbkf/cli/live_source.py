@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from mbkf.cli.following import add_speed_option, file_named
-from mbkf.cli.options import port
+from mbkf.cli.options import natural, port
 
 if TYPE_CHECKING:
     from mbkf.stream.source import FrameSource
 
-SOURCES = "lsl|natnet|qualisys[:HOST]|udp[:PORT]|file:TRIAL"
+SOURCES = "lsl|natnet|qualisys[:HOST]|udp[:PORT]|xsens[:PORT]|file:TRIAL"
 """Values of ``--from``, for help."""
 
 
@@ -28,15 +28,17 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
         "--local",
         default="127.0.0.1",
         metavar="ADDRESS",
-        help="NatNet, udp, --list: address of this computer",
+        help="NatNet, udp, Xsens, --list: address of this computer",
     )
     stream.add_argument("--port", type=port, default=1510, metavar="N", help="NatNet: command port")
     stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")
     stream.add_argument(
         "--up",
         metavar="AXIS",
-        help="NatNet, Qualisys and files: vertical axis (NatNet: y, Qualisys: as QTM states)",
+        help="NatNet, Qualisys, Xsens and files: vertical axis (NatNet: y, Qualisys: as QTM states, Xsens: as the "
+        "posture shows)",
     )
+    add_character_option(stream)
     stream.add_argument("--over-udp", action="store_true", help="Qualisys: frames over UDP in place of TCP")
     stream.add_argument(
         "--control",
@@ -52,6 +54,16 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     )
     stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
     add_speed_option(stream)
+
+
+def add_character_option(parser: argparse._ActionsContainer) -> None:
+    """Adds ``--character``."""
+    parser.add_argument(
+        "--character",
+        type=natural,
+        metavar="ID",
+        help="Xsens: MVN's ID of the person to follow (default: the first)",
+    )
 
 
 def source_of(args: argparse.Namespace) -> FrameSource:
@@ -103,6 +115,23 @@ def _qualisys(args: argparse.Namespace, detail: str) -> FrameSource:
     )
 
 
+def xsens_source(args: argparse.Namespace, detail: str) -> FrameSource:
+    """MVN's network streamer.
+
+    Args:
+        args: Options ``--local``, ``--up`` and ``--character``.
+        detail: Port, "" for the usual one.
+
+    Raises:
+        InvalidInput: The port is not one, or cannot be listened at.
+    """
+    from mbkf.stream.xsens.packets import DEFAULT_PORT
+    from mbkf.stream.xsens.source import XsensSource
+
+    number = _port(detail, DEFAULT_PORT, "xsens")
+    return XsensSource(number, args.local, up=args.up, character=args.character)
+
+
 def _port(detail: str, default: int, source: str) -> int:
     """The port behind a source's name.
 
@@ -124,6 +153,7 @@ _STREAMS: Mapping[str, Callable[[argparse.Namespace, str], FrameSource]] = {
     "natnet": _natnet,
     "qualisys": _qualisys,
     "udp": _udp,
+    "xsens": xsens_source,
 }
-_WITH_PLACE = ("qualisys", "udp")
+_WITH_PLACE = ("qualisys", "udp", "xsens")
 """Sources whose name may be followed by a colon and a port or an address."""

@@ -79,6 +79,8 @@ class SourceFrame:
         plates: What the plates read since the frame before.
         imus: (S, 6) angular velocity rad/s and specific force m/s² of inertial sensors in their own axes, NaN where
             missing; None where there are none.
+        orientations: (S, 4) unit quaternions of the segments' own frames (x forward, y left, z up in the neutral
+            posture) → one world, z up; NaN where missing; None where they are not known.
     """
 
     number: int
@@ -87,6 +89,7 @@ class SourceFrame:
     unlabelled_m: Array
     plates: PlateSamples
     imus: Array | None = None
+    orientations: Array | None = None
 
 
 class FrameSource(Protocol):

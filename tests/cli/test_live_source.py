@@ -35,10 +35,17 @@ def test_qualisys_has_a_computer_and_a_base_port():
     assert source("qualisys", "--control")._control == ""
 
 
+def test_xsens_listens_at_its_port_for_a_person():
+    port = free_port()
+    made = source(f"xsens:{port}", "--character", "2", "--up", "y")
+    assert (made.port, made._character, made._up) == (port, 2, "y")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("udp:70000", "write udp:15100"),
+        ("xsens:mvn", "write xsens:9763"),
         ("udp:abc", "write udp:15100"),
         ("qualisys:lab:x", "write qualisys:lab:22222"),
         ("lsl:3", "unknown source 'lsl:3'"),

@@ -38,6 +38,7 @@ class ReadyFrame(NamedTuple):
         plates: (K, 6) mean wrenches about the world's origin, NaN where not read.
         lost: The frame never came.
         imus: (S, 6) readings of inertial sensors, NaN where missing; None where there are none.
+        orientations: (S, 4) their orientations, NaN where missing; None where they are not known.
     """
 
     number: int
@@ -47,6 +48,7 @@ class ReadyFrame(NamedTuple):
     plates: Array
     lost: bool = False
     imus: Array | None = None
+    orientations: Array | None = None
 
 
 class FrameAlignment:
@@ -111,6 +113,7 @@ class FrameAlignment:
                 points,
                 self._plates.mean(place.number),
                 imus=self._imus(frame, place.number),
+                orientations=frame.orientations,
             ),
         ], samples
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -87,6 +88,7 @@ class SensorStanding(StillStart[CalibratedSensors]):
         carrier_first(segments, segments[0])  # refuses a segment with two sensors
         self._chosen = [stream.sensors.index(name) for name in names]
         self._standing = StandingSensors(names, stream.rate_hz)
+        self._turns: deque[Array] = deque(maxlen=self._standing.wanted)
 
     def _step(self, stop: threading.Event) -> CalibratedSensors | None:
         try:
@@ -98,6 +100,8 @@ class SensorStanding(StillStart[CalibratedSensors]):
             if frame.imus is not None:
                 readings = plausible_imus(frame.imus[self._chosen])[0]
             self._standing.push(readings)
+            if frame.orientations is not None:
+                self._turns.append(frame.orientations[self._chosen])
         return self._calibrated() if self._standing.enough else None
 
     def _hindrance(self) -> str:
@@ -109,7 +113,9 @@ class SensorStanding(StillStart[CalibratedSensors]):
     def _calibrated(self) -> CalibratedSensors:
         names = [self.stream.sensors[k] for k in self._chosen]
         readings = self._standing.readings()
-        worn = live_worn(self._model, names, readings, self.stream.rate_hz, self._posture)
+        turns = np.array(self._turns) if len(self._turns) == len(readings) else None
+        rate_hz = self.stream.rate_hz
+        worn = live_worn(self._model, names, readings, rate_hz, self._posture, orientations=turns)
         write_mounts(worn.worn.mounts, self._folder / MOUNTS_FILE)
         worn = replace(worn, columns=tuple(self._chosen[k] for k in worn.columns))
         stream = replace(self.stream, sensors=tuple(names))

@@ -10,12 +10,14 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.record import FrameRecorder
+from mbkf.imu.heading import turned
 from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.block import Frame
 from mbkf.sensors.standing_feet import FOOT_REST
+from mbkf.sensors.worn_orientations import ORIENTATIONS
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.point_names import PointNames
@@ -38,13 +40,17 @@ class SensorFrames:
     def __init__(self, worn: LiveWorn, rate_hz: float) -> None:
         """Args: the calibrated sensors, and the frame rate."""
         stillness, roles = worn.settings.filter.stillness, worn.filter.model.roles
-        self._columns = list(worn.columns)
+        self._columns, self._oriented = list(worn.columns), worn.heading_rad is not None
+        self._heading = np.full(len(self._columns), -(worn.heading_rad or 0.0))
         self._feet = FeetAtRest(roles.feet, worn.segments, rate_hz, stillness)
 
     def frame(self, ready: ReadyFrame, markers_m: Array) -> Frame:
         """The filter's frame; to be called once for each, in order, with markers (0, 3)."""
         imus = None if ready.imus is None else ready.imus[self._columns]
-        return Frame(markers_m, ready.plates, imus, {FOOT_REST: self._feet.push(imus)})
+        readings = {FOOT_REST: self._feet.push(imus)}
+        if self._oriented and ready.orientations is not None:
+            readings[ORIENTATIONS] = turned(ready.orientations[self._columns], self._heading)
+        return Frame(markers_m, ready.plates, imus, readings)
 
 
 @dataclass(frozen=True)

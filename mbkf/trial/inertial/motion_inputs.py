@@ -38,6 +38,7 @@ from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.standing_feet import FOOT_REST, StandingFeet, StandingSettings
 from mbkf.sensors.unseen_moment import UnseenMoment, UnseenMomentSettings
+from mbkf.sensors.worn_orientations import WornOrientations, WornOrientationSettings
 from mbkf.trial.inertial.on_body import frame_readings
 from mbkf.trial.preparation.filters import FilterInputs
 
@@ -55,6 +56,7 @@ class MotionSettings:
 
     Attributes:
         worn: Noise of the sensors.
+        orientations: Noise of their orientations, where another system states them.
         standing: How still feet stand.
         stillness: When a foot's own sensor is at rest.
         transfer: How load passes from foot to foot in walking.
@@ -65,6 +67,7 @@ class MotionSettings:
     """
 
     worn: BodySensorSettings = field(default_factory=BodySensorSettings)
+    orientations: WornOrientationSettings = field(default_factory=WornOrientationSettings)
     standing: StandingSettings = field(default_factory=StandingSettings)
     stillness: StillnessSettings = field(default_factory=StillnessSettings)
     transfer: LoadTransferSettings = field(default_factory=LoadTransferSettings)
@@ -181,6 +184,7 @@ def worn_filter(
     first: KinematicState,
     settings: MotionSettings,
     standing_q: Array | None = None,
+    oriented: bool = False,
 ) -> TrackingFilter:
     """The filter.
 
@@ -190,6 +194,7 @@ def worn_filter(
         first: The first posture.
         settings: Noise.
         standing_q: (nq,) posture while standing where it was measured.
+        oriented: Whether frames bring the sensors' orientations.
     """
     model, dt, unobservable = inputs.sensor.model, inputs.dt_s, inputs.unobservable
     s, posture = inputs.dynamic, PostureSensor(inputs.sensor.model)
@@ -206,6 +211,7 @@ def worn_filter(
         *ground,
         StandingFeet(model, dt, settings.standing, standing_q),
         BodySensors(sensors, worn.bias_rad_s, bias_sd, worn.turn_sd_rad, settings.worn),
+        *([WornOrientations(sensors, settings.orientations)] if oriented else []),
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
         JointLimits(posture, unobservable, s.limits),
     ]

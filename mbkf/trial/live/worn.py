@@ -15,7 +15,12 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.mount_errors import MountErrors
 from mbkf.filters.tracking_filter import TrackingFilter
+from mbkf.imu.frames import conjugate, multiply
+from mbkf.imu.heading import turned
+from mbkf.imu.oriented_mounts import facing_of, oriented_mounts
+from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
+from mbkf.imu.sensor_to_segment import mean_orientation
 from mbkf.imu.worn_mounts import MountSettings, SensorMounts, worn_mounts
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.human import HumanModel
@@ -55,6 +60,8 @@ class LiveWorn:
         filter: The filter.
         body: What its estimates err by because mounts are not known exactly.
         settings: Of the whole.
+        heading_rad: Where the person faced while standing, in the world of the sensors' own orientations; None where
+            these are not known.
     """
 
     columns: tuple[int, ...]
@@ -64,6 +71,7 @@ class LiveWorn:
     filter: TrackingFilter
     body: MountErrors
     settings: LiveBodySensorSettings
+    heading_rad: float | None = None
 
 
 class StandingSensors:
@@ -123,6 +131,7 @@ def live_worn(
     rate_hz: float,
     posture: Array | None = None,
     settings: LiveBodySensorSettings = LiveBodySensorSettings(),
+    orientations: Array | None = None,
 ) -> LiveWorn:
     """Calibrates sensors on a person who stands, and prepares the filter.
 
@@ -133,6 +142,8 @@ def live_worn(
         rate_hz: Frame rate.
         posture: (nq,) the posture then; None for the neutral one.
         settings: Noise and priors.
+        orientations: (T, S, 4) orientations of segments' own frames then, x forward, y left and z up in the neutral
+            posture; None where they are not known.
 
     Raises:
         InvalidInput: A segment has two sensors.
@@ -146,9 +157,20 @@ def live_worn(
         ImuReadings(names[k], times_s, standing[:, k, 3:], standing[:, k, :3], None, rate_hz) for k in columns
     ]
     at_rest, known = (model.neutral(), False) if posture is None else (posture, True)
-    worn = worn_mounts(model, segments, still, still, at_rest, known, settings.mounts)
+    heading = None
+    if orientations is None:
+        worn = worn_mounts(model, segments, still, still, at_rest, known, settings.mounts)
+    else:
+        stood = mean_orientation(orientations[:, list(columns)])
+        heading = facing_of(stood[0])
+        stood = turned(stood, np.full(len(columns), -heading))
+        own = [one.name for one in still]
+        worn = oriented_mounts(model, own, segments, stood, posture, settings.mounts)
+        if posture is None:
+            mounted = np.array([mount.rotation for mount in worn.mounts])
+            at_rest = configurations(model, segments, multiply(stood, conjugate(mounted))[None])[0]
     inputs = motion_inputs(model, 1.0 / rate_hz, segments)
     first = first_posture(model, segments, np.tile(at_rest, (2, 1)), 1.0 / rate_hz, True, settings.start)
-    filter = worn_filter(inputs, worn, first, settings.filter, posture)
+    filter = worn_filter(inputs, worn, first, settings.filter, posture, oriented=orientations is not None)
     body = MountErrors(model, segments, worn.turn_sd_rad)
-    return LiveWorn(columns, segments, worn, inputs, filter, body, settings)
+    return LiveWorn(columns, segments, worn, inputs, filter, body, settings, heading)

@@ -1,0 +1,1 @@
+"""Xsens MVN's network streaming: datagrams, samples joined from them, and source."""
