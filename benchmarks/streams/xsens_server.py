@@ -1,6 +1,6 @@
 """A simulated network streamer of Xsens MVN: a motion of the body as datagrams of segments and trackers.
 
-Written from the MVN real-time network streaming Protocol Specification, revision N (Xsens 2018): big endian, a header
+Written from Xsens' MVN real-time network streaming Protocol Specification, revision N: big endian, a header
 of 24 bytes, 23 segments by ID (index + 1), z up, quaternions with the real part first; a sample that does not fit into
 a datagram is split, its last part marked by the highest bit of the datagram counter. In MVN's T-pose all segments have
 the axes of the world. Positions are metres, as in recorded packets of type 02; section 2.5.6 names centimetres, which
@@ -104,7 +104,14 @@ class XsensServer:
     """
 
     def __init__(self, suit: Suit, port: int, address: str = "127.0.0.1", character: int = 0) -> None:
-        """Args: what is played, port and address of the receiver, and the person's ID."""
+        """A streamer that has sent nothing.
+
+        Args:
+            suit: What is played.
+            port: Port of the receiver.
+            address: Its address.
+            character: ID of the person.
+        """
         self.suit, self.character = suit, character
         self._place = (address, port)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -114,7 +121,13 @@ class XsensServer:
         self._socket.sendto(data, self._place)
 
     def play(self, frame: int, kinds: Sequence[int] = (2,), number: int | None = None) -> None:
-        """Sends a sample of some types."""
+        """Sends a sample of some types.
+
+        Args:
+            frame: The suit's frame.
+            kinds: The types.
+            number: MVN's count; that of the frame by default.
+        """
         for kind in kinds:
             for data in self.sample(frame, kind, frame if number is None else number):
                 self.send(data)
@@ -145,7 +158,16 @@ class XsensServer:
         ]
 
     def header(self, kind: int, number: int, counter: int, items: int, time_ms: int, size: int) -> bytes:
-        """24 bytes: identification, sample counter, datagram counter, items, clock, person, counts of segments."""
+        """24 bytes: identification, sample counter, datagram counter, items, clock, person, counts of segments.
+
+        Args:
+            kind: Type of the data.
+            number: Sample counter.
+            counter: Datagram counter.
+            items: Number of items.
+            time_ms: Clock.
+            size: Bytes that follow.
+        """
         start = f"MXTP{kind:02d}".encode() + struct.pack(">IBBI", number % 2**32, counter, items, time_ms)
         return start + struct.pack(">BBBBHH", self.character, 23, 0, 0, 0, size)
 

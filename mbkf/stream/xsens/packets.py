@@ -2,7 +2,7 @@
 
 Every length is checked against the datagram's end before anything is read.
 
-Source: MVN real-time network streaming Protocol Specification, revision N (Xsens 2018), sections 2.4 to 2.7 and 3.1.
+Source: Xsens, MVN real-time network streaming Protocol Specification, revision N, sections 2.4 to 2.7 and 3.1.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.imu.frames import multiply
+from mbkf.io.axes import rotation_to_world
 from mbkf.stream.datagrams import Datagram, Datagrams
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 from mbkf.stream.xsens.description import MvnDescription, describe
@@ -52,7 +53,9 @@ class XsensSource:
 
         Raises:
             InvalidInput: The port cannot be listened at.
+            UnknownName: The axis does not exist.
         """
+        rotation_to_world(up or "z")
         self._datagrams = Datagrams("Xsens", local, port)
         self.port, self.receiving = self._datagrams.port, False
         self._up, self._character = up, character
