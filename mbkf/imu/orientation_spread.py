@@ -9,6 +9,7 @@ mean(R) b / g. A field that is read late by τ appears turned by ω in between, 
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import solve_banded
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.imu.frames import rotate
@@ -92,12 +93,12 @@ def _heading_variance(
 
 def _recent_mean(values: Array, samples: float, smooth: bool) -> Array:
     """Means (T, …) of values that count less, by e, with each ``samples`` of distance: past ones, or all of them."""
-    keep = np.exp(-1.0 / samples)
+    bands = np.ones((2, len(values)))
+    bands[1] = -np.exp(-1.0 / samples)
 
     def sums(series: Array) -> Array:
-        from scipy.signal import lfilter  # loads slowly, and a body's motion does without
-
-        return np.asarray(lfilter([1.0], [1.0, -keep], series, axis=0))
+        # y_t − exp(−1 / samples) y_{t−1} = x_t, as a banded system: scipy.signal loads slowly.
+        return np.asarray(solve_banded((1, 0), bands, series.reshape(len(series), -1)).reshape(series.shape))
 
     def total(series: Array) -> Array:
         past = sums(series)

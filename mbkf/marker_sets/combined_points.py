@@ -17,7 +17,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import MarkerTrajectories
 from mbkf.numerics.runs import spread_indices
 
@@ -105,19 +105,28 @@ def _opposite(points: Array, k: int) -> list[tuple[int, int]]:
     with np.errstate(invalid="ignore", divide="ignore"):
         towards = away / np.linalg.norm(away, axis=2)[:, :, None]
         frame = towards[np.argmax(np.isfinite(towards).all(axis=2).sum(axis=1))]
-        return [(int(i), int(j)) for i, j in np.argwhere(np.triu(frame @ frame.T, 1) < OPPOSITE)]
+        pairs = np.argwhere(np.triu(frame @ frame.T, 1) < OPPOSITE)
+    return [(int(i), int(j)) for i, j in pairs[_on_line(points, k, pairs)]]
+
+
+def _on_line(points: Array, k: int, pairs: NDArray[np.intp]) -> BoolArray:
+    """(P,) True where point k stays close to one place on the line through the two of a pair (P, 2)."""
+    edge = points[:, pairs[:, 1]] - points[:, pairs[:, 0]]
+    target = points[:, k : k + 1] - points[:, pairs[:, 0]]
+    there: BoolArray = np.asarray(np.isfinite(edge + target).all(axis=2))
+    edge, target = (np.where(there[..., None], one, 0.0) for one in (edge, target))
+    share = (edge * target).sum(axis=(0, 2)) / np.maximum((edge**2).sum(axis=(0, 2)), np.finfo(float).tiny)
+    square = ((share[:, None] * edge - target) ** 2).sum(axis=(0, 2))
+    return np.asarray(square <= (1.01 * EXACT_M) ** 2 * there.sum(axis=0))
 
 
 def _combines(points: Array, k: int, others: Sequence[int]) -> bool:
     """True if point k is a combination of others in all frames (T, K, 3) that show them."""
-    seen: NDArray[np.intp] = np.flatnonzero(np.isfinite(points[:, [k, *others]]).all(axis=(1, 2)))
-    if len(seen) < FEWEST_FRAMES:
+    chosen = points[:, [k, *others]]
+    chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
+    if len(chosen) < FEWEST_FRAMES:
         return False
-    own, base = points[seen][:, k], points[seen][:, others]
-    spread = [
-        np.std(np.linalg.norm(base[:, i] - base[:, j], axis=1))
-        for i, j in combinations(range(len(others)), 2)
-    ]
+    own, base = chosen[:, 0], chosen[:, 1:]
     edges = (base[:, 1:] - base[:, :1]).transpose(0, 2, 1).reshape(-1, len(others) - 1)
     target = (own - base[:, 0]).ravel()
     rest, *_ = np.linalg.lstsq(edges, target, rcond=None)
@@ -125,4 +134,8 @@ def _combines(points: Array, k: int, others: Sequence[int]) -> bool:
     if weights.min() < LEAST_WEIGHT:
         return False
     off = float(np.sqrt(np.mean((edges @ rest - target) ** 2) * 3.0))
-    return off <= min(EXACT_M, EXACT_SHARE * float(min(spread)))
+    if off > EXACT_M:
+        return False
+    pairs = combinations(range(len(others)), 2)
+    spread = min(float(np.std(np.linalg.norm(base[:, i] - base[:, j], axis=1))) for i, j in pairs)
+    return off <= EXACT_SHARE * spread

@@ -13,9 +13,11 @@ Laird & Rubin 1977; for point sets Myronenko & Song, IEEE Trans. PAMI 32, 2010, 
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from mbkf.conventions import Array
@@ -117,6 +119,14 @@ class CloudProblem:
         count = len(body.scale_factors)
         covariance = PROPORTION_SD**2 * np.eye(count) + SIZE_SD**2 * np.ones((count, count))
         self._factor_information = np.linalg.inv(covariance)
+
+    def of_points(self, chosen: NDArray[np.intp]) -> CloudProblem:
+        """The problem with some of the points alone, by their numbers."""
+        thinned = copy(self)
+        thinned.points_m = self.points_m[chosen]
+        if self._log_weight.ndim == 2:
+            thinned._log_weight = self._log_weight[chosen]
+        return thinned
 
     def reading(self, q: Array, factors: Array) -> tuple[MarkerReading, Array]:
         """Components at q (nq,) on a body of scale factors (K,), and their derivatives (C, 3, K) by these."""

@@ -15,6 +15,7 @@ from mbkf.marker_sets.places import WornPlaces
 from mbkf.marker_sets.posed_cloud import CloudProblem, PosedBody
 from mbkf.marker_sets.starts import starts
 from mbkf.model.human import HumanModel
+from mbkf.numerics.runs import spread_indices
 
 FEWEST_POINTS = 12
 """Least number of points in a frame."""
@@ -27,6 +28,10 @@ FINE_M = (0.08, 0.07, 0.06, 0.05, 0.04, 0.035, 0.03, 0.03, 0.025, 0.025)
 
 THINNEST_M = 0.2
 """Least side of the box around the points."""
+
+MOST_ROUGH = 96
+"""Most points of a rough fit; of more, so many are taken all over their order, which mostly goes segment by segment.
+Public sets have fewer."""
 
 KEPT_EACH, KEPT = 3, 9
 """Rough fits of every equipment, and in all, that are fitted finely."""
@@ -90,8 +95,9 @@ def _searched(places: WornPlaces, points: bytes, names: bytes, standing: bool) -
         weight = (equipped_weight(places, equipment) * named)[..., worn]
         problem = CloudProblem(places.only(worn), points_m, weight, reference, standing=standing)
         reference = problem.model
+        thinned = problem.of_points(spread_indices(len(points_m), MOST_ROUGH))
         own = [
-            _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)
+            _Candidate(thinned.posed(start.q, start.size, COARSE_M), problem, equipment)
             for start in starts(problem.model, points_m, equipment)
         ]
         rough += sorted(own, key=lambda one: -one.log_posterior)[:KEPT_EACH]

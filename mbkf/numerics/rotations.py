@@ -24,6 +24,24 @@ def skew(vectors: Array) -> Array:
     return matrices
 
 
+def exponential_and_left_jacobian(vectors: Array) -> tuple[Array, Array]:
+    """Exp(θ) (N, 3, 3) and its left Jacobian J(θ) (N, 3, 3), for many rotation vectors θ (N, 3), rad.
+
+    Exp(θ) = I + [θ]ₓ J(θ) and J(θ) = I + a [θ]ₓ + b [θ]ₓ² (Barfoot 2017, eq. 7.77), a = (1 − cos θ)/θ²,
+    b = (θ − sin θ)/θ³.
+    """
+    square = (vectors**2).sum(axis=-1)
+    angle = np.sqrt(square)
+    small = angle < SMALL_TURN_RAD
+    by = np.where(small, 1.0, angle)
+    a = 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
+    series = 1.0 / 6.0 - square / 120.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))
+    b = np.where(small, series, (by - np.sin(by)) / by**3)
+    crossed = skew(vectors)
+    left = np.eye(3) + a[..., None, None] * crossed + b[..., None, None] * (crossed @ crossed)
+    return np.eye(3) + crossed @ left, left
+
+
 def quaternion_of(rotations: Array) -> Array:
     """(…, 4) unit quaternions (x, y, z, w) of rotation matrices (…, 3, 3), their largest components positive.
 

@@ -14,12 +14,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.model.layout import ExtraState
 from mbkf.numerics.cardan import quaternion_matrices
-from mbkf.numerics.rotations import skew
+from mbkf.numerics.rotations import exponential_and_left_jacobian, skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.inertial import observed_dofs
 from mbkf.sensors.inertial_sensor import InertialSensor
@@ -106,16 +105,18 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         state, layout, count = at.state, self.layout, len(self.sensor.mounts)
         bias, turn = (state.extra[layout.extra_index(name)].reshape(-1, 3) for name in (BIASES, TURNS))
         reading = self.sensor.reading(state.q, state.v, state.a)
-        turned = self._mounted.transpose(0, 2, 1) @ _exponential(-turn) @ self._mounted
+        exponential, left = exponential_and_left_jacobian(turn)
+        since = exponential @ self._mounted
+        turned = since.transpose(0, 2, 1) @ self._mounted
         values = (turned[:, None] @ reading.values.reshape(count, 2, 3, 1))[..., 0]
         motion = np.concatenate([reading.by_q, reading.by_v, reading.by_a], axis=2)
         jacobian = np.zeros((count, 2, 3, layout.size))
         jacobian[..., : motion.shape[-1]] = turned[:, None] @ motion.reshape(count, 2, 3, -1)
-        by_turn = _by_turn(self._mounted, turn, values)
-        for k in range(count):
-            first = 3 * k
-            jacobian[k, 0, :, layout[BIASES].start + first : layout[BIASES].start + first + 3] = np.eye(3)
-            jacobian[k, :, :, layout[TURNS].start + first : layout[TURNS].start + first + 3] = by_turn[k]
+        each = np.arange(count)
+        jacobian[..., layout[BIASES]].reshape(count, 2, 3, count, 3)[each, 0, :, each] = np.eye(3)
+        jacobian[..., layout[TURNS]].reshape(count, 2, 3, count, 3)[each, :, :, each] = _by_turn(
+            since, left, values
+        )
         values[:, 0] += bias
         short = decision.reshape(-1) - values.reshape(-1)
         there = np.flatnonzero(np.isfinite(short))
@@ -124,31 +125,15 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         return Rows(rows, short[there] * weight, readings=len(there))
 
 
-def _exponential(vectors: Array) -> Array:
-    """(S, 3, 3) rotations of rotation vectors (S, 3)."""
-    return np.asarray(Rotation.from_rotvec(vectors).as_matrix())
-
-
-def _by_turn(mounted: Array, turn: Array, values: Array) -> Array:
+def _by_turn(since: Array, left: Array, values: Array) -> Array:
     """(S, 2, 3, 3) derivatives of turned readings by the turns.
 
     With R = Exp(θ) R₀, ∂(Rᵀ x)/∂θ = Rᵀ [x]ₓ J(θ), J the left Jacobian of the exponential.
 
     Args:
-        mounted: (S, 3, 3) R₀.
-        turn: (S, 3) θ.
+        since: (S, 3, 3) R.
+        left: (S, 3, 3) J.
         values: (S, 2, 3) the readings Rᵀ x.
     """
-    R = _exponential(turn) @ mounted
-    in_segment = (R[:, None] @ values[..., None])[..., 0]
-    return np.asarray(R.transpose(0, 2, 1)[:, None] @ skew(in_segment) @ _left_jacobian(turn)[:, None])
-
-
-def _left_jacobian(vectors: Array) -> Array:
-    """(S, 3, 3) left Jacobians of the exponential at rotation vectors (S, 3): Σ [θ]ₓⁿ / (n + 1)!, to rounding."""
-    crossed = skew(vectors)
-    total, term = np.tile(np.eye(3), (len(vectors), 1, 1)), np.tile(np.eye(3), (len(vectors), 1, 1))
-    for n in range(2, 20):
-        term = term @ crossed / n
-        total = total + term
-    return total
+    in_segment = (since[:, None] @ values[..., None])[..., 0]
+    return np.asarray(since.transpose(0, 2, 1)[:, None] @ skew(in_segment) @ left[:, None])

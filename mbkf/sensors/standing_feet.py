@@ -111,6 +111,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         self._model, self.settings = model, settings
         self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
         self._data = pin.Data(model.pin_model)
+        self._supports = [model.supports[model.joint(name).joint_id] for name in model.roles.feet]
         self._lever_m = settings.standing_lever_m * max(settings.stance_s / dt_s, 1.0) ** 0.5
         self._stays_after = round(settings.stays_after_s / dt_s)
         self._on_floor_m = np.zeros((2, SOLE_ENDS))
@@ -168,8 +169,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
             return []
         s, q, v = self.settings, at.state.q, at.state.v
         pin.computeForwardKinematicsDerivatives(self._model.pin_model, self._data, q, v, self._still)
-        soles = self._feet.at(q, self._still).soles
-        found = []
+        soles, spatial, found = self._feet.at(q, self._still).soles, self._model.spatial_jacobian(q), []
         for foot, turns in zip(at_rest, turning, strict=True):
             ends, lever = np.array(soles[foot][:SOLE_ENDS]), self._lever_m * turns
             speed, height = (
@@ -179,15 +179,17 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
             turn = hypot(s.standing_turn_rad_s, lever / s.standing_lever_m)
             found.append(self._still_rows(foot, ends.mean(axis=0), np.repeat([speed, turn], 3)))
             for end, on_floor in zip(ends, self._on_floor_m[foot], strict=True):
-                found.append(self._floor_rows(q, foot, end, on_floor, height))
+                found.append(self._floor_rows(spatial, foot, end, on_floor, height))
             place = places[foot]
             if place is not None:
-                found.append(self._place_rows(q, foot, ends.mean(axis=0), place))
+                found.append(self._place_rows(spatial, foot, ends.mean(axis=0), place))
         for foot in rolling:
             ends = np.array(soles[foot][:SOLE_ENDS])
             k = int(np.argmin(ends[:, 2] - self._on_floor_m[foot]))
             found.append(self._still_rows(foot, ends[k], np.full(3, s.rolling_speed_m_s)))
-            found.append(self._floor_rows(q, foot, ends[k], self._on_floor_m[foot, k], s.rolling_height_m))
+            found.append(
+                self._floor_rows(spatial, foot, ends[k], self._on_floor_m[foot, k], s.rolling_height_m)
+            )
         return found
 
     def _still_rows(self, foot: int, point_m: Array, sds: Array) -> Rows:
@@ -199,13 +201,17 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         to_point = to_point[: len(sds)] / sds[:, None]
         return Rows(np.hstack([to_point @ by_q, to_point @ by_v]), -to_point @ self._data.v[joint].vector)
 
-    def _place_rows(self, q: Array, foot: int, point_m: Array, place_m: Array) -> Rows:
-        """Rows of a foot's world point (3,) that stays at a place (2,)."""
-        jacobian = self._model.segment_jacobian(q, self._model.roles.feet[foot], point_m)
+    def _place_rows(self, spatial: Array, foot: int, point_m: Array, place_m: Array) -> Rows:
+        """Rows of a foot's world point (3,) that stays at a place (2,); ``spatial`` (6, nv) at the world's origin."""
         sd = self.settings.staying_m
-        return Rows(jacobian[:2] / sd, (place_m - point_m[:2]) / sd)
+        return Rows(self._moves(spatial, foot, point_m)[:2] / sd, (place_m - point_m[:2]) / sd)
 
-    def _floor_rows(self, q: Array, foot: int, point_m: Array, height_m: float, sd_m: float) -> Rows:
+    def _floor_rows(self, spatial: Array, foot: int, point_m: Array, height_m: float, sd_m: float) -> Rows:
         """A row of a foot's world point (3,) whose height, when the sole touches the floor, is known with a spread."""
-        jacobian = self._model.segment_jacobian(q, self._model.roles.feet[foot], point_m)
+        jacobian = self._moves(spatial, foot, point_m)
         return Rows(jacobian[2:3] / sd_m, np.array([(height_m - point_m[2]) / sd_m]))
+
+    def _moves(self, spatial: Array, foot: int, point_m: Array) -> Array:
+        """(3, nv) world Jacobian of a foot's world point (3,): u + ω × p, of the dofs that move the foot."""
+        moved = (spatial[:3] - skew(point_m) @ spatial[3:]) * self._supports[foot]
+        return np.asarray(moved)

@@ -53,6 +53,15 @@ def objective(problem, q, factors, width_m=WIDTH_M):
     return likelihood + problem.priors(q, factors)
 
 
+def test_a_problem_of_some_points_shares_them_as_the_whole_does(scene):
+    problem, q, factors = scene
+    positions, chosen = sized(factors).positions(q), np.array([3, 8, 30])
+    named = np.random.default_rng(0).uniform(0.5, 2.0, (40, len(WEIGHT))) * WEIGHT
+    for whole in (problem, CloudProblem(PLACES, problem.points_m, named)):
+        shares, _ = whole.of_points(chosen).shares(positions, WIDTH_M)
+        np.testing.assert_allclose(shares, whole.shares(positions, WIDTH_M)[0][chosen], rtol=1e-12)
+
+
 def test_shares_are_probabilities(scene):
     problem, q, factors = scene
     positions = sized(factors).positions(q)

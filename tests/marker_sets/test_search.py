@@ -7,7 +7,7 @@ from mbkf.errors import NotObservable
 from mbkf.marker_sets.equipment import EQUIPMENTS, equipped_weight
 from mbkf.marker_sets.places import worn_places
 from mbkf.marker_sets.posed_cloud import CloudProblem
-from mbkf.marker_sets.search import FEWEST_POINTS, find_body
+from mbkf.marker_sets.search import FEWEST_POINTS, MOST_ROUGH, find_body
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
 from tests.marker_sets.worn import near, standing
@@ -61,6 +61,16 @@ def test_who_searches_a_frame_again_gets_the_body_that_was_found(worn, found):
         "a name that tells the true segment"
     )
     assert find_body(PLACES, worn.points_m + 1e-6) is not found
+
+
+def test_a_person_with_many_markers_is_found_by_some_of_them(worn):
+    beside = np.random.default_rng(3).normal(0.0, 0.015, (4, *worn.points_m.shape))
+    many = (worn.points_m + beside).reshape(-1, 3)
+    assert len(many) > MOST_ROUGH
+    found = find_body(PLACES, many)
+    truth = [worn.segments[name] for name in worn.markers.names] * 4
+    assert np.mean([near(one, true) for one, true in zip(segments(found), truth, strict=True)]) >= 0.9
+    assert facing(found)[0] > 0.95
 
 
 def test_bare_segments_have_no_share(worn):

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from mbkf.numerics.rotations import (
+    exponential_and_left_jacobian,
     nearest_rotations,
     quaternion_of,
     skew,
@@ -84,3 +85,13 @@ def test_travel_changes_with_the_turn_as_its_differences_do(angle):
         dtype=float,
     ).T
     np.testing.assert_allclose(travel_by_turn(u, w), back @ by_vector, rtol=0, atol=2e-12)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-4, 0.149, 0.151, 2.0, 3.1])
+def test_the_left_jacobian_turns_a_change_of_a_rotation_vector_into_a_turn(size):
+    vectors = size * np.array([[1.0, 0.0, 0.0], [0.6, 0.0, -0.8], [0.48, 0.6, 0.64]])
+    exponential, left = exponential_and_left_jacobian(vectors)
+    np.testing.assert_allclose(exponential, Rotation.from_rotvec(vectors).as_matrix(), atol=1e-14)
+    for change in 1e-6 * np.eye(3):
+        ahead, back = (Rotation.from_rotvec(vectors + sign * change) for sign in (1.0, -1.0))
+        np.testing.assert_allclose(left @ change, 0.5 * (ahead * back.inv()).as_rotvec(), atol=1e-15)

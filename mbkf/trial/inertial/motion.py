@@ -114,6 +114,8 @@ class _Plan:
         settings: Of the whole.
         derived: Segments of sensors without a gyroscope, whose angular velocities follow from orientations.
         turned: Segments whose sensors are strapped on the other way round than usual.
+        early: (T, S, 4) orientations of the sensors, sensor → world (NWU), at their samples of a start in motion; None
+            where the frames begin with standing.
     """
 
     model: HumanModel
@@ -127,6 +129,7 @@ class _Plan:
     settings: InertialMotionSettings
     derived: frozenset[str] = frozenset()
     turned: frozenset[str] = frozenset()
+    early: Array | None = None
 
 
 def inertial_motion(
@@ -173,6 +176,8 @@ def inertial_motion(
                 name for name, k in zip(segments, order, strict=True) if not has_gyroscope(readings[k])
             ),
         )
+        if not plan.from_standing:
+            plan = replace(plan, early=_early(plan))
         found = mounted_reversed(
             model,
             segments,
@@ -302,28 +307,34 @@ def _dt(plan: _Plan) -> float:
     return float(plan.times_s[1] - plan.times_s[0])
 
 
-def _first(plan: _Plan, worn: SensorMounts) -> KinematicState:
-    """The first posture: that of standing, or by the sensors' orientations at a start in motion."""
-    dt, s = _dt(plan), plan.settings
-    if plan.from_standing:
-        return first_posture(plan.model, plan.segments, np.tile(plan.posture, (2, 1)), dt, True, s.start)
+def _early(plan: _Plan) -> Array:
+    """(T, S, 4) orientations of the sensors over the first samples of a motion, sensor → world (NWU)."""
     begin = float(plan.times_s[0])
     early = [
         replace(part, angular_velocity_rad_s=part.angular_velocity_rad_s - bias)
         for part, bias in (
             (between(one, begin, begin + GUESS_S), bias)
-            for one, bias in zip(plan.sensors, worn.bias_rad_s, strict=True)
+            for one, bias in zip(plan.sensors, _worn(plan).bias_rad_s, strict=True)
         )
     ]
-    found = orientations(early, frame="NWU", settings=s.orient)
-    steps = [int(np.searchsorted(early[0].time_s, begin + k * dt - 1e-9)) for k in (0, 1)]
-    q = np.stack([one.quaternion for one in found], axis=1)
-    course = multiply(q, conjugate(np.array([mount.rotation for mount in worn.mounts])))
+    found = orientations(early, frame="NWU", settings=plan.settings.orient)
+    return np.stack([one.quaternion for one in found], axis=1)
+
+
+def _first(plan: _Plan, worn: SensorMounts) -> KinematicState:
+    """The first posture: that of standing, or by the sensors' orientations at a start in motion."""
+    dt, start = _dt(plan), plan.settings.start
+    if plan.early is None:
+        return first_posture(plan.model, plan.segments, np.tile(plan.posture, (2, 1)), dt, True, start)
+    begin, carrying = float(plan.times_s[0]), plan.sensors[0]
+    times = between(carrying, begin, begin + GUESS_S).time_s
+    steps = [int(np.searchsorted(times, begin + k * dt - 1e-9)) for k in (0, 1)]
+    course = multiply(plan.early, conjugate(np.array([mount.rotation for mount in worn.mounts])))
     held = held_headings(
-        plan.segments, course, 1.0 / early[0].rate_hz, ClinicalAngles(plan.model).joints, ANY_HEADING
+        plan.segments, course, 1.0 / carrying.rate_hz, ClinicalAngles(plan.model).joints, ANY_HEADING
     )
     side = rotate(course[0, 0], np.array([0.0, 1.0, 0.0]))
     forward = float(np.arctan2(-side[0], side[1]))
     course = turned(course, held - forward)
     guess = configurations(plan.model, plan.segments, course[steps])
-    return first_posture(plan.model, plan.segments, guess, dt, False, s.start)
+    return first_posture(plan.model, plan.segments, guess, dt, False, start)
