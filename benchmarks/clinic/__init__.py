@@ -13,6 +13,7 @@ from benchmarks.clinic.emg import emg_rows
 from benchmarks.clinic.norms import norms_rows
 from benchmarks.clinic.page import page_rows
 from benchmarks.clinic.scores import score_rows
+from benchmarks.clinic.sessions import sessions_rows
 from benchmarks.clinic.sheet import sheet_rows
 from benchmarks.clinic.words import words_rows
 from benchmarks.parts import Part, part_rows
@@ -23,6 +24,7 @@ PARTS: Mapping[str, Part] = {
     "norms": lambda context: norms_rows(context.out),
     "page": lambda context: page_rows(context.out, context.seed),
     "scores": lambda _: score_rows(),
+    "sessions": lambda context: sessions_rows(context.require_data(), context.out),
     "sheet": lambda context: sheet_rows(context.require_data(), context.out),
     "words": lambda context: words_rows(context.require_data(), context.out),
 }

@@ -22,7 +22,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.checks import Check, Context
-from mbkf.app.runs import RUNNING, Runs
+from mbkf.app.run_states import RUNNING
+from mbkf.app.runs import Runs
 from mbkf.app.workspace import Workspace
 from mbkf.conventions import Array
 from mbkf.io.c3d_write import write_c3d

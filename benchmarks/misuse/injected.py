@@ -28,7 +28,8 @@ import mbkf
 from benchmarks.batch.study import study
 from benchmarks.checks import Check, Context
 from mbkf.app import runs as module
-from mbkf.app.runs import FAILED, FINISHED, Runs
+from mbkf.app.run_states import FAILED, FINISHED
+from mbkf.app.runs import Runs
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
 from mbkf.io.results_folder import read_reconstruction

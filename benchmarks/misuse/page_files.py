@@ -18,7 +18,7 @@ from benchmarks.checks import Check, Context, information
 from benchmarks.misuse.leftovers import leftovers
 from benchmarks.misuse.world import PERSONS, changed, digests, made_world
 from mbkf.app.reports import NORMS_FILE
-from mbkf.app.runs import FAILED, FINISHED
+from mbkf.app.run_states import FAILED, FINISHED
 from mbkf.app.server import AppServer
 from mbkf.trial.export import RESULT_FORMATS
 

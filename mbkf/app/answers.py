@@ -7,7 +7,8 @@ from pathlib import Path
 
 from mbkf.app.live_run import LiveRun
 from mbkf.app.recordings import recording_rows
-from mbkf.app.runs import Runs, RunState
+from mbkf.app.run_states import INCOMPLETE, RunState
+from mbkf.app.runs import Runs
 from mbkf.app.verdicts import gravest_on, verdict_on
 from mbkf.app.workspace import Workspace
 from mbkf.io.session import TrialKind, plain_session
@@ -40,13 +41,14 @@ def sessions(workspace: Workspace, runs: Runs, moved: list[Plain]) -> Plain:
 
 
 def _in_short(workspace: Workspace, state: RunState | None, name: str) -> Plain:
-    """A session with its run and the gravest word on its trials: "look" at least where one of them failed."""
+    """A session with its run and the gravest word on its trials: "look" at least where one of them was not done."""
     place = workspace.place(name)
     trials = {} if state is None else state.trials
     done = [place / trial for trial, (status, _) in trials.items() if status in HAS_RESULT]
     failed = sum(status == "failed" for status, _ in trials.values())
     counts = {"failed": failed, "trials": len(trials)}
-    return {"id": name, "run": run_state(state), **counts, "verdict": gravest_on(done, failed > 0)}
+    incomplete = failed > 0 or (state is not None and state.state in INCOMPLETE)
+    return {"id": name, "run": run_state(state), **counts, "verdict": gravest_on(done, incomplete)}
 
 
 def session(workspace: Workspace, runs: Runs, name: str) -> Plain:

@@ -6,7 +6,8 @@ import contextlib
 from pathlib import Path
 
 from mbkf.app.notes import check_version, disagreement
-from mbkf.app.runs import RUNNING, Runs
+from mbkf.app.run_states import RUNNING
+from mbkf.app.runs import Runs
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.session import FootEvent, plain_events, session_of

@@ -17,7 +17,7 @@ from mbkf.viz.report.video import LinkedVideo
 
 SCRIPTS = (
     "element.js", "app_words.js", "app_place.js", "app_focus.js", "app_merge.js", "app_live.js", "app_export.js",
-    "app_files.js", "app_report.js", "app_visit.js", "app_session.js", "app.js",
+    "app_files.js", "app_report.js", "app_visit.js", "app_session.js", "app_all.js", "app.js",
 )  # fmt: skip
 """Scripts of the start page, in the order they are needed."""
 

@@ -27,10 +27,14 @@ Plain = dict[str, object]
 
 
 def choices(workspace: Workspace, session: str) -> Plain:
-    """Other sessions with results, dated visits of the person among them, and files of norms."""
-    others = [name for name in workspace.sessions() if name != session and _is_done(workspace, name)]
+    """Other sessions with results, the nearest before and behind, dated visits of the person, and files of norms."""
+    names = workspace.sessions()
+    others = [name for name in names if name != session and _is_done(workspace, name)]
+    at = names.index(session) if session in names else 0
     return {
         "sessions": others,
+        "previous": next((name for name in names[:at][::-1] if name in others), None),
+        "next": next((name for name in names[at + 1 :] if name in others), None),
         "visits": len(_other_visits(workspace, session)),
         "norms": [path.name for path in norms_files(workspace)],
         "charts": asdict(workspace.charts),

@@ -65,6 +65,13 @@ def _session_routes(workspace: Workspace, runs: Runs, arranging: Arranging) -> l
         (runs.cancel if query["do"] == "cancel" else runs.start)(name)
         return {"run": answers.run_state(runs.state(name))}
 
+    def run_all(query: Query, _body: bytes) -> object:
+        if query["do"] == "cancel":
+            runs.cancel(*workspace.sessions())
+        else:
+            runs.start_all()
+        return answers.sessions(workspace, runs, arranging.listed())
+
     def apart(query: Query, _body: bytes) -> object:
         folder, state = workspace.folder(query["session"]), runs.state(query["session"])
         if state is None or not state.persons:
@@ -85,6 +92,7 @@ def _session_routes(workspace: Workspace, runs: Runs, arranging: Arranging) -> l
         data("/session", lambda query: answers.session(workspace, runs, query["session"])),
         change("/session", noted),
         action("/run", run),
+        action("/run/all", run_all),
         action("/separate", apart),
         Route("/put", put, methods=["POST"]),
     ]

@@ -15,14 +15,24 @@ import math
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from os import cpu_count
-from pathlib import Path
 
+from mbkf.app.run_states import (
+    CANCELLED,
+    FAILED,
+    FINISHED,
+    NOT_READY,
+    RUNNING,
+    WAITING,
+    RunState,
+    read_states,
+    state_of,
+)
 from mbkf.app.several_persons import SeveralPersons, of_one_person
 from mbkf.app.workspace import Workspace
+from mbkf.errors import InvalidInput
 from mbkf.io.atomic import write_text
-from mbkf.io.files_read import read_state
 from mbkf.study.batch.outcome import Outcome, Status, Task, failed
 from mbkf.study.batch.plan import Plan
 from mbkf.study.batch.progress import Progress, Watch
@@ -34,54 +44,11 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 RUNS_FILE = "runs.json"
 """File in the folder of the results with the state of each session's run."""
 
-WAITING, RUNNING, FINISHED, CANCELLED, FAILED = "waiting", "running", "finished", "cancelled", "failed"
-
 LOOK_S = 1.0
 """Time between two looks at the states while nothing changes."""
 
 CLOSE_S = 10.0
 """Longest wait for the thread at the end; its processes are killed at once."""
-
-
-@dataclass
-class RunState:
-    """The state of a session's run.
-
-    Attributes:
-        state: "waiting", "running", "finished", "cancelled" or "failed".
-        stage: "scaled" or "trials".
-        done, total: Counts of trials.
-        seconds: Time since the run began.
-        scaled_s: Time until the person was scaled.
-        reason: Cause of a failure of the whole run; empty without.
-        persons: Files of each person, by place, where the failure is that there are several; empty otherwise.
-        trials: Status of each trial by name ("done", "unchanged" or "failed"), and its reason.
-        under_way: Progress of each trial under way by name; of the scaling under "".
-    """
-
-    state: str = WAITING
-    stage: str = ""
-    done: int = 0
-    total: int = 0
-    seconds: float = 0.0
-    scaled_s: float = 0.0
-    reason: str = ""
-    persons: dict[str, list[str]] = field(default_factory=dict)
-    trials: dict[str, tuple[str, str]] = field(default_factory=dict)
-    under_way: dict[str, Progress] = field(default_factory=dict)
-
-    @property
-    def remaining_s(self) -> float | None:
-        """Estimated time until the end, s; None before the first trial is being filtered."""
-        if self.state != RUNNING or not self.total:
-            return None
-        share = (self.done + self.share) / self.total
-        return None if share <= 0.0 else (self.seconds - self.scaled_s) / share * max(1.0 - share, 0.0)
-
-    @property
-    def share(self) -> float:
-        """Shares of the trials under way that are done, added up."""
-        return sum(one.share for one in self.under_way.values())
 
 
 class Runs:
@@ -94,7 +61,7 @@ class Runs:
 
     def __init__(self, workspace: Workspace, workers: int | None = None) -> None:
         self._workspace, self._workers = workspace, workers or cpu_count() or 1
-        self._states = _read(workspace.out / RUNS_FILE)
+        self._states = read_states(workspace.out / RUNS_FILE)
         self._changed = threading.Condition()
         self._closing = False
         for state in self._states.values():
@@ -103,21 +70,25 @@ class Runs:
         self._thread = self._started()
 
     def start(self, session: str) -> None:
-        """Queues a session, unless it waits or runs already."""
-        with self._changed:
-            self._revive()
-            known = self._states.get(session)
-            if known is None or known.state not in {WAITING, RUNNING}:
-                self._states[session] = RunState(trials={} if known is None else known.trials)
-            self._save()
+        """Queues a session behind those that wait, unless it waits or runs already."""
+        self._replace({session: RunState()})
 
-    def cancel(self, session: str) -> None:
-        """Ends the run of a session; trials under way are given up, finished ones stay."""
+    def start_all(self) -> None:
+        """Queues all sessions in their order; those that are not ready are left out, with the reason in their state."""
+        self._replace(
+            {
+                name: _left_out(found) if isinstance(found, InvalidInput) else RunState()
+                for name, found in self._workspace.plans().items()
+            }
+        )
+
+    def cancel(self, *sessions: str) -> None:
+        """Ends the runs of sessions; trials under way are given up, finished ones stay."""
         with self._changed:
-            state = self._states.get(session)
-            if state is not None and state.state in {WAITING, RUNNING}:
-                state.state, state.under_way = CANCELLED, {}
-                self._save()
+            for state in (self._states[name] for name in sessions if name in self._states):
+                if state.state in {WAITING, RUNNING}:
+                    state.state, state.under_way = CANCELLED, {}
+            self._save()
 
     def state(self, session: str) -> RunState | None:
         """The state of a session's run; None for one that never ran."""
@@ -154,7 +125,7 @@ class Runs:
             trial: The trial; empty for the whole session.
             plain: As :meth:`plain_state` gave it.
         """
-        found = _state(plain)
+        found = state_of(plain)
         with self._changed:
             if trial and session in self._states:
                 self._states[session].trials |= found.trials
@@ -185,6 +156,18 @@ class Runs:
             self._closing = True
             self._changed.notify_all()
         self._thread.join(CLOSE_S)
+
+    def _replace(self, states: Mapping[str, RunState]) -> None:
+        """New states, with their known trials, of sessions that neither wait nor run, behind all others."""
+        with self._changed:
+            self._revive()
+            for name, state in states.items():
+                known = self._states.get(name)
+                if known is None or known.state not in {WAITING, RUNNING}:
+                    state.trials = {} if known is None else known.trials
+                    self._states.pop(name, None)
+                    self._states[name] = state
+            self._save()
 
     def _started(self) -> threading.Thread:
         thread = threading.Thread(target=self._run, name="mbkf-runs", daemon=True)
@@ -355,23 +338,7 @@ def _reason(error: BaseException) -> str:
         return type(error).__name__
 
 
-def _read(file: Path) -> dict[str, RunState]:
-    """The states in a file; empty if it is missing or damaged."""
-    try:
-        plain = json.loads(read_state(file))
-        return {str(name): _state(one) for name, one in plain.items()}
-    except (OSError, ValueError, TypeError, AttributeError):
-        return {}
-
-
-def _state(plain: Mapping[str, object]) -> RunState:
-    """A state from plain data, without trials under way.
-
-    Raises:
-        ValueError, TypeError, AttributeError: The data are no state.
-    """
-    state = RunState(**plain)  # type: ignore[arg-type]
-    state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}
-    state.persons = {str(k): [str(name) for name in names] for k, names in state.persons.items() if names}
-    state.under_way = {}
-    return state
+def _left_out(reason: InvalidInput) -> RunState:
+    """The state of a session that is not ready."""
+    persons = reason.files if isinstance(reason, SeveralPersons) else {}
+    return RunState(NOT_READY, reason=_reason(reason), persons=persons)

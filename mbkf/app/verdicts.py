@@ -25,15 +25,15 @@ def verdict_on(folder: Path) -> Plain | None:
     return {"word": found.overall, "line": found.line, "reasons": list(found.sentences)}
 
 
-def gravest_on(folders: Iterable[Path], failed: bool = False) -> Word | None:
+def gravest_on(folders: Iterable[Path], incomplete: bool = False) -> Word | None:
     """The gravest word on results; None where no result has a verdict.
 
     Args:
         folders: Folders of results.
-        failed: Whether other trials of theirs failed, so that the whole calls for a look.
+        incomplete: Whether other trials of theirs were not done, so that the whole calls for a look.
     """
     words = [found.overall for folder in folders if (found := _verdict(folder)) is not None]
-    return gravest([*words, "look" if failed else "use"]) if words else None
+    return gravest([*words, "look" if incomplete else "use"]) if words else None
 
 
 def _verdict(folder: Path) -> Verdict | None:

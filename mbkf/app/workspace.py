@@ -82,10 +82,23 @@ class Workspace:
             InvalidInput: The session has no moving trial.
             SeveralPersons: Its folder holds captures of several persons.
         """
-        trials = self._trials(self.folder(session))
-        if not trials:
-            raise InvalidInput("the session has no moving trial to reconstruct")
-        return of_one_person(Plan(trials))
+        return _plan(self._trials(self.folder(session)))
+
+    def plans(self) -> dict[str, Plan | InvalidInput]:
+        """The work for each session, or the reason for which it is not ready for a run."""
+        trials = self._all_trials()
+        found: dict[str, Plan | InvalidInput] = {}
+        for name in self.sessions():
+            try:
+                found[name] = plan = _plan(
+                    tuple(one for one in trials if one.path.parent == self.root / name)
+                )
+            except InvalidInput as error:
+                found[name] = error
+                continue
+            if all(one.fault for one in plan.trials):
+                found[name] = InvalidInput(plan.trials[0].fault)
+        return found
 
     def place(self, session: str) -> Path:
         """The folder of a session's results, as for ``mbkf batch``."""
@@ -205,8 +218,11 @@ class Workspace:
 
     def _trials(self, folder: Path) -> tuple[Trial, ...]:
         """The moving trials of a session's folder that are not left out."""
+        return tuple(one for one in self._all_trials() if one.path.parent == folder)
+
+    def _all_trials(self) -> tuple[Trial, ...]:
         try:
-            return tuple(one for one in plan_of_folder(self.root).trials if one.path.parent == folder)
+            return plan_of_folder(self.root).trials
         except InvalidInput:  # there are standing trials only
             return ()
 
@@ -216,3 +232,15 @@ class Workspace:
         if cached is None or cached[0] != stamp:
             cached = self._cached[path] = stamp, survey_trial(path, forces)
         return cached[1]
+
+
+def _plan(trials: tuple[Trial, ...]) -> Plan:
+    """The plan of the moving trials of a session.
+
+    Raises:
+        InvalidInput: There are none.
+        SeveralPersons: They are of several persons.
+    """
+    if not trials:
+        raise InvalidInput("the session has no moving trial to reconstruct")
+    return of_one_person(Plan(trials))

@@ -6,12 +6,16 @@ import shutil
 import pytest
 
 from mbkf.app import answers
-from mbkf.app.runs import RunState
+from mbkf.app.run_states import RunState
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError
+from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import SessionNotes
+from mbkf.io.verdict import Verdict
 from mbkf.study.batch.person import RECORD
 from mbkf.study.batch.progress import Progress
+from mbkf.trial.results.summary import summarise
+from tests.io.reconstructions import made_up
 from tests.studies import study
 
 
@@ -66,6 +70,15 @@ def test_all_sessions_in_short(workspace):
     assert (told["sessions"][0]["failed"], told["sessions"][0]["trials"]) == (1, 2)
     assert [one["id"] for one in told["sessions"]] == ["P1"]
     assert told["sessions"][0]["run"]["state"] == "finished" and told["folder"] == str(workspace.root)
+
+
+@pytest.mark.parametrize("state", ["cancelled", "failed", "not_ready"])
+def test_a_session_whose_run_did_not_end_is_not_to_be_used_without_a_look(workspace, state):
+    result = made_up(verdict=Verdict())
+    write_reconstruction(result, summarise(result), workspace.place("P1") / "walk1")
+    for name, word in (("finished", "use"), (state, "look")):
+        runs = States({"P1": RunState(name, trials={"walk1": ("done", "")})})
+        assert answers.sessions(workspace, runs, [])["sessions"][0]["verdict"] == word
 
 
 def test_a_damaged_session_file_costs_its_session_and_is_never_written_over(workspace):

@@ -10,7 +10,7 @@ from mbkf.app.arranging import Arranging
 from mbkf.app.bin import BIN
 from mbkf.app.failures import Refused
 from mbkf.app.live_run import LiveRun
-from mbkf.app.runs import FINISHED, RunState
+from mbkf.app.run_states import FINISHED, RunState
 from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.session import TrialKind, read_session

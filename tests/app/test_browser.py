@@ -48,15 +48,23 @@ def test_a_dropped_folder_becomes_a_report(page, lab, tmp_path):
     report.locator("text=Potencias articulares").wait_for()
 
 
-def test_a_run_goes_on_while_the_page_is_loaded_again(page, lab):
-    study(lab.workspace.root, trials=2)
+def test_all_sessions_run_while_the_page_is_loaded_again(page, lab):
+    study(lab.workspace.root, persons=3, trials=1)
+    (lab.workspace.root / "P2" / "walk1.c3d").unlink()
     page.reload()
     page.wait_for_selector("tbody tr")
-    page.locator("button.main").first.click()
-    page.wait_for_selector("progress")
+    page.get_by_role("button", name="Run all sessions").click()
+    page.wait_for_selector("#sessions progress")
     page.reload()
     page.wait_for_selector("text=Done in", timeout=1e3 * PATIENCE_S)
-    assert page.locator("td .status.done").count() >= 2
+    page.locator("[data-key='session P3'] .verdict-use").wait_for()
+    left_out = page.locator("#sessions li").nth(1)
+    assert "left out" in left_out.inner_text() and "no moving trial" in left_out.inner_text()
+    assert page.locator("td .status.done").count() == 1
+    page.locator("#session-report").click()
+    page.get_by_role("button", name="Next: P3").click()
+    page.frame_locator("dialog iframe").locator("h1", has_text="P3").wait_for()
+    assert page.get_by_role("button", name="Previous: P1").count() == 1
 
 
 def test_names_are_text(page, lab):

@@ -4,15 +4,17 @@ import errno
 import json
 import os
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mbkf.app import runs as module
-from mbkf.app.runs import CANCELLED, FAILED, FINISHED, RUNNING, RUNS_FILE, WAITING, Runs, RunState
+from mbkf.app.run_states import CANCELLED, FAILED, FINISHED, NOT_READY, RUNNING, WAITING, RunState
+from mbkf.app.runs import RUNS_FILE, Runs
 from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.io.results_folder import read_reconstruction
-from mbkf.io.session import SessionNotes
+from mbkf.io.session import SESSION_FILE, SessionNotes
 from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.progress import Progress
 from mbkf.study.batch.tasks import ReconstructTrial
@@ -278,6 +280,41 @@ def test_a_session_that_cannot_run_says_why(workspace):
     wait_for(runs, "P1", FAILED)
     assert "no moving trial" in runs.state("P1").reason
     runs.close()
+
+
+@pytest.mark.usefixtures("quick")
+def test_all_sessions_run_in_their_order_and_those_that_are_not_ready_say_why(workspace):
+    for name, source in (("P0", "P1/static.c3d"), ("P9/S01", "P1/walk1.c3d"), ("P9/S01", "P1/static.c3d")):
+        (workspace.root / name).mkdir(parents=True, exist_ok=True)
+        (workspace.root / name / Path(source).name).write_bytes((workspace.root / source).read_bytes())
+    (workspace.root / "P9" / "S01" / SESSION_FILE).write_text("mass_kg = oak\n")
+    Quick.begin.clear()
+    runs = Runs(workspace, 1)
+    runs.start("P2")
+    wait_for(runs, "P2", RUNNING)
+    runs.start_all()
+    states = {name: runs.state(name).state for name in workspace.sessions()}
+    assert states == {"P0": NOT_READY, "P1": WAITING, "P2": RUNNING, "P9/S01": NOT_READY}
+    assert "no moving trial" in runs.state("P0").reason and SESSION_FILE in runs.state("P9/S01").reason
+    Quick.begin.set()
+    wait_for(runs, "P1", FINISHED)
+    Quick.begin.clear()
+    runs.start_all()
+    Quick.begin.set()
+    wait_for(runs, "P2", FINISHED)
+    assert list(json.loads((workspace.out / RUNS_FILE).read_text())) == list(workspace.sessions())
+    runs.close()
+
+
+@pytest.mark.usefixtures("slow")
+def test_all_runs_end_together(workspace):
+    runs = Runs(workspace, 1)
+    runs.start_all()
+    assert runs.wait(lambda: bool(runs.state("P1").under_way), PATIENCE_S)
+    runs.cancel(*workspace.sessions())
+    assert [runs.state(name).state for name in ("P1", "P2")] == [CANCELLED, CANCELLED]
+    runs.close()
+    assert not runs.state("P2").seconds and Slow.closed == 1
 
 
 @pytest.mark.parametrize(

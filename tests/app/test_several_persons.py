@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from mbkf.app.failures import Refused
-from mbkf.app.runs import FAILED
+from mbkf.app.run_states import FAILED
 from mbkf.app.several_persons import SeveralPersons, separate
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput

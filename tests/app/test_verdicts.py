@@ -28,8 +28,8 @@ def test_a_session_has_the_gravest_word_of_its_results(tmp_path):
 
 def test_a_session_with_a_failed_trial_calls_for_a_look(tmp_path):
     right = written(tmp_path / "a", Verdict())
-    assert gravest_on([right], failed=True) == "look"
-    assert gravest_on([], failed=True) is None
+    assert gravest_on([right], incomplete=True) == "look"
+    assert gravest_on([], incomplete=True) is None
 
 
 def test_folders_without_a_verdict_say_nothing(tmp_path):

@@ -79,6 +79,10 @@ const act = {
     await ask("run?" + query({ session: chosen, do: what }), { method: "POST" });
     await refresh();
   },
+  async runAll(what) {
+    await ask("run/all?" + query({ do: what }), { method: "POST" });
+    await refresh();
+  },
   // Copies the captures of each person into a session of their own, and shows the first of these.
   async separate() {
     const said = await ask("separate?" + query({ session: chosen }), { method: "POST" });
@@ -130,9 +134,6 @@ function draw(data, turn) {
   shown = data;
   document.title = `${titleOf(data.id)} · mbkf`;
   keepingFocus(() => drawParts(place("session"), data, act));
-  announce(runText(data));
-  clearTimeout(timer);
-  if (data.run && (data.run.state === "running" || data.run.state === "waiting")) timer = setTimeout(refresh, AGAIN_MS);
 }
 
 const titleOf = (session) => (session === "." ? "·" : session);
@@ -176,7 +177,7 @@ async function refresh() {
     chosen = known.sessions[0].id;
     history.replaceState(null, "", address({ session: chosen }));
   }
-  keepingFocus(() => place("sessions").replaceChildren(dropZone(), sessionList(known.sessions), binList(known.moved, act)));
+  keepingFocus(() => place("sessions").replaceChildren(dropZone(), ...allSessions(known.sessions, act), binList(known.moved, act)));
   if (chosen === null) lack(word("no_session"));
   else if (!known.sessions.some((one) => one.id === chosen)) {
     shown = null;
@@ -187,26 +188,9 @@ async function refresh() {
       lack(error.message);
     });
   }
-}
-
-function sessionList(sessions) {
-  return element("ul", { className: "sessions" }, ...sessions.map((one) => element("li", {}, sessionButton(one))));
-}
-
-function sessionButton(one) {
-  const button = element("button", { className: "session", type: "button", onclick: () => go(one.id) }, element("span", {}, titleOf(one.id)), ...badges(one));
-  button.dataset.key = `session ${one.id}`;
-  button.setAttribute("aria-current", String(one.id === chosen));
-  return button;
-}
-
-// The state of a session in short; green only where every trial may be used.
-function badges(one) {
-  const badge = (kind, text) => element("span", { className: `status ${kind}` }, text);
-  if (one.run && one.run.state === "running") return [badge("running", word("running"))];
-  if (one.run && one.run.state === "waiting") return [badge("waiting", word("waiting_short"))];
-  const found = one.failed ? [badge("failed", word("failed_of", one.failed, one.trials))] : one.run && one.run.state === "failed" ? [badge("failed", word("failed"))] : [];
-  return one.verdict ? [...found, verdictBadge({ word: one.verdict })] : found;
+  announce(queueText(known.sessions) || (shown ? runText(shown) : ""));
+  clearTimeout(timer);
+  if (known.sessions.some((one) => isBusy(one.run)) || (shown && isBusy(shown.run))) timer = setTimeout(refresh, AGAIN_MS);
 }
 
 function dropZone() {
@@ -265,10 +249,10 @@ async function put(path, file) {
   if (!answer.ok) throw new Error(troubleOf(await answer.json()));
 }
 
-// The first of the folders that holds captures; the first one without, so that the page says so.
+// The first session of the list that is among the folders; the first folder without one, so that the page says so.
 async function sessionOf(folders) {
   const { sessions } = await ask("sessions");
-  return folders.find((folder) => sessions.some((one) => one.id === folder)) ?? folders[0];
+  return sessions.find((one) => folders.includes(one.id))?.id ?? folders[0];
 }
 
 function chooseLanguage() {

@@ -29,6 +29,7 @@ async function sessionReport(session, act) {
     chosenNorms.select.value = made.norms;
     show();
   } }, word("build_norms"));
+  const beside = (name, text) => (name ? [element("button", { type: "button", onclick: () => otherReport(name, act) }, word(text, titleOf(name)))] : []);
   const print = element("button", { type: "button", onclick: () => frame.contentWindow.print() }, word("print"));
   const keep = (href, name, label) => element("a", { className: "button", href, download: name }, label);
   const save = keep("", `${fileName(session)}.html`, word("save"));
@@ -36,8 +37,13 @@ async function sessionReport(session, act) {
   const curves = ["csv", "parquet"].map((kind) => [kind, keep("", `${fileName(session)}-curves.${kind}`, kind.toUpperCase())]);
   const link = () => { for (const [kind, one] of curves) one.href = "report/curves?" + query({ session, as: kind, ...charts() }); };
   link();
-  act.dialog(session, frame, [chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), build, print, save, ...curves.map(([, one]) => one)]);
+  act.dialog(session, frame, [...beside(found.previous, "previous_report"), ...beside(found.next, "next_report"), chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), build, print, save, ...curves.map(([, one]) => one)]);
   show();
+}
+
+async function otherReport(session, act) {
+  await go(session);
+  act.report();
 }
 
 function choice(title, names, without) {

@@ -107,13 +107,11 @@ function run(data, act) {
   const section = element("section", { className: "running" }, titled("calculation", "run", act), row);
   if (!state) return keyed(section, "run");
   if (busy) {
-    const total = Math.max(state.total, 1);
-    const bar = element("progress", { max: total, value: state.done + state.share });
-    bar.setAttribute("aria-label", word("trials"));
+    const bar = progressBar(state, word("trials"));
     const left = state.remaining_s === null ? "" : " · " + word("remaining", duration(state.remaining_s));
     row.append(bar, element("span", {}, runText(data) + left), element("button", { type: "button", onclick: () => act.run("cancel") }, word("cancel")));
   } else {
-    row.append(element("span", { className: state.state === "failed" || failedTrials(data) ? "bad" : "" }, runText(data)));
+    row.append(element("span", { className: ["failed", "not_ready"].includes(state.state) || failedTrials(data) ? "bad" : "" }, runText(data)));
     if (state.persons.length) row.append(element("button", { type: "button", className: "separate", onclick: act.separate }, word("separate", state.persons.join(", "))));
   }
   if (!busy && data.scaled_from.length) row.append(element("span", { className: "scaled-from", title: data.scaled_why.join("\n") }, `${word("scaled_by")}: ${data.scaled_from.join(", ")}`));
@@ -131,6 +129,7 @@ function runText(data) {
   if (state.state === "running") return state.done || state.stage ? word("of", state.done, state.total) : word("scaling");
   if (state.state === "cancelled") return word("cancelled");
   if (state.state === "failed") return word("failed_run", state.reason);
+  if (state.state === "not_ready") return word("left_out_run", state.reason);
   const failed = failedTrials(data);
   return failed ? word("finished_failed", duration(state.seconds), failed, data.trials.filter((one) => one.status).length) : word("finished", duration(state.seconds));
 }

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.misuse import injected
 from benchmarks.misuse.injected import ERRORS, HIT, MODES, OTHER, Places
-from mbkf.app.runs import FAILED, FINISHED, RunState
+from mbkf.app.run_states import FAILED, FINISHED, RunState
 from tests.studies import from_standing
 
 SECONDS = 1.0
