@@ -121,6 +121,8 @@ CASES = (
     Case("live", "--from file:{trial} --mass 70 --protocol {protocol} --speed 0 --out {OUT}", "new", runs=False,
          writes=LIVE),
     Case("live", "--recover {result}", runs=False),
+    Case("live", "--from file:{trc} --subject {subject} --speed 0 --out {OUT}-run --record {OUT}", "new.c3d",
+         slow=True),
     Case("live", "--list --from udp", runs=False),
     Case("view", "{result} --html {OUT}", "new.html"),
     Case("report", "{result} --labels {labels} --out {OUT}", "new.html"),

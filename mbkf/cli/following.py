@@ -214,12 +214,17 @@ def report_outcome(outcome: LiveOutcome, folder: Path) -> int:
         f"frames: {report['frames_in']} received, {report['frames_lost']} lost; latency: median "
         f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms{lag}; {report['ended_by']}"
     )
+    if report.get("frames_recorded"):
+        print(f"{report['recording']}: {report['frames_recorded']} frames recorded")
     failed = [] if outcome.failure is None else [f"the run ended early: {outcome.failure}"]
     logged, unlogged = report["frames_written"], report["frames_not_written"]
     if unlogged:
         failed.append(f"{unlogged} frames were never logged and cannot be recovered")
     if outcome.unreported is not None:
         failed.append(outcome.unreported)
+    if report.get("recording_problem"):
+        failed.append(f"the recording could not be written: {report['recording_problem']}")
+        failed.append(f"'mbkf live --recover {folder}' tries again")
     if outcome.problem is not None:
         failed.insert(0, f"the results could not be written: {outcome.problem}")
         if report["log"] and logged:

@@ -30,7 +30,10 @@ def inputs_protected(args: argparse.Namespace) -> Iterator[None]:
         ProtectedFile: An output is an input.
     """
     outputs = {one.dest for one in outputs_of(args)}
-    makes_a_file = any(not one.folder for one in outputs_of(args))
+    to_folder = any(one.folder for one in outputs_of(args))
+    makes_a_file = any(
+        not one.folder and not (to_folder and getattr(args, one.dest) is None) for one in outputs_of(args)
+    )
     with own_files_read(everywhere=True), overwriting(getattr(args, "overwrite", False)):
         for name, value in vars(args).items():
             if name not in outputs:

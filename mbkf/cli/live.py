@@ -10,6 +10,7 @@ Examples:
   mbkf live --from xsens --subject subject.toml --view --out result       (Xsens MVN's network streamer)
   mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
   mbkf live --from lsl --subject subject.toml --lag 60 --out result       (each frame 60 ms later, and more exact)
+  mbkf live --from qualisys --subject subject.toml --record walk.c3d --out result
   mbkf live --recover result
   mbkf live --list
 
@@ -84,6 +85,12 @@ def options(parser: argparse.ArgumentParser) -> None:
     add_preset_options(parser)
     add_strict(parser)
     add_out(parser, "DIR", "folder to write")
+    add_out(
+        parser,
+        "FILE.c3d",
+        "record the stream: all markers or points, and the plates at their own rate",
+        option="--record",
+    )
     parser.add_argument(
         "--recover", metavar="DIR", help="make the results of a run that broke off, from its log in DIR"
     )
@@ -132,15 +139,18 @@ def run(args: argparse.Namespace) -> int:
     )
     settings = with_chosen(settings, args)
     source, name = source_of(args), args.source.partition(":")[0]
+    record = None if args.record is None else Path(args.record)
 
     def begin(stop: threading.Event, patience_s: float | None) -> LiveSession:
         if isinstance(person, Subject):
-            session = LiveSession(source, person, settings, folder, name)
+            session = LiveSession(source, person, settings, folder, name, record=record)
         else:
             shown = None if waiting is None else waiting.progress
             start = StandingStart(source, name, person, folder, _say_on_both(waiting), shown)
             found = _standing(start, waiting, stop, patience_s)
-            session = LiveSession(found.source, found.subject, settings, folder, name, found.report)
+            session = LiveSession(
+                found.source, found.subject, settings, folder, name, found.report, record=record
+            )
         if not session.connect(stop, patience_s):
             raise InvalidInput(NO_STREAM)
         return session
@@ -239,7 +249,13 @@ def _standing(
 def _recover(folder: Path) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.stream.run.folder import write_results
+    from mbkf.stream.run.recording import write_recording
 
+    recording = write_recording(folder)
+    for sentence in recording.sentences:
+        say(f"mbkf: {sentence}")
+    if recording.frames:
+        print(f"{recording.file}: {recording.frames} frames recorded")
     written = write_results(folder, ("live: made from the log of a run that broke off",))
     for sentence in written.left_out:
         say(f"mbkf: {sentence}")

@@ -70,7 +70,7 @@ def test_every_command_that_takes_a_file_or_folder_to_write_is_guarded():
     for name, parser in WRITING.items():
         known = {one.dest for one in parser.get_default(OUTPUTS)}
         assert {
-            one.dest for one in parser._actions if one.dest in {"out", "html", "curves", "figure"}
+            one.dest for one in parser._actions if one.dest in {"out", "html", "curves", "figure", "record"}
         } == known, name
         assert any("--overwrite" in one.option_strings for one in parser._actions), name
 

@@ -129,13 +129,17 @@ def test_a_replay_is_followed(person, tmp_path, capsys, protocol):
 def test_a_damaged_log_is_recovered_as_far_as_it_is_whole(person, tmp_path, capsys):
     out = tmp_path / "out"
     words = ["live", "--from", f"file:{person.trial}", "--subject", person.subject, "--speed", 0]
-    assert run([*words, "--keep-log", "--out", out]) == 0
+    file = tmp_path / "recorded.c3d"
+    assert run([*words, "--keep-log", "--record", file, "--out", out]) == 0
+    assert f"{file}: 60 frames recorded" in capsys.readouterr().out
+    before = file.read_bytes()
+    file.unlink()
     path = out / LOG_FOLDER / FRAMES_FILE
     path.write_bytes(path.read_bytes()[:-10] + bytes(10))
     capsys.readouterr()
     assert run(["live", "--recover", out]) == 0
     told = capsys.readouterr()
-    assert "59 frames recovered" in told.out
+    assert "59 frames recovered" in told.out and file.read_bytes() == before
     assert told.err == "mbkf: 1 frames are left out: frames.log is damaged from there on\n"
 
 

@@ -79,9 +79,10 @@ class Collected:
 
 
 def follow(
-    folder: Path, stream, script, subject: Subject, settings=SETTINGS, sinks=(), **options
+    folder: Path, stream, script, subject: Subject, settings=SETTINGS, sinks=(), record=None, **options
 ) -> LiveOutcome:
-    session = LiveSession(ScriptedSource(stream, script), subject, settings, folder, "script")
+    source = ScriptedSource(stream, script)
+    session = LiveSession(source, subject, settings, folder, "script", record=record)
     stop = threading.Event()
     assert session.connect(stop, 1.0)
     return session.run(stop, sinks, **options)

@@ -26,6 +26,9 @@ NO_POINTS = read_only(np.zeros((0, 3)))
 Note = Callable[[str, str, int | None, int], None]
 """Takes an event: kind, sentence, frame, number of occurrences."""
 
+Record = Callable[[int | None, SourceFrame, PlateSamples], None]
+"""Takes a frame as it came: its number here, None for one that came too late, and its samples as they are numbered."""
+
 
 class ReadyFrame(NamedTuple):
     """A frame for the filter.
@@ -67,6 +70,7 @@ class FrameAlignment:
         note: Note,
         mass_kg: float | None = None,
         live: bool = False,
+        record: Record | None = None,
     ) -> None:
         """An alignment that has seen no frame yet.
 
@@ -76,8 +80,9 @@ class FrameAlignment:
             note: Called with events.
             mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
             live: Whether frames come as they are taken, so that their rate can be measured.
+            record: Called with each frame as it came.
         """
-        self._stream, self._columns, self._note = stream, columns, note
+        self._stream, self._columns, self._note, self._record = stream, columns, note, record
         self._numbering = Numbering(stream.rate_hz)
         self._plates = PlateBuffer(stream, mass_kg)
         self._ratio = stream.plate_rate_hz / stream.rate_hz
@@ -177,6 +182,8 @@ class FrameAlignment:
 
     def _take_plates(self, frame: SourceFrame, place: Numbered) -> PlateSamples:
         samples = self._numbered(frame, place)
+        if self._record is not None:
+            self._record(place.number, frame, samples)
         before, refused = self._plates.missing, self._plates.refused
         taken = self._plates.put(samples)
         if self._plates.missing > before:

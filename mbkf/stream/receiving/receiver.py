@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from mbkf.conventions import Array
-from mbkf.stream.receiving.alignment import FrameAlignment, Note, ReadyFrame
+from mbkf.stream.receiving.alignment import FrameAlignment, Note, ReadyFrame, Record
 from mbkf.stream.receiving.reader import next_frame
 from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.source import FrameSource, PlateSamples, StreamDescription
@@ -57,6 +57,7 @@ class Receiver:
         note: Note,
         mass_kg: float | None = None,
         failed: Callable[[BaseException], None] | None = None,
+        record: Record | None = None,
     ) -> None:
         """The thread is not started yet.
 
@@ -68,10 +69,13 @@ class Receiver:
             note: Called with events.
             mass_kg: The person's mass, by which readings of the plates are judged; None to accept all.
             failed: Called with the error that ends the thread.
+            record: Called with each frame as it came.
         """
         self.rate_hz = stream.rate_hz
         self._source, self._samples, self._note, self._failed = source, samples, note, failed
-        self._alignment = FrameAlignment(stream, columns, note, mass_kg, live=not source.patient)
+        self._alignment = FrameAlignment(
+            stream, columns, note, mass_kg, live=not source.patient, record=record
+        )
         self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient, _stale)
         self._overwritten = 0
         self._stopping = threading.Event()

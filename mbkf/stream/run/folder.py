@@ -14,6 +14,7 @@ from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import Subject, read_subject, write_subject
 from mbkf.stream.source import StreamDescription
 from mbkf.trial.live.log import SUBJECT_FILE, LiveLog, LiveStream, read_live_log
+from mbkf.trial.live.recording import open_recording
 from mbkf.trial.live.results import results_of
 from mbkf.trial.results.summary import summarise
 
@@ -28,6 +29,7 @@ def open_log(
     settings: Mapping[str, object],
     names: tuple[str, ...],
     subject: Subject,
+    record: Path | None = None,
 ) -> LiveLog:
     """Begins the log of a run; one that an earlier run left behind is set aside under another name.
 
@@ -38,6 +40,7 @@ def open_log(
         settings: The filter and its settings, as plain data.
         names: (M,) markers tracked.
         subject: The person.
+        record: C3D file that the run is recorded for; None for no recording.
 
     Raises:
         OSError: It cannot be written.
@@ -56,7 +59,8 @@ def open_log(
     )
     try:
         write_subject(subject, place / SUBJECT_FILE)
-        return LiveLog(place, kept, rows, dict(settings), list(names))
+        recording = () if record is None else open_recording(place, kept, record)
+        return LiveLog(place, kept, rows, dict(settings), list(names), recording)
     except BaseException:
         drop_log(folder)  # a log without a run
         raise

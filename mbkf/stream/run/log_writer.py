@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 
 from mbkf.io.frame_log import FrameLogWriter
 from mbkf.io.limb_doubts import LimbDoubt
+from mbkf.stream.receiving.alignment import Record
+from mbkf.stream.run.recorder import Recorder
 from mbkf.stream.source import PlateSamples
 from mbkf.trial.live.log import LIMBS_DTYPE, LiveLog
+from mbkf.trial.live.recording import RecordingFiles
 
 EVERY_S = 0.2
 """Interval at which new rows are written."""
@@ -57,7 +60,11 @@ class _Log:
 
 
 class LogWriter:
-    """A thread that appends rows to a :class:`LiveLog`."""
+    """A thread that appends rows to a :class:`LiveLog`.
+
+    Attributes:
+        record: Takes each frame as it came; None where the run is not recorded.
+    """
 
     def __init__(
         self,
@@ -75,7 +82,11 @@ class LogWriter:
             died: Called with any other error, which ends the thread.
         """
         self._log, self._failed, self._report, self._died = log, failed, report, died
-        self._logs = (_Log(log.frames), _Log(log.plates), _Log(log.limbs))
+        self._logs = [_Log(one) for one in (log.frames, log.plates, log.limbs, *log.recording)]
+        self._recorded = dict(zip(log.recording, self._logs[3:], strict=True))
+        self.record: Record | None = None
+        if log.recording:
+            self.record = Recorder(RecordingFiles(*log.recording), self._put_recorded).take
         self._changed = threading.Condition()
         self._closing = False
         self._thread = threading.Thread(target=self._run, name="mbkf-log", daemon=True)
@@ -100,6 +111,10 @@ class LogWriter:
         row = np.array([(doubt.as_text().encode(),)], dtype=LIMBS_DTYPE)
         with self._changed:
             self._logs[2].put(row)
+
+    def _put_recorded(self, file: FrameLogWriter, rows: NDArray) -> None:
+        with self._changed:
+            self._recorded[file].put(rows)
 
     def close(self) -> tuple[int, int]:
         """Writes the remaining rows; returns the numbers of frames that arrived and are, or are not, in the log."""

@@ -23,6 +23,7 @@ from mbkf.stream.run.log_writer import LogWriter
 from mbkf.stream.run.loop import FilterLoop
 from mbkf.stream.run.low_latency import low_latency
 from mbkf.stream.run.output import RunOutput
+from mbkf.stream.run.recording import WrittenRecording, write_recording
 from mbkf.stream.run.report import LIVE_FILE, ReportFile, frame_report
 from mbkf.stream.run.setup import LiveSetup, prepare, prepare_sensors
 from mbkf.stream.run.statistics import RunStatistics
@@ -72,6 +73,7 @@ class LiveSession:
         source_name: str,
         scaling: Mapping[str, object] | None = None,
         sensors: LiveWorn | None = None,
+        record: Path | None = None,
     ) -> None:
         """A run that is not connected yet.
 
@@ -83,6 +85,7 @@ class LiveSession:
             source_name: Name of the source, for messages and live.json.
             scaling: How the person was scaled from the stream, or sensors were calibrated, for live.json.
             sensors: The stream's inertial sensors, if these alone show the person.
+            record: C3D file that all that the stream brings is written to; None for no recording.
 
         Raises:
             InvalidInput: Smoothing is asked for.
@@ -91,7 +94,7 @@ class LiveSession:
         self._folder, self._source_name = folder, source_name
         begin = "scaling" if sensors is None else "calibration"
         self._scaling = {} if scaling is None else {begin: dict(scaling)}
-        self._events, self._sensors = EventLog(), sensors
+        self._events, self._sensors, self._record = EventLog(), sensors, record
         self._setup: LiveSetup | None = None
 
     def connect(self, stop: threading.Event, patience_s: float | None) -> bool:
@@ -158,6 +161,7 @@ class LiveSession:
             note,
             self._subject.mass_kg,
             partial(failure.of, "reading the stream"),
+            writer.record,
         )
         output = RunOutput(setup, sinks, writer.put_row, statistics, note, loads, verdict)
         loop = FilterLoop(setup, receiver, output, statistics, note, failure)
@@ -171,21 +175,19 @@ class LiveSession:
         verdict.end()
         output.close()
         logged, unlogged = writer.close()
-        if failure.cause is not None:
-            note("failed", failure.cause)
-        if unlogged:
-            note(
-                "disk",
-                f"{unlogged} of {logged + unlogged} answered frames are not in the log, nor in the results",
-            )
-        written = self._write_results()
+        self._note_end(failure, logged, unlogged)
+        recording, written = self._write_recording(), self._write_results()
         final = None if written.summary is None else written.summary["verdict"]
-        problem, complete = written.problem, not (unlogged or written.left_out)
-        if statistics.latest is None or (problem is None and complete and not keep_log):
+        needed = keep_log or written.problem is not None or unlogged or written.left_out
+        if recording.problem is None and not (needed and statistics.latest is not None):
             drop_log(self._folder)
         kept = self._folder / LOG_FOLDER
         plain = self._report(
-            "results missing" if problem is not None else "finished" if failure.cause is None else "failed",
+            "results missing"
+            if written.problem is not None
+            else "finished"
+            if failure.cause is None
+            else "failed",
             receiver.counts(loop.until),
             statistics,
             unlogged,
@@ -195,8 +197,11 @@ class LiveSession:
             frames_written=logged,
             frames_not_written=unlogged,
             log=str(kept) if kept.is_dir() else None,
+            **recording.plain(),
         )
-        return LiveOutcome(plain, written.summary, problem, failure.cause, _last_report(report, plain))
+        return LiveOutcome(
+            plain, written.summary, written.problem, failure.cause, _last_report(report, plain)
+        )
 
     def _notices(self, loads: LoadWatch) -> tuple[str, ...]:
         """Remarks beside the running verdict: events on the stream, and contacts of other parts than the feet."""
@@ -205,7 +210,8 @@ class LiveSession:
     def _begun(self, setup: LiveSetup) -> tuple[LiveLog, ReportFile]:
         """The log and live.json of a run that begins; where one of them cannot be made, what was there stays."""
         settings = {**recorded(self._settings), **setup.extra_settings}
-        log = open_log(self._folder, setup.stream, setup.rows.dtype, settings, setup.names, self._subject)
+        known = settings, setup.names, self._subject
+        log = open_log(self._folder, setup.stream, setup.rows.dtype, *known, self._record)
         try:
             return log, ReportFile(self._folder / LIVE_FILE)
         except BaseException:
@@ -218,6 +224,24 @@ class LiveSession:
             self._source.close()
         except Exception as error:  # the results are still to be written
             self._events.note("source", f"the source failed at the end ({type(error).__name__}: {error})")
+
+    def _note_end(self, failure: Failure, logged: int, unlogged: int) -> None:
+        """Events of the end: a failure, and frames that are not in the log."""
+        note = self._events.note
+        if failure.cause is not None:
+            note("failed", failure.cause)
+        if unlogged:
+            note(
+                "disk",
+                f"{unlogged} of {logged + unlogged} answered frames are not in the log, nor in the results",
+            )
+
+    def _write_recording(self) -> WrittenRecording:
+        """The C3D file of the recording, from the log."""
+        found = write_recording(self._folder)
+        for sentence in found.sentences:
+            self._events.note("recording", sentence)
+        return found
 
     def _write_results(self) -> WrittenResults:
         """The results from the log, or the reason why there are none."""

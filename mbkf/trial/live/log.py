@@ -5,6 +5,7 @@ The results are made from these files alone, so nothing that was written is lost
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -77,6 +78,7 @@ class LiveLog:
         frames: np.dtype,
         settings: dict[str, object],
         names: list[str],
+        recording: Sequence[FrameLogWriter] = (),
     ) -> None:
         """Makes the log's folder.
 
@@ -86,17 +88,18 @@ class LiveLog:
             frames: Type of a row.
             settings: Settings of the run, as plain data.
             names: (M,) markers tracked.
+            recording: Files of the recording of all that the stream brings, which the log closes.
 
         Raises:
             OSError: It cannot be written.
         """
-        self.folder = folder
+        self.folder, self.recording = folder, tuple(recording)
         folder.mkdir(parents=True, exist_ok=True)
         header = {
             "trial": stream.trial,
             "rate_hz": stream.rate_hz,
             "start_time_s": stream.start_time_s,
-            "plates": [_described(plate) for plate in stream.plates],
+            "plates": [described_plate(plate) for plate in stream.plates],
             "settings": settings,
             "markers": names,
             "sensors": list(stream.sensors),
@@ -117,6 +120,8 @@ class LiveLog:
         self.frames.close()
         self.plates.close()
         self.limbs.close()
+        for one in self.recording:
+            one.close()
 
 
 @dataclass(frozen=True)
@@ -150,7 +155,7 @@ def read_live_log(folder: Path) -> Logged:
     """
     log = read_frame_log(folder / FRAMES_FILE)
     header: dict[str, Any] = log.header
-    rows = rename_fields(log.rows[: _believable(log.rows["number"])], RENAMED)
+    rows = rename_fields(log.rows[: rising(log.rows["number"])], RENAMED)
     if not len(rows):
         raise FileFormatError(folder / FRAMES_FILE, "no frame was written")
     first = int(rows["number"][0])
@@ -158,10 +163,7 @@ def read_live_log(folder: Path) -> Logged:
     whole["number"] = first + np.arange(len(whole))
     whole[rows["number"] - first] = rows
     samples, samples_lost = _samples(folder / PLATES_FILE, len(header["plates"]))
-    plates = tuple(
-        _with_readings(plate, samples["index"], samples["wrench"][:, k])
-        for k, plate in enumerate(header["plates"])
-    )
+    plates = plates_of(header, samples)
     stream = LiveStream(
         header["trial"],
         header["rate_hz"],
@@ -187,7 +189,7 @@ def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
         log = read_frame_log(path)
     except FileFormatError as error:
         return np.zeros(0, dtype=plates_dtype(plates)), f"the plates' samples are left out: {error}"
-    rows = log.rows[: _believable(log.rows["index"])]
+    rows = log.rows[: rising(log.rows["index"])]
     return rows, _loss(len(log.rows) - len(rows) + log.left_out, "samples of the plates", PLATES_FILE)
 
 
@@ -206,7 +208,7 @@ def _loss(count: int, what: str, file: str) -> str:
     return f"{count} {what} are left out: {file} is damaged from there on" if count else ""
 
 
-def _believable(numbers: NDArray[np.int64]) -> int:
+def rising(numbers: NDArray[np.int64]) -> int:
     """Number of rows from the first one on whose numbers rise and are not too far apart."""
     if len(numbers) < 2:
         return len(numbers)
@@ -218,7 +220,8 @@ def _believable(numbers: NDArray[np.int64]) -> int:
     return 1 + int(wrong.argmax()) if wrong.any() else len(numbers)
 
 
-def _described(plate: PlateReadings) -> dict[str, object]:
+def described_plate(plate: PlateReadings) -> dict[str, object]:
+    """A plate as plain data, without its readings."""
     return {
         "name": plate.name,
         "rate_hz": plate.rate_hz,
@@ -227,6 +230,19 @@ def _described(plate: PlateReadings) -> dict[str, object]:
         "threshold_n": plate.threshold_n,
         "corners_m": None if plate.corners_m is None else plate.corners_m.tolist(),
     }
+
+
+def plates_of(header: Mapping[str, object], samples: NDArray) -> tuple[PlateReadings, ...]:
+    """The plates of a log's header with their readings; missing samples between others are NaN.
+
+    Args:
+        header: The header.
+        samples: (S,) samples, of :func:`plates_dtype`, with rising numbers.
+    """
+    described: Any = header["plates"]
+    return tuple(
+        _with_readings(plate, samples["index"], samples["wrench"][:, k]) for k, plate in enumerate(described)
+    )
 
 
 def _with_readings(plate: dict[str, Any], index: NDArray, wrench: Array) -> PlateReadings:

@@ -1,0 +1,50 @@
+"""All that a frame brings is recorded once, impossible points as missing."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from mbkf.stream.run.recorder import Recorder
+from mbkf.stream.source import PlateSamples, SourceFrame
+from mbkf.trial.live.log import plates_dtype
+
+FILES = SimpleNamespace(
+    markers=SimpleNamespace(dtype=np.dtype([("number", "<i8"), ("markers", "<f8", (2, 3))])),
+    points=SimpleNamespace(),
+    samples=SimpleNamespace(dtype=plates_dtype(1)),
+)
+
+
+def taken(*frames):
+    """Rows by file, of frames (number, markers, points, samples)."""
+    rows = {name: [] for name in ("markers", "points", "samples")}
+    names = {id(getattr(FILES, name)): name for name in rows}
+    recorder = Recorder(FILES, lambda file, some: rows[names[id(file)]].extend(some))
+    for number, markers, points, samples in frames:
+        index = np.array(samples, dtype=np.int64)
+        plates = PlateSamples(index, np.ones((len(index), 1, 6)) * index[:, None, None])
+        recorder.take(number, SourceFrame(99, 0.0, np.array(markers), np.array(points), plates), plates)
+    return rows
+
+
+HERE, GONE, FAR = [1.0, 2.0, 3.0], [np.nan] * 3, [1.0, 2.0, 3e9]
+
+
+def test_markers_that_are_too_far_away_are_missing():
+    (row,) = taken((5, [HERE, FAR], np.zeros((0, 3)), []))["markers"]
+    assert row["number"] == 5
+    np.testing.assert_array_equal(row["markers"], [HERE, GONE])
+
+
+def test_points_are_those_that_are_there():
+    rows = taken((5, [HERE, HERE], [HERE, GONE, FAR, HERE], []))["points"]
+    assert [(row["number"], list(row["point"])) for row in rows] == [(5, HERE), (5, HERE)]
+
+
+def test_samples_come_once_also_with_a_frame_that_is_too_late():
+    none = np.zeros((0, 3))
+    rows = taken(
+        (5, [HERE, HERE], none, [1, 2]), (None, [HERE, HERE], none, [2, 3]), (6, [HERE, HERE], none, [1, 2])
+    )
+    assert [int(row["number"]) for row in rows["markers"]] == [5, 6]
+    assert [(int(row["index"]), row["wrench"][0, 0]) for row in rows["samples"]] == [(1, 1), (2, 2), (3, 3)]
