@@ -47,6 +47,11 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
         const="",
         help="Qualisys: start a measurement in QTM with the run, and stop it at the end",
     )
+    stream.add_argument(
+        "--plates",
+        metavar="FILE",
+        help="capture of this laboratory (C3D) whose plates' corners count where the stream states none",
+    )
     stream.add_argument("--forces", metavar="FILE", help="file: its ground reactions, as for reconstruct")
     stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
     stream.add_argument(
@@ -67,12 +72,23 @@ def add_character_option(parser: argparse._ActionsContainer) -> None:
 
 
 def source_of(args: argparse.Namespace) -> FrameSource:
-    """The source that ``--from`` names, not connected yet.
+    """The source that ``--from`` names, not connected yet, with the plates' corners of ``--plates``.
 
     Raises:
         UnknownName: There is no such source.
         InvalidInput: An option is wrong, or the source cannot be listened to.
     """
+    if args.plates is None:
+        return _source(args)
+    from mbkf.io.capture import read_capture
+    from mbkf.stream.placed_plates import PlacedPlates, PlateGeometry
+
+    geometry = PlateGeometry(args.plates, read_capture(args.plates).plates)
+    return PlacedPlates(_source(args), geometry, in_plate_axes=args.source == "natnet")
+
+
+def _source(args: argparse.Namespace) -> FrameSource:
+    """The source that ``--from`` names, as it is."""
     name, colon, detail = args.source.partition(":")
     if name in _STREAMS and (not colon or name in _WITH_PLACE):
         return _STREAMS[name](args, detail)

@@ -7,6 +7,8 @@ import pytest
 
 from mbkf.cli.live_source import add_source_options, source_of
 from mbkf.errors import MbkfError
+from mbkf.io.c3d_write import write_c3d
+from tests.captures import made_capture
 
 
 def source(text, *options):
@@ -39,6 +41,16 @@ def test_xsens_listens_at_its_port_for_a_person():
     port = free_port()
     made = source(f"xsens:{port}", "--character", "2", "--up", "y")
     assert (made.port, made._character, made._up) == (port, 2, "y")
+
+
+def test_plates_of_a_file_are_those_of_a_stream_without_any(tmp_path):
+    file = tmp_path / "lab.c3d"
+    write_c3d(made_capture(5), file)
+    for text, in_plate_axes in ((f"udp:{free_port()}", False), ("natnet", True)):
+        made = source(text, "--plates", str(file))
+        assert len(made._geometry.plates) == 2 and made._local is in_plate_axes
+    with pytest.raises(MbkfError, match=r"missing\.c3d"):
+        source("natnet", "--plates", str(tmp_path / "missing.c3d"))
 
 
 @pytest.mark.parametrize(
