@@ -123,6 +123,8 @@ CASES = (
     Case("live", "--recover {result}", runs=False),
     Case("live", "--from file:{trc} --subject {subject} --speed 0 --out {OUT}-run --record {OUT}", "new.c3d",
          slow=True),
+    Case("live", "--from file:{trial} --subject {subject} --plates {trial} --speed 0 --out {OUT}", "new", slow=True,
+         writes=LIVE),
     Case("live", "--list --from udp", runs=False),
     Case("view", "{result} --html {OUT}", "new.html"),
     Case("report", "{result} --labels {labels} --out {OUT}", "new.html"),

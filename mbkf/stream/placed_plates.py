@@ -87,12 +87,8 @@ class PlacedPlates:
             plates[k] = replace(plates[k], corners_m=one.corners_m, origin_m=origin)
             if self._local:
                 self._turns[k] = plate_axes(one.corners_m)
-        self._news.append(
-            (
-                "plates",
-                f"the corners of the plates {_listed([plates[k] for k in bare])} are those of {self._geometry.file}",
-            )
-        )
+        names = _listed([plates[k] for k in bare])
+        self._news.append(("plates", f"the corners of the plates {names} are those of {self._geometry.file}"))
         return replace(stream, plates=tuple(plates))
 
     def read(self, timeout_s: float) -> SourceFrame | None:
