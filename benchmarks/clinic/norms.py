@@ -79,7 +79,7 @@ def _import_rows(out: Path, built: Norms) -> Iterator[Check]:
         "norms exported and imported: largest difference of 6 printed digits", float(max(apart)), 0, "<="
     )
     knee = built.curves["walk", "angle", "knee_angle"]
-    wide = _wide("knee extension (rad)", -np.deg2rad(knee.mean), np.deg2rad(knee.sd))
+    wide = wide_table("knee extension (rad)", -np.deg2rad(knee.mean), np.deg2rad(knee.sd))
     found = _imported(out, "wide.csv", STATED + wide).curves["walk", "angle", "knee_angle"]
     name = "knee extension in rad, every 2 %, decimal commas: largest difference"
     yield Check(name, float(np.abs(found.mean - knee.mean).max()), MOST_BETWEEN_DEG, "<=", "°")
@@ -103,7 +103,7 @@ def _imported(out: Path, name: str, text: str | None) -> Norms:
     return read_norms(out / f"{name}.toml")
 
 
-def _wide(title: str, mean: Array, sd: Array) -> str:
+def wide_table(title: str, mean: Array, sd: Array) -> str:
     """A wide table with semicolons and decimal commas, every 2 % of the cycle."""
     percent = np.arange(0, 101, 2)
     rows = [

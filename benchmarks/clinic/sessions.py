@@ -10,8 +10,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from benchmarks.app.visit import Visit, browser, served, until, visit
 from benchmarks.checks import Check, left_out
+from benchmarks.clinic.norms import wide_table
 from benchmarks.clinic.sheet import SUMMARY_PAGES, printed_pages
 from benchmarks.needs import installed
 
@@ -47,6 +50,15 @@ SESSIONS: Mapping[str, Mapping[str, str]] = {
 
 STANDING = {"P7": {"static.c3d": "unipd_walk/Static1.c3d"}}
 """A session without a moving trial, which is not ready."""
+
+FACTS = {
+    "convention": "clinical",
+    "source": "Example laboratory 2019",
+    "persons": "30",
+    "ages": "20-40",
+    "speeds": "1.1-1.4",
+}
+"""Facts about norms that their file does not state."""
 
 CLICKS = 6
 """Most clicks from the folder to a report that can be signed."""
@@ -91,6 +103,7 @@ def sessions_rows(data: Path, out: Path) -> Iterator[Check]:
             pages.append(_report(user))
         most = CLICKS + len(names) - 1
         yield Check(f"clicks from the folder to all {len(names)} reports", user.clicks, most, "<=")
+        yield from _foreign_norms(user, out / "adults.csv")
         yield Check("errors in the page", len(user.troubles), 0, "<=")
     yield from _printed(pages)
     yield from _stopped(study, out / "stopped")
@@ -131,6 +144,31 @@ def _report(user: Visit) -> str:
     return str(
         user.page.evaluate(f"document.querySelector('{REPORT}').contentDocument.documentElement.outerHTML")
     )
+
+
+def _foreign_norms(user: Visit, file: Path) -> Iterator[Check]:
+    """A table of norms without a word on them, taken in the report: each fact is asked for, then they are shown."""
+    percent = np.linspace(0.0, 100.0, 101)
+    knee = 30.0 - 25.0 * np.cos(2.0 * np.pi * percent / 100.0)
+    file.write_text(wide_table("knee flexion (deg)", knee, np.full(101, 5.0)), encoding="utf-8")
+    user.page.locator("[data-key='import norms']").click()
+    form = user.page.locator("form.norms")
+    form.locator("input[type=file]").set_input_files(file)
+    form.locator("[aria-invalid=true]").first.wait_for()
+    asked = {one.get_attribute("name") or "" for one in form.locator("[aria-invalid=true]").all()}
+    yield Check("norms of a file: missing facts asked for", len(asked & set(FACTS)), len(FACTS), ">=")
+    for name, value in FACTS.items():
+        if name == "convention":
+            form.locator(f"[name={name}]").select_option(value)
+        else:
+            form.locator(f"[name={name}]").fill(value)
+    form.locator("button.main").click()
+    form.locator("[role=status]").wait_for()
+    form.locator("button.main").click()
+    report = user.page.frame_locator(REPORT).locator("body")
+    report.filter(has_text=FACTS["source"]).wait_for()
+    shown = all(word in report.inner_text() for word in (FACTS["source"], "30 persons", "20 to 40 years"))
+    yield Check("norms of a file: in the report with their source, persons and ages", float(shown), 1, ">=")
 
 
 def _printed(pages: list[str]) -> Iterator[Check]:

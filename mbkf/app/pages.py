@@ -17,11 +17,21 @@ from mbkf.viz.report.video import LinkedVideo
 
 SCRIPTS = (
     "element.js", "app_words.js", "app_place.js", "app_focus.js", "app_merge.js", "app_live.js", "app_export.js",
-    "app_files.js", "app_report.js", "app_visit.js", "app_session.js", "app_all.js", "app.js",
+    "app_files.js", "app_norms.js", "app_report.js", "app_visit.js", "app_session.js", "app_all.js", "app.js",
 )  # fmt: skip
 """Scripts of the start page, in the order they are needed."""
 
-SECTIONS = ("app", "live", "export", "problems", "chart_choices", "files", "help_titles", "visit")
+SECTIONS = (
+    "app",
+    "live",
+    "export",
+    "problems",
+    "chart_choices",
+    "files",
+    "help_titles",
+    "visit",
+    "norm_files",
+)
 """Sections of the language files with the start page's texts; a key stands in one of them only."""
 
 

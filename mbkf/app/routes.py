@@ -20,6 +20,7 @@ from mbkf.app.laboratory import change_laboratory, plain_laboratory
 from mbkf.app.live_command import live_offer, live_options, recording_folder
 from mbkf.app.live_run import LiveRun
 from mbkf.app.marker_sets import MarkerSets
+from mbkf.app.norm_files import import_norms
 from mbkf.app.notes import change_notes
 from mbkf.app.pages import help_page, live_frame_page, start_page, trial_report
 from mbkf.app.replies import Query, action, change, data, download, page
@@ -187,6 +188,7 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
         download("/report/curves", curves),
         data("/norms/selection", selection),
         action("/norms", norms),
+        action("/norms/import", lambda query, body: import_norms(workspace, query, body)),
     ]
 
 

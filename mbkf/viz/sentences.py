@@ -106,7 +106,7 @@ def _said(text: str, language: str) -> str:
     if text[:1].isupper() and _recognised(_lowered(text)) is not None:
         made = _said(_lowered(text), language)
         return made[:1].upper() + made[1:]
-    if len(pieces) == 1:
+    if len(pieces) == 1 or _is_list(text):
         return _listed(text, language)
     runs = (
         (_joined(pieces, marks, first, end), [*marks, ""][end - 1]) for first, end in _runs(pieces, marks)
@@ -167,6 +167,12 @@ def _listed(text: str, language: str) -> str:
     return with_decimals(text, language)
 
 
+def _is_list(text: str) -> bool:
+    """True for several sentences with commas between them, which may hold other separators themselves."""
+    members = _members(text)[::2]
+    return len(members) > 1 and all(_recognised(one) is not None for one in members)
+
+
 def _members(text: str) -> list[str]:
     """The members of a list, with the commas and the "and" outside brackets between them."""
     members, start = [], 0
@@ -174,7 +180,18 @@ def _members(text: str) -> list[str]:
         if text[: mark.start()].count("(") == text[: mark.start()].count(")"):
             members += [text[start : mark.start()], mark[0]]
             start = mark.end()
-    return [*members, text[start:]]
+    return _rejoined([*members, text[start:]])
+
+
+def _rejoined(members: list[str]) -> list[str]:
+    """Members and the marks between them, with a sentence that holds a comma or an "and" itself in one piece."""
+    found = members[:1]
+    for mark, member in zip(members[1::2], members[2::2], strict=True):
+        if (joined := found[-1] + mark + member) in _texts(ENGLISH):
+            found[-1] = joined
+        else:
+            found += [mark, member]
+    return found
 
 
 def _name(text: str, language: str) -> str:

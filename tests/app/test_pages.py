@@ -14,7 +14,8 @@ from mbkf.viz.language import languages, words
 from mbkf.viz.page import COLOURS, asset
 
 SERVER = "".join(
-    (Path(bin.__file__).parent / f"{name}.py").read_text("utf-8") for name in ("bin", "arranging")
+    (Path(bin.__file__).parent / f"{name}.py").read_text("utf-8")
+    for name in ("bin", "arranging", "norm_files")
 )
 
 SAID_BY_THE_SERVER = {

@@ -8,6 +8,7 @@ import pytest
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.trial.results.summary import summarise
 from tests.app.asking import asked, plain
+from tests.app.test_norm_files import table
 from tests.study.session.sessions import walks
 
 
@@ -39,3 +40,9 @@ def test_what_is_missing_is_told(done, cookie):
     assert plain(done, cookie, "/report/curves?session=P9")[0] == 400
     status, said = plain(done, cookie, "/norms", "POST")
     assert status == 400 and "2 persons or more" in said["trouble"]
+
+
+def test_a_missing_fact_of_foreign_norms_is_named(done, cookie):
+    status, found = plain(done, cookie, "/norms/import?file=a.csv&source=Rossi&do=write", "POST", table())
+    assert status == 200 and found["missing"] == ["convention", "persons", "ages", "speeds"]
+    assert found["facts"]["source"] == "Rossi"

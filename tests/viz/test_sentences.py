@@ -130,3 +130,11 @@ def test_lists_brackets_and_values_within_values(text, shown):
 )
 def test_texts_beyond_every_sentence_stay(text):
     assert said(text, "es") == text and recognised(text) is None
+
+
+def test_members_of_a_list_may_hold_separators_and_an_and_of_their_own():
+    facts = "'# convention: clinical' (or isb, model) for its axes and signs, '# persons: 30', '# age: 20-40' (years)"
+    assert said(facts, "es") == (
+        "'# convention: clinical' (o isb, model) para sus ejes y signos, '# persons: 30' (número de personas), "
+        "'# age: 20-40' (edades en años)"
+    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,6 +46,16 @@ LEAST_POINTS, MOST_RADIANS = 20, 3.2
 
 AXES = {"clinical": "pig", "isb": "isb", "model": "model"}
 """Axes of a convention's angles, where nothing else is stated."""
+
+
+LACKING: Mapping[str, str] = {
+    "convention": "'# convention: clinical' (or isb, model) for its axes and signs",
+    "source": "'# source: paper or laboratory'",
+    "persons": "'# persons: 30'",
+    "ages": "'# age: 20-40' (years)",
+    "speeds": "'# speed: 1.1-1.4' (m/s)",
+}
+"""Lines that state a missing fact at the top of a table, by the fact's name in :class:`Statements`."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +112,34 @@ def span_of(text: str) -> Span:
     if low > high:
         raise InvalidInput(f"'{text}' begins with the greater number; write {high:g}-{low:g}")
     return low, high
+
+
+def completed(raw: RawNorms, stated: Statements) -> Statements:
+    """The statements, with those of the file where one is missing.
+
+    Args:
+        raw: The file's norms.
+        stated: What is stated besides; it decides over the file's own statements.
+
+    Raises:
+        InvalidInput: Ages or speeds of the file are no range.
+    """
+    said = raw.statements
+    counts = [one.persons for one in raw.bands]
+    return replace(
+        stated,
+        source=stated.source or said.get("source", ""),
+        convention=stated.convention or said.get("convention", "").lower(),
+        persons=stated.persons or _count(said.get("persons", "")) or min(counts, default=0),
+        ages=stated.ages or _span(said.get("age", "")),
+        speeds=stated.speeds or _span(said.get("speed", "")),
+        moments=stated.moments or said.get("moments", "").lower(),
+    )
+
+
+def missing_facts(stated: Statements) -> tuple[str, ...]:
+    """Names of the facts without which bands could be misread and that are not stated, of :data:`LACKING`."""
+    return tuple(name for name in LACKING if not getattr(stated, name))
 
 
 def imported(raw: RawNorms, stated: Statements) -> ImportedNorms:
@@ -168,29 +206,14 @@ class _Facts:
         Raises:
             InvalidInput: One lacks; the sentence to add is in the text.
         """
-        said = raw.statements
-        source = stated.source or said.get("source", "")
-        convention = stated.convention or said.get("convention", "").lower()
-        persons = stated.persons or _count(said.get("persons", ""))
-        ages = stated.ages or _span(said.get("age", ""))
-        speeds = stated.speeds or _span(said.get("speed", ""))
-        lacking = [
-            sentence
-            for known, sentence in (
-                (convention, "'# convention: clinical' (or isb, model) for its axes and signs"),
-                (source, "'# source: paper or laboratory'"),
-                (persons or all(one.persons for one in raw.bands), "'# persons: 30'"),
-                (ages, "'# age: 20-40' (years)"),
-                (speeds, "'# speed: 1.1-1.4' (m/s)"),
-            )
-            if not known
-        ]
-        if lacking:
+        said, facts = raw.statements, completed(raw, stated)
+        if missing := missing_facts(facts):
             raise InvalidInput(
                 f"the {raw.form} lacks statements without which its bands could be misread. Add these lines at the top "
-                f"of a table, with your own values, or state them with the import: {', '.join(lacking)}"
+                f"of a table, with your own values, or state them with the import: "
+                f"{', '.join(LACKING[name] for name in missing)}"
             )
-        moments = stated.moments or said.get("moments", "").lower()
+        convention, moments = facts.convention, facts.moments
         found = convention_of(convention, moments or INTERNAL)
         if moments == EXTERNAL and convention != CLINICAL:
             raise InvalidInput(
@@ -199,10 +222,9 @@ class _Facts:
         axes = said.get("axes", "") or AXES[convention]
         if axes not in AXES.values():
             raise InvalidInput(f"axes '{axes}' are unknown; write one of {', '.join(AXES.values())}")
-        name = stated.name or said.get("name", "") or source
-        return cls(
-            name, source, found, axes, moments, persons, ages, speeds, stated.unit or said.get("unit", "")
-        )
+        name = stated.name or said.get("name", "") or facts.source
+        unit = stated.unit or said.get("unit", "")
+        return cls(name, facts.source, found, axes, moments, facts.persons, facts.ages, facts.speeds, unit)
 
     def chosen(self, raw: RawNorms, groups: Mapping[str, Speeds | None] | None) -> Sequence[RawBand]:
         """The bands of the groups that are asked for.

@@ -120,6 +120,7 @@ const act = {
   async leave(dialog) {
     if (!dialog.isConnected) return;
     dialog.remove();
+    if (document.querySelector("dialog[open]")) return void focusKey(dialog.opener); // it lay over another one
     history.replaceState(null, "", address({ session: chosen }));
     await refresh();
     focusKey(dialog.opener);

@@ -1,6 +1,8 @@
 // The live run on the page: a form for its stream and body, its own page while it goes on, and how it ended.
 "use strict";
 
+const SOURCE_WORDS = { lsl: "live_lsl", natnet: "live_natnet", qualisys: "live_qualisys", udp: "live_udp", file: "live_file" };
+
 const LIVE_AGAIN_MS = 500;
 
 function liveSection(data, act) {
@@ -21,7 +23,7 @@ function streamText(one) {
   const carries = one.markers === null ? [word("live_unknown")] : [one.markers ? word("live_markers", one.markers) : word("live_points")];
   if (one.rate_hz !== null) carries.push(word("live_hz", Math.round(one.rate_hz)));
   if (one.plates !== null) carries.push(word("live_plates", one.plates));
-  return word("live_stream_of", one.name, word(`live_${one.kind}`), one.address, carries.join(", "));
+  return word("live_stream_of", one.name, word(SOURCE_WORDS[one.kind]), one.address, carries.join(", "));
 }
 
 class LiveDialog {
@@ -74,7 +76,7 @@ class LiveDialog {
   form(offer) {
     this.tell("");
     const select = (name, choices) => element("select", { name }, ...choices.map(([value, text]) => element("option", { value }, text)));
-    const sources = ["lsl", "natnet", "qualisys", "udp", ...(offer.captures.length ? ["file"] : [])].map((kind) => [kind, word(`live_${kind}`)]);
+    const sources = Object.entries(SOURCE_WORDS).filter(([kind]) => kind !== "file" || offer.captures.length).map(([kind, name]) => [kind, word(name)]);
     const source = select("source", sources), captures = offer.captures.map(({ name, file, kind }) => [name, `${file} (${word(KIND_WORDS[kind])})`]), place = element("div", { className: "fields" });
     const bodies = [["standing", word("live_standing")]];
     if (offer.subject) bodies.unshift(["subject", word("live_subject")]);

@@ -18,6 +18,11 @@ async function sessionReport(session, act) {
   const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
   for (const one of [chosenBefore, chosenNorms, ...picked.map(([, one]) => one)]) one.select.onchange = () => { show(); link(); };
   trend.onchange = () => show();
+  const take = (norms) => {
+    if (![...chosenNorms.select.options].some((one) => one.value === norms)) chosenNorms.select.append(new Option(norms, norms));
+    chosenNorms.select.value = norms;
+    show();
+  };
   const build = element("button", { type: "button", onclick: async () => {
     const chosen = await ask("norms/selection?" + query({ session, language }));
     const parts = [word("norms_of", chosen.persons.length, chosen.cycles), ...chosen.persons];
@@ -25,10 +30,10 @@ async function sessionReport(session, act) {
     if (!window.confirm(parts.join("\n"))) return;
     const made = await ask("norms?" + query({ session, ...charts() }), { method: "POST" });
     tell(word("norms_built", made.persons));
-    if (![...chosenNorms.select.options].some((one) => one.value === made.norms)) chosenNorms.select.append(new Option(made.norms, made.norms));
-    chosenNorms.select.value = made.norms;
-    show();
+    take(made.norms);
   } }, word("build_norms"));
+  const load = element("button", { type: "button", onclick: () => normsForm(act, take) }, word("import_norms"));
+  load.dataset.key = "import norms";
   const beside = (name, text) => (name ? [element("button", { type: "button", onclick: () => otherReport(name, act) }, word(text, titleOf(name)))] : []);
   const print = element("button", { type: "button", onclick: () => frame.contentWindow.print() }, word("print"));
   const keep = (href, name, label) => element("a", { className: "button", href, download: name }, label);
@@ -37,7 +42,7 @@ async function sessionReport(session, act) {
   const curves = ["csv", "parquet"].map((kind) => [kind, keep("", `${fileName(session)}-curves.${kind}`, kind.toUpperCase())]);
   const link = () => { for (const [kind, one] of curves) one.href = "report/curves?" + query({ session, as: kind, ...charts() }); };
   link();
-  act.dialog(session, frame, [...beside(found.previous, "previous_report"), ...beside(found.next, "next_report"), chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), build, print, save, ...curves.map(([, one]) => one)]);
+  act.dialog(session, frame, [...beside(found.previous, "previous_report"), ...beside(found.next, "next_report"), chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), build, load, print, save, ...curves.map(([, one]) => one)]);
   show();
 }
 
