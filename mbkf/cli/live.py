@@ -7,6 +7,7 @@ Examples:
   mbkf live --from lsl --mass 63.6 --out result                     (stand still for a second, then move)
   mbkf live --from natnet --server 192.168.1.10 --local 192.168.1.20 --subject subject.toml --view --out result
   mbkf live --from qualisys:192.168.1.10 --subject subject.toml --view --out result
+  mbkf live --from vicon:192.168.1.10 --subject subject.toml --view --out result
   mbkf live --from xsens --subject subject.toml --view --out result       (Xsens MVN's network streamer)
   mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
   mbkf live --from lsl --subject subject.toml --lag 60 --out result       (each frame 60 ms later, and more exact)

@@ -12,7 +12,7 @@ from mbkf.cli.options import natural, port
 if TYPE_CHECKING:
     from mbkf.stream.source import FrameSource
 
-SOURCES = "lsl|natnet|qualisys[:HOST]|udp[:PORT]|xsens[:PORT]|file:TRIAL"
+SOURCES = "lsl|natnet|qualisys[:HOST]|udp[:PORT]|vicon[:HOST]|xsens[:PORT]|file:TRIAL"
 """Values of ``--from``, for help."""
 
 
@@ -35,8 +35,8 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     stream.add_argument(
         "--up",
         metavar="AXIS",
-        help="NatNet, Qualisys, Xsens and files: vertical axis (NatNet: y, Qualisys: as QTM states, Xsens: as the "
-        "posture shows)",
+        help="NatNet, Qualisys, Vicon, Xsens and files: vertical axis (NatNet: y; Qualisys, Vicon: as stated; Xsens: "
+        "as the posture shows)",
     )
     add_character_option(stream)
     stream.add_argument("--over-udp", action="store_true", help="Qualisys: frames over UDP in place of TCP")
@@ -48,6 +48,9 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
         help="Qualisys: start a measurement in QTM with the run, and stop it at the end",
     )
     stream.add_argument(
+        "--pull", action="store_true", help="Vicon: ask for each frame in place of being sent all"
+    )
+    stream.add_argument(
         "--plates",
         metavar="FILE",
         help="capture of this laboratory (C3D) whose plates' corners count where the stream states none",
@@ -55,7 +58,9 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     stream.add_argument("--forces", metavar="FILE", help="file: its ground reactions, as for reconstruct")
     stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
     stream.add_argument(
-        "--person", metavar="NAME", help="file: of several persons in it the one to follow: name or number"
+        "--person",
+        metavar="NAME",
+        help="file: of several persons in it the one to follow: name or number; Vicon: name of the subject",
     )
     stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
     add_speed_option(stream)
@@ -131,6 +136,15 @@ def _qualisys(args: argparse.Namespace, detail: str) -> FrameSource:
     )
 
 
+def _vicon(args: argparse.Namespace, detail: str) -> FrameSource:
+    from mbkf.stream.vicon.client import PORT
+    from mbkf.stream.vicon.source import ViconSource
+
+    host, _, place = detail.partition(":")
+    number = _port(place, PORT, f"vicon:{host}")
+    return ViconSource(host or "127.0.0.1", number, up=args.up, person=args.person, pull=args.pull)
+
+
 def xsens_source(args: argparse.Namespace, detail: str) -> FrameSource:
     """MVN's network streamer.
 
@@ -169,7 +183,8 @@ _STREAMS: Mapping[str, Callable[[argparse.Namespace, str], FrameSource]] = {
     "natnet": _natnet,
     "qualisys": _qualisys,
     "udp": _udp,
+    "vicon": _vicon,
     "xsens": xsens_source,
 }
-_WITH_PLACE = ("qualisys", "udp", "xsens")
+_WITH_PLACE = ("qualisys", "udp", "vicon", "xsens")
 """Sources whose name may be followed by a colon and a port or an address."""

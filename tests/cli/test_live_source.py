@@ -37,6 +37,12 @@ def test_qualisys_has_a_computer_and_a_base_port():
     assert source("qualisys", "--control")._control == ""
 
 
+def test_vicon_has_a_computer_and_a_port():
+    assert source("vicon")._place == ("127.0.0.1", 801, False)
+    made = source("vicon:lab:44801", "--pull", "--person", "Anna", "--up", "y")
+    assert (made._place, made._person, made._up) == (("lab", 44801, True), "Anna", "y")
+
+
 def test_xsens_listens_at_its_port_for_a_person():
     port = free_port()
     made = source(f"xsens:{port}", "--character", "2", "--up", "y")
@@ -57,6 +63,7 @@ def test_plates_of_a_file_are_those_of_a_stream_without_any(tmp_path):
     ("text", "words"),
     [
         ("udp:70000", "write udp:15100"),
+        ("vicon:lab:x", "write vicon:lab:801"),
         ("xsens:mvn", "write xsens:9763"),
         ("udp:abc", "write udp:15100"),
         ("qualisys:lab:x", "write qualisys:lab:22222"),

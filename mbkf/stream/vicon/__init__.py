@@ -1,0 +1,1 @@
+"""Vicon's DataStream: objects on the wire, client, description, plates and source."""

@@ -1,0 +1,273 @@
+"""Frames from Nexus, Tracker, Shogun or Evoke over Vicon's DataStream: connection, its renewal, objects that change."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.errors import InvalidInput, InvalidPacket, MbkfError
+from mbkf.io.axes import rotation_to_world
+from mbkf.stream.known import KnownStream
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
+from mbkf.stream.vicon import objects
+from mbkf.stream.vicon.client import Packet, ViconClient
+from mbkf.stream.vicon.description import MM, ViconDescription, describe
+from mbkf.stream.vicon.plates import PlateForceReader
+
+RECONNECT_AFTER_S, AGAIN_S = 3.0, 0.5
+"""After so long without a packet the connection is made anew; attempts are so far apart."""
+
+FRAMES_FIRST = 2
+"""A stream is described by the objects of so many frames: plates show their samples then."""
+
+NO_POINTS = read_only(np.zeros((0, 3)))
+
+
+class ViconSource:
+    """A :class:`mbkf.stream.source.FrameSource`.
+
+    Attributes:
+        receiving: True from the first read on, when frames are asked for.
+    """
+
+    patient = False
+
+    def __init__(
+        self, host: str, port: int, *, up: str | None = None, person: str | None = None, pull: bool = False
+    ) -> None:
+        """A source that is not connected yet.
+
+        Args:
+            host: Computer of Vicon's program.
+            port: Its port.
+            up: Axis that points up; None for the one that is stated.
+            person: Subject to follow; None for all of them.
+            pull: Whether each frame is asked for.
+
+        Raises:
+            UnknownName: The axis does not exist.
+        """
+        rotation_to_world(up or "z")
+        self._place, self._pull = (host, port), pull
+        self._up, self._person = up, person
+        self._client: ViconClient | None = None
+        self._objects: dict[int, list[bytes]] = {}
+        self._forces: dict[int, int] = {}
+        self._described: ViconDescription | None = None
+        self._known: KnownStream | None = None
+        self._plates: PlateForceReader | None = None
+        self._before: SourceFrame | None = None
+        self._frames = 0
+        self._tried_s = self._heard_s = 0.0
+        self._lost = self.receiving = False
+        self._news: list[tuple[str, str]] = []
+        self._reported: set[str] = set()
+
+    def connect(self, timeout_s: float) -> StreamDescription | None:
+        """The stream, once two single frames have described it.
+
+        Raises:
+            InvalidInput: Another server answers, or the stream cannot be used.
+            UnknownName: There is no such subject.
+        """
+        until = time.perf_counter() + timeout_s
+        while True:
+            left = until - time.perf_counter()
+            found = self._take(max(0.0, left))
+            if found is not None:
+                self._keep(found)
+                described = self._describable()
+                if described is not None:
+                    self._begin(described)
+                    return described.stream
+            elif left <= 0.0:
+                return None
+
+    def _describable(self) -> ViconDescription | None:
+        if self._frames < FRAMES_FIRST:
+            return None
+        try:
+            return describe(self._objects, self._forces, self._up, self._person)
+        except (InvalidPacket, ArithmeticError, ValueError) as error:
+            self._report("packets", f"objects that cannot be read are left out ({error})")
+            return None
+
+    def _begin(self, described: ViconDescription) -> None:
+        self._described, self._known = described, KnownStream(described.stream)
+        self._plates = PlateForceReader(described.plates)
+        self._news += [("plates", sentence) for sentence in described.left_out]
+
+    def read(self, timeout_s: float) -> SourceFrame | None:
+        """The next frame with the samples of the plates in it."""
+        assert self._known is not None, "connect first"
+        until = time.perf_counter() + timeout_s
+        if not self.receiving:
+            self.receiving = True
+            self._ask()
+        while True:
+            left = until - time.perf_counter()
+            found = self._take(max(0.0, left))
+            frame = None if found is None else self._frame(found)
+            if frame is not None:
+                return frame
+            if left <= 0.0:
+                return None
+
+    def news(self) -> list[tuple[str, str]]:
+        """Events of the connection since the last call."""
+        news, self._news = self._news, []
+        return news
+
+    def close(self) -> None:
+        """Ends the connection."""
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+
+    def _take(self, timeout_s: float) -> Packet | None:
+        """The next packet; a connection that broke off is made anew."""
+        now = time.perf_counter()
+        if self._client is None:
+            if now - self._tried_s < AGAIN_S:
+                time.sleep(min(timeout_s, AGAIN_S - (now - self._tried_s)))
+                return None
+            self._again(now)
+            return None
+        try:
+            if (self._pull or not self.receiving) and not self._client.asked:
+                self._client.ask()
+            found = self._client.take(timeout_s)
+        except (OSError, InvalidPacket) as error:
+            self._lose(str(error))
+            return None
+        if found is not None:
+            self._heard_s = found.arrival_s
+        elif now - self._heard_s > RECONNECT_AFTER_S:
+            self._lose("it is silent")
+        return found
+
+    def _ask(self) -> None:
+        """Asks for all frames; in the other way each one is asked for when it is waited for."""
+        try:
+            if self._client is not None and not self._pull:
+                self._client.stream()
+        except OSError as error:
+            self._lose(str(error))
+
+    def _again(self, now: float) -> None:
+        self._tried_s = now
+        try:
+            self._client = ViconClient(*self._place)
+        except OSError:
+            return
+        except InvalidInput as error:
+            if self._known is None:
+                raise
+            self._report("refused", f"Vicon's program cannot be connected to again ({error})")
+            return
+        self._heard_s = time.perf_counter()
+        if self._lost:
+            self._news.append(("connection", "the connection to Vicon's program is back"))
+        self._lost = False
+        if self.receiving:
+            self._ask()
+
+    def _lose(self, why: str) -> None:
+        if not self._lost and self._known is not None:
+            self._news.append(("connection", f"the connection to Vicon broke off and is made anew ({why})"))
+        self._lost = True
+        self.close()
+
+    def _keep(self, one: Packet) -> bool:
+        """Keeps the objects that describe the stream; true where one of them is new."""
+        found = {kind: one.blocks[kind] for kind in objects.STATIC if kind in one.blocks}
+        changed = {kind: data for kind, data in found.items() if self._objects.get(kind) != data}
+        self._objects |= changed
+        try:
+            self._frames += objects.FRAME_INFO in one.blocks
+            for data in one.blocks.get(objects.FORCE, ()):
+                samples = objects.read_samples(data)
+                self._forces.setdefault(samples.device, len(samples.values))
+        except InvalidPacket:
+            pass  # reported with its frame
+        return bool(changed)
+
+    def _frame(self, one: Packet) -> SourceFrame | None:
+        """The frame of a packet; None where it holds none, or none that can be read."""
+        assert self._known is not None
+        if not one.blocks:
+            self._report("packets", "packets that cannot be read are left out")
+        if self._keep(one):
+            self._describe_again()
+        if self._known.refused or objects.FRAME_INFO not in one.blocks:
+            return None
+        try:
+            self._before = self._read(one, objects.Fields(one.blocks[objects.FRAME_INFO][0]).u32())
+        except (InvalidPacket, ValueError, ArithmeticError) as error:
+            self._report("packets", f"objects that cannot be read are left out ({error})")
+            return None
+        return self._before
+
+    def _read(self, one: Packet, number: int) -> SourceFrame:
+        assert self._described is not None and self._known is not None and self._plates is not None
+        known, blocks = self._known, one.blocks
+        unchanged = [
+            kind for data in blocks.get(objects.CONTENTS, ()) for kind in objects.read_unchanged(data)
+        ]
+        markers = np.full((len(self._described.stream.marker_names), 3), np.nan)
+        if objects.LABELED in blocks:
+            self._place_markers(markers, blocks[objects.LABELED], self._described)
+        shown = known.in_order(markers) if known.stream.marker_names else NO_POINTS
+        points = [self._world(objects.read_points(data)) for data in blocks.get(objects.UNLABELED, ())]
+        before = self._before
+        if before is not None and objects.LABELED in unchanged and objects.LABELED not in blocks:
+            shown = before.markers_m
+        if before is not None and objects.UNLABELED in unchanged and not points:
+            points = [before.unlabelled_m]
+        forces, moments, centres = (
+            [objects.read_samples(data) for data in blocks.get(kind, ())]
+            for kind in (objects.FORCE, objects.MOMENT, objects.CENTRE_OF_PRESSURE)
+        )
+        undecided = self._plates.convention is None
+        samples = known.plate_samples(self._plates.samples(forces, moments, centres))
+        if undecided and self._plates.convention is not None:
+            self._news.append(("plates axes", self._plates.convention.sentence))
+        bare = np.vstack(points) if points else NO_POINTS
+        plates = samples if known.stream.plates else PlateSamples.none(0)
+        return SourceFrame(number, one.arrival_s, shown, bare, plates)
+
+    def _place_markers(self, markers: Array, found: Sequence[bytes], described: ViconDescription) -> None:
+        for data in found:
+            ids, places = objects.read_markers(data)
+            world = self._world(places)
+            for (subject, marker), at in zip(ids.tolist(), world, strict=True):
+                column = described.places.get((subject, marker))
+                if column is not None:
+                    markers[column] = at
+
+    def _world(self, places_mm: Array) -> Array:
+        assert self._described is not None
+        return np.asarray(places_mm @ (MM * self._described.rotation.T))
+
+    def _describe_again(self) -> None:
+        """Takes objects that describe the stream anew."""
+        assert self._known is not None and self._plates is not None
+        try:
+            found = describe(self._objects, self._forces, self._up, self._person)
+        except (MbkfError, ArithmeticError, ValueError) as error:
+            self._report("refused", f"Vicon's new description cannot be used ({error})")
+            return
+        if found is None:
+            return
+        convention = self._plates.convention
+        self._described, self._plates = found, PlateForceReader(found.plates)
+        self._plates.convention = convention
+        self._news += self._known.describe(found.stream)
+
+    def _report(self, kind: str, sentence: str) -> None:
+        if kind not in self._reported:
+            self._reported.add(kind)
+            self._news.append((kind, sentence))
