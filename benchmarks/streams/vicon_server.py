@@ -147,7 +147,7 @@ class ViconServer:
 
     def send_blocks(self, client: Client, blocks: Sequence[tuple[int, bytes]]) -> None:
         """Sends a packet of blocks, with those that describe the stream where they are new to the client."""
-        static = {}
+        static: dict[int, bytes] = {}
         for kind, data in self.static():
             static[kind] = static.get(kind, b"") + block(kind, data)
         new = {kind: data for kind, data in static.items() if client.told.get(kind) != data}

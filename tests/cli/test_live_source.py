@@ -38,9 +38,9 @@ def test_qualisys_has_a_computer_and_a_base_port():
 
 
 def test_vicon_has_a_computer_and_a_port():
-    assert source("vicon")._place == ("127.0.0.1", 801, False)
+    assert source("vicon")._place == ("127.0.0.1", 801) and not source("vicon")._pull
     made = source("vicon:lab:44801", "--pull", "--person", "Anna", "--up", "y")
-    assert (made._place, made._person, made._up) == (("lab", 44801, True), "Anna", "y")
+    assert (made._place, made._pull, made._person, made._up) == (("lab", 44801), True, "Anna", "y")
 
 
 def test_xsens_listens_at_its_port_for_a_person():
