@@ -172,7 +172,7 @@ def _follow_sensors(args: argparse.Namespace) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.io.subject import read_subject
 
-    for name in ("mass", "protocol", "filter", "preset"):
+    for name in ("mass", "protocol", "filter", "preset", "record", "plates"):
         if getattr(args, name) is not None:
             raise InvalidInput(
                 f"--{name} is for markers, and xsens brings orientations; see mbkf imu live --help"
