@@ -114,14 +114,23 @@ class Evidence:
 
     def gives(self, plates: Sequence[PlateReadings]) -> Array:
         """(T, P, 6) :attr:`given` of other readings of the plates."""
-        raw = plate_wrenches(tuple(plates), self.times_s, self.rate_hz)
+        return self.averaged(plate_wrenches(tuple(plates), self.times_s, self.rate_hz))
+
+    def averaged(self, raw: Array) -> Array:
+        """(T, K, 6) wrenches as :attr:`given`, of others (T, K, 6) as :attr:`raw`."""
         return _averaged(_about(raw, self.centre_m), self.rate_hz)
 
-    def with_plate(self, p: int, plate: PlateReadings) -> Evidence:
-        """The same with other readings of plate ``p`` and the same accounted frames."""
-        plates, given = list(self.plates), self.given.copy()
-        plates[p], given[:, p] = plate, self.gives([plate])[:, 0]
-        return replace(self, plates=tuple(plates), given=given)
+    def with_plate(self, p: int, plate: PlateReadings, wrench: Array) -> Evidence:
+        """The same with other readings of plate ``p`` and the same accounted frames.
+
+        Args:
+            p: The plate.
+            plate: Its other readings.
+            wrench: (T, 6) them as :attr:`raw`.
+        """
+        plates, given, raw = list(self.plates), self.given.copy(), self.raw.copy()
+        plates[p], given[:, p], raw[:, p] = plate, self.averaged(wrench[:, None])[:, 0], wrench
+        return replace(self, plates=tuple(plates), given=given, raw=raw)
 
     def restricted(self, frames: BoolArray) -> Evidence:
         """The same with these frames (T,) accounted for."""

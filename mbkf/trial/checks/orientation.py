@@ -15,6 +15,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.findings import Finding, judged, judgement, not_judged
 from mbkf.io.records import PlateReadings
+from mbkf.numerics.rotations import skew
 from mbkf.trial.checks.evidence import Evidence
 
 SHEAR_SHARE, MOMENT_M = 0.04, 0.025
@@ -67,13 +68,15 @@ def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateR
         if not outside:
             found |= {p: finding for p, (finding, _) in judged.items()}
             alike, plates = _all_axes(as_read)
-            corrected, _ = better_fit(as_read, [evidence.plates])
+            corrected, _ = better_fit(as_read, [evidence.total])
             if alike is None or (alike.value or 0.0) < BETTER * corrected:
                 alike, plates = None, evidence.plates
             return (*(found[p] for p in sorted(found)), *([] if alike is None else [alike])), plates
         worst = max(outside, key=lambda p: judged[p][0].value or 0.0)
-        found[worst], laid_down = judged[worst]
-        evidence = evidence.with_plate(worst, laid_down)
+        found[worst], (quarters, mirrored, _) = judged[worst]
+        plate = evidence.plates[worst]
+        wrench = evidence.raw[:, worst] @ _laid_map(plate, quarters, mirrored).T
+        evidence = evidence.with_plate(worst, laid(plate, quarters, mirrored), wrench)
 
 
 def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
@@ -113,9 +116,7 @@ def laid(plate: PlateReadings, quarters: int, mirrored: bool) -> PlateReadings:
         quarters: Number of quarter turns.
         mirrored: False to turn it only.
     """
-    turn = _matrix(plate, quarters, mirrored)
-    # A moment is an axial vector: mirrored, it changes its sign besides.
-    axial = turn * (-1.0 if mirrored else 1.0)
+    turn, axial = _turns(plate, quarters, mirrored)
     pressed = plate.origin_m + (plate.centre_of_pressure_m - plate.origin_m) @ turn.T
     return replace(
         plate,
@@ -132,8 +133,7 @@ def turned_with_room(plate: PlateReadings, quarters: int) -> PlateReadings:
         plate: The plate.
         quarters: Number of quarter turns.
     """
-    cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
-    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]).T
+    turn = _quarters(quarters).T
     return replace(
         plate,
         origin_m=plate.origin_m @ turn,
@@ -144,6 +144,32 @@ def turned_with_room(plate: PlateReadings, quarters: int) -> PlateReadings:
     )
 
 
+def _laid_map(plate: PlateReadings, quarters: int, mirrored: bool) -> Array:
+    """(6, 6) from a plate's wrench about the world's origin to that of :func:`laid`."""
+    turn, axial = _turns(plate, quarters, mirrored)
+    arm, by = skew(plate.origin_m), np.zeros((6, 6))
+    by[:3, :3], by[3:, 3:] = turn, axial
+    by[3:, :3] = arm @ turn - axial @ arm
+    return by
+
+
+def _room_map(quarters: int) -> Array:
+    """(6, 6) from a wrench about the world's origin to that of :func:`turned_with_room`."""
+    return np.kron(np.eye(2), _quarters(quarters))
+
+
+def _quarters(quarters: int) -> Array:
+    """(3, 3) turn about the vertical by so many quarters."""
+    cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
+    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _turns(plate: PlateReadings, quarters: int, mirrored: bool) -> tuple[Array, Array]:
+    """(3, 3) of forces and of moments; a moment is an axial vector: mirrored, it changes its sign besides."""
+    turn = _matrix(plate, quarters, mirrored)
+    return turn, turn * (-1.0 if mirrored else 1.0)
+
+
 def _matrix(plate: PlateReadings, quarters: int, mirrored: bool) -> Array:
     """(3, 3) of world axes: the plate's own horizontal axis is that of its first edge, or the world's."""
     edge = np.array([1.0, 0.0, 0.0])
@@ -151,13 +177,15 @@ def _matrix(plate: PlateReadings, quarters: int, mirrored: bool) -> Array:
         edge = plate.corners_m[1] - plate.corners_m[0]
         edge = edge * [1.0, 1.0, 0.0] / np.hypot(edge[0], edge[1])
     axes = np.array([edge, [-edge[1], edge[0], 0.0], [0.0, 0.0, 1.0]]).T
-    cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
-    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray(axes @ turn @ np.diag([1.0, -1.0 if mirrored else 1.0, 1.0]) @ axes.T)
+    return np.asarray(axes @ _quarters(quarters) @ np.diag([1.0, -1.0 if mirrored else 1.0, 1.0]) @ axes.T)
 
 
-def _ways() -> Iterator[tuple[int, bool, str]]:
-    """The other ways to lay a plate down: number of quarter turns, mirrored or not, and text."""
+Way = tuple[int, bool, str]
+"""A way to lay a plate down: number of quarter turns, mirrored or not, and text."""
+
+
+def _ways() -> Iterator[Way]:
+    """The other ways to lay a plate down."""
     for mirrored in (False, True):
         for quarters in range(4):
             words = [f"turned by {90 * quarters}°"] if quarters else []
@@ -201,25 +229,25 @@ def _misfit(missing: Array, weight_n: float) -> float:
     return float(np.sqrt(np.mean(np.hstack([shear, moment]) ** 2)))
 
 
-def _axes(evidence: Evidence, p: int) -> tuple[Finding, PlateReadings]:
-    """The verdict on one plate's axes, and the plate as it fits."""
-    plate, frames, gain = evidence.plates[p], _bearing(evidence, p), _gain(evidence)
+def _axes(evidence: Evidence, p: int) -> tuple[Finding, Way]:
+    """The verdict on one plate's axes, and the other way to lay it down that fits best."""
+    plate, frames, gain, ways = evidence.plates[p], _bearing(evidence, p), _gain(evidence), tuple(_ways())
     name = f"axes of plate '{plate.name}'"
     if frames is None:
-        return not_judged(name, "times", BOUND, UNLOADED), plate
-    ways = tuple(_ways())
-    tried = [laid(plate, quarters, mirrored) for quarters, mirrored, _ in ways]
-    changed = (evidence.given[:, p : p + 1] - evidence.gives(tried))[frames]
+        return not_judged(name, "times", BOUND, UNLOADED), ways[0]
+    maps = np.array([_laid_map(plate, quarters, mirrored) for quarters, mirrored, _ in ways])
+    tried = evidence.averaged(np.einsum("kij,tj->tki", maps, evidence.raw[:, p]))
+    changed = (evidence.given[:, p : p + 1] - tried)[frames]
     missing, weight_n = (gain * evidence.asked - evidence.total)[frames], gain * evidence.weight_n
     misfit = _misfit(missing, weight_n)
-    fits = [_misfit(missing + changed[:, k], weight_n) for k in range(len(tried))]
+    fits = [_misfit(missing + changed[:, k], weight_n) for k in range(len(ways))]
     best = int(np.argmin(fits))
     times = misfit / max(fits[best], 1e-9)
     verdict = judgement(times, TIMES_SD, BOUND)
     hint = "its misfit over the least one turned or mirrored"
     if verdict == "outside":
         hint = f"{ways[best][2]} it fits {times:.1f} times as well: check its corners and axes"
-    return Finding(name, times, TIMES_SD, "times", BOUND, verdict, hint), tried[best]
+    return Finding(name, times, TIMES_SD, "times", BOUND, verdict, hint), ways[best]
 
 
 def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, ...]]:
@@ -229,32 +257,34 @@ def _all_axes(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadings, 
     of the markers' file that are turned against those of the plates turn the places of the plates as well; that has to
     fit better than a displacement of all plates.
     """
-    if len(evidence.plates) < 2:
-        return None, evidence.plates
-    tried: list[tuple[str, tuple[PlateReadings, ...]]] = [
-        (
-            f"all plates {words} fit {{times:.1f}} times as well: check corners and axes",
-            tuple(laid(plate, quarters, mirrored) for plate in evidence.plates),
-        )
-        for quarters, mirrored, words in _ways()
-    ]
-    alike = len(tried)
-    tried += [
-        (
-            f"with all plates and their places turned by {90 * quarters}° about the laboratory's origin they fit "
-            "{times:.1f} times as well: check the axes of markers and plates",
-            tuple(turned_with_room(plate, quarters) for plate in evidence.plates),
-        )
-        for quarters in (1, 2, 3)
-    ]
-    times, best = better_fit(evidence, [plates for _, plates in tried])
+    plates, ways, turns = evidence.plates, tuple(_ways()), (1, 2, 3)
+    if len(plates) < 2:
+        return None, plates
+    alike = [[_laid_map(plate, quarters, mirrored) for plate in plates] for quarters, mirrored, _ in ways]
+    with_room = [[_room_map(quarters)] * len(plates) for quarters in turns]
+    times, best = better_fit(evidence, _sums(evidence, np.array(alike + with_room)))
     if best is None or not times > BOUND_ALL:
-        return None, evidence.plates
-    if best >= alike and times < BETTER * _displaced_fit(evidence):
-        return None, evidence.plates
-    hint, plates = tried[best]
-    words = hint.format(times=times)
-    return Finding("axes of all plates", times, TIMES_SD, "times", BOUND_ALL, "outside", words), plates
+        return None, plates
+    if best < len(ways):
+        quarters, mirrored, words = ways[best]
+        hint = f"all plates {words} fit {times:.1f} times as well: check corners and axes"
+        plates = tuple(laid(plate, quarters, mirrored) for plate in plates)
+    elif times < BETTER * _displaced_fit(evidence):
+        return None, plates
+    else:
+        quarters = turns[best - len(ways)]
+        hint = (
+            f"with all plates and their places turned by {90 * quarters}° about the laboratory's origin they fit "
+            f"{times:.1f} times as well: check the axes of markers and plates"
+        )
+        plates = tuple(turned_with_room(plate, quarters) for plate in plates)
+    return Finding("axes of all plates", times, TIMES_SD, "times", BOUND_ALL, "outside", hint), plates
+
+
+def _sums(evidence: Evidence, maps: Array) -> list[Array]:
+    """(T, 6) wrench of all plates together for each of several maps (K, P, 6, 6) of their readings."""
+    summed = evidence.averaged(np.einsum("kpij,tpj->tki", maps, evidence.raw))
+    return list(summed.transpose(1, 0, 2))
 
 
 def _displaced_fit(evidence: Evidence) -> float:
@@ -266,19 +296,19 @@ def _displaced_fit(evidence: Evidence) -> float:
     return _misfit(missing, weight_n) / max(_misfit(left, weight_n), 1e-9)
 
 
-def better_fit(evidence: Evidence, tried: Sequence[tuple[PlateReadings, ...]]) -> tuple[float, int | None]:
+def better_fit(evidence: Evidence, tried: Sequence[Array]) -> tuple[float, int | None]:
     """Misfit of the plates over the least one of other readings of all of them, and which; None: not to be judged.
 
     Args:
         evidence: Motion and plates.
-        tried: Other readings of all plates.
+        tried: (T, 6) wrench of all plates together by each of the other readings.
     """
     frames, gain = carried(evidence), _gain(evidence)
     if frames.sum() < LEAST_S * evidence.rate_hz:
         return 0.0, None
     asked, weight_n = gain * evidence.asked[frames], gain * evidence.weight_n
     misfit = _misfit(asked - evidence.total[frames], weight_n)
-    fits = [_misfit(asked - evidence.gives(one).sum(axis=1)[frames], weight_n) for one in tried]
+    fits = [_misfit(asked - one[frames], weight_n) for one in tried]
     if not np.isfinite(fits).any():
         return 0.0, None
     best = int(np.nanargmin(fits))

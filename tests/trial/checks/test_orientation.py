@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.trial.checks.orientation import axes_findings, carried, laid, place_findings, turned_with_room
 from tests.checked import evidence, plates
 
@@ -50,6 +51,17 @@ def test_laying_a_plate_moves_its_centre_of_pressure_alike():
         arm = other.centre_of_pressure_m - other.origin_m
         moment = np.cross(arm, other.force_n)[loaded]
         np.testing.assert_allclose(other.moment_nm[loaded, :2], moment[:, :2], atol=0.5)
+
+
+@pytest.mark.parametrize("way", [(1, False), (2, True)])
+def test_a_plate_beside_a_corrected_one_is_judged_by_its_corrected_readings(way):
+    """Wrenches mapped frame by frame are those that readings laid down otherwise give."""
+    given = evidence()
+    turned = [laid(one, *way) for one in plates()]
+    found, back = axes_findings(evidence(read=(turned[0], turned[1], *plates()[2:])))
+    assert "outside" in {one.verdict for one in found}
+    again = evidence(read=back)
+    np.testing.assert_allclose(again.raw, given.raw, atol=1e-9)
 
 
 def test_four_quarter_turns_are_none():
@@ -109,7 +121,8 @@ def test_markers_turned_against_the_plates_are_found_in_a_squat(quarters):
     given = evidence("squat")
     motion = replace(given, asked=given.gives(away).sum(axis=1))
     read = tuple(turned_with_room(one, quarters) for one in away)
-    found, back = axes_findings(replace(motion, plates=read, given=motion.gives(read)))
+    raw = plate_wrenches(read, motion.times_s, motion.rate_hz)
+    found, back = axes_findings(replace(motion, plates=read, given=motion.averaged(raw), raw=raw))
     outside = [one for one in found if one.verdict == "outside"][-1]
     assert outside.name == "axes of all plates" and "laboratory's origin" in outside.hint
     for one, again in zip(away, back, strict=True):
