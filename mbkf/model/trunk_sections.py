@@ -24,10 +24,13 @@ from mbkf.model.body import Body
 from mbkf.model.description import TrunkLevel
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, NewtonEuler
+from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew
 
 WAYS = ("top_down", "bottom_up")
 """Ways to the moment, in the order of every array's axis."""
+
+_NO_LOADS = np.zeros(2 * ROOT)
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,7 @@ class TrunkSections:
         levels: The levels.
         names: Their names.
         places_m: (L, 3) their middles in the root's frame.
-        transports: (3, 6) by level, moment about the level by a wrench about the root's origin, in its axes.
+        transports: (L, 3, 6) moment about the level by a wrench about the root's origin, in its axes.
     """
 
     def __init__(self, model: Body) -> None:
@@ -72,7 +75,10 @@ class TrunkSections:
                 for level in self.levels
             ]
         ).reshape(-1, 3)
-        self.transports = [np.hstack([-skew(place), np.eye(3)]) for place in self.places_m]
+        self.transports = np.concatenate(
+            [-skew(self.places_m), np.tile(np.eye(3), (len(self.levels), 1, 1))], axis=2
+        )
+        self._turns = np.array([np.r_[model.joint(level.above).q] for level in self.levels], dtype=int)
 
     @cached_property
     def _upper(self) -> list[NewtonEuler]:
@@ -116,26 +122,27 @@ class TrunkSections:
             v: (nv,) velocity.
             a: (nv,) acceleration.
         """
-        feet = np.zeros(2 * ROOT)
-        return [upper.tau(q, v, a, feet)[:ROOT].copy() for upper in self._upper]
+        return [upper.tau(q, v, a, _NO_LOADS)[:ROOT].copy() for upper in self._upper]
 
     def moments(self, q: Array, v: Array, a: Array, carried: Array, residual: Array) -> Array:
-        """(2, L, 3) moments about the levels by way, axes of the segment above, N m.
+        """(…, 2, L, 3) moments about the levels by way, axes of the segment above, N m.
 
         Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity.
-            a: (nv,) acceleration.
-            carried: (L, 6) wrench of all loads on the part above each level about the world's origin.
-            residual: (6,) the root's residual, generalised forces in its axes.
+            q: (…, nq) configurations, of one frame or of T.
+            v: (…, nv) velocities.
+            a: (…, nv) accelerations.
+            carried: (…, L, 6) wrench of all loads on the part above each level about the world's origin.
+            residual: (…, 6) the root's residual, generalised forces in its axes.
         """
-        J = self._model.spatial_jacobian(q)[:, :ROOT]
-        found = np.empty((len(WAYS), len(self.levels), 3))
-        upper = self.upper_wrenches(q, v, a)
-        for k, turned in enumerate(self.by_root(q)):
-            wrench = upper[k] - carried[k] @ J
-            found[:, k] = turned @ wrench, turned @ (wrench - residual)
-        return found
+        if q.ndim == 1:
+            return np.asarray(self.moments(q[None], v[None], a[None], carried[None], residual[None])[0])
+        upper = np.empty(carried.shape)
+        for t, motion in enumerate(zip(q, v, a, strict=True)):
+            upper[t] = self.upper_wrenches(*motion)
+        for t in np.flatnonzero(carried.any(axis=(1, 2))):
+            upper[t] -= carried[t] @ self._model.spatial_jacobian(q[t])[:, :ROOT]
+        wrenches = np.stack([upper, upper - residual[:, None]], axis=1)
+        return np.asarray(np.einsum("tkij,twkj->twki", self.by_root(q), wrenches))
 
     def state(
         self, q: Array, v: Array, a: Array, carried: Array, residual: Array, by_state: Array
@@ -150,35 +157,27 @@ class TrunkSections:
             residual: (6,) the root's residual, generalised forces in its axes.
             by_state: (6, N) derivative of the residual.
         """
-        count = len(self.levels)
-        wrenches, moment = np.empty((len(WAYS), count, ROOT)), np.empty((len(WAYS), count, 3))
-        rows = np.zeros((len(WAYS), count, 3, by_state.shape[1]))
-        by_root = self.by_root(q)
-        for k, turned in enumerate(by_root):
-            upper = self._upper[k].root(q, v, a, np.concatenate([carried[k], np.zeros(ROOT)]))
-            upper_rows = np.zeros(by_state.shape)
-            loads = 3 * self._model.nv  # the feet are below
-            upper_rows[:, :loads] = upper.by_state[:, :loads]
-            above = self._model.joint(self.levels[k].above).v
-            for way, (wrench, slope) in enumerate(
-                ((upper.residual, upper_rows), (upper.residual - residual, upper_rows - by_state))
-            ):
-                wrenches[way, k], moment[way, k] = wrench, turned @ wrench
-                rows[way, k] = turned @ slope
-                # axes of the segment above turn with its joint
-                rows[way, k][:, above] += skew(moment[way, k])
+        shape, by_root = (len(self.levels), *by_state.shape), self.by_root(q)
+        wrenches, slopes = np.empty((len(WAYS), *shape[:2])), np.zeros(shape)
+        loads = 3 * self._model.nv  # the feet are below
+        for k, equations in enumerate(self._upper):
+            upper = equations.root(q, v, a, np.concatenate([carried[k], np.zeros(ROOT)]))
+            wrenches[0, k], slopes[k, :, :loads] = upper.residual, upper.by_state[:, :loads]
+        np.subtract(wrenches[0], residual, out=wrenches[1])
+        rows = np.empty((len(WAYS), shape[0], 3, shape[2]))
+        np.matmul(by_root, slopes, out=rows[0])
+        np.subtract(rows[0], by_root @ by_state, out=rows[1])
+        moment = np.matmul(by_root, wrenches[..., None])[..., 0]
+        turned = skew(moment)
+        for k, level in enumerate(self.levels):  # axes of the segment above turn with its joint
+            rows[:, k][..., self._model.joint(level.above).v] += turned[:, k]
         return SectionState(wrenches, moment, rows, by_root)
 
     def by_root(self, q: Array) -> Array:
-        """(L, 3, 6) moments about the levels, axes of the segment above, by a wrench about the root's origin.
+        """(…, L, 3, 6) moments about the levels, axes of the segment above, by a wrench about the root's origin.
 
         Args:
-            q: (nq,) configuration.
+            q: (…, nq) configurations.
         """
-        turns = {
-            name: pin.Quaternion(*np.roll(q[self._model.joint(name).q], 1)).toRotationMatrix()
-            for name in {level.above for level in self.levels}
-        }
-        return np.array(
-            [turns[level.above].T @ X for level, X in zip(self.levels, self.transports, strict=True)]
-        )
+        turns = quaternion_matrices(q[..., self._turns])
+        return np.asarray(np.swapaxes(turns, -1, -2) @ self.transports)

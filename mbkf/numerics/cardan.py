@@ -88,19 +88,50 @@ def follow(principal: Array, winds: BoolArray, start: Array | None = None) -> Ar
     Returns:
         (T, n, 3) angles, rad; NaN where missing.
     """
-    followed = np.array(principal)
-    mirrored = np.array([1.0, -1.0, 1.0]) * principal + np.pi
+    turned = np.array([1.0, -1.0, 1.0]) * principal + np.pi
     upright = np.cos(principal[..., 0]) * np.cos(principal[..., 1]) > UPRIGHT_COSINE
     home = upright & (np.cos(principal[..., 2]) > 0.0) & ~winds
     last = np.full(principal.shape[1:], np.nan) if start is None else np.array(start, dtype=float)
     last = np.where(np.isnan(last), _first_finite(principal), last)
-    for t in range(len(principal)):
-        own, other = _nearest_turn(principal[t], last), _nearest_turn(mirrored[t], last)
-        closer = ((other - last) ** 2).sum(-1) < ((own - last) ** 2).sum(-1)
-        own = np.where((closer & ~upright[t])[:, None], other, own)
-        followed[t] = np.where(home[t][:, None], principal[t], own)
-        last = np.where(np.isnan(followed[t]), last, followed[t])
+    if len(principal) == 1:
+        return _continued(principal, turned, upright, home, last[None])
+    # Up to the first frame in which they differ, principal angles continue themselves.
+    own = _continued(principal, turned, upright, home, _before(principal, last))
+    differs = ~((own == principal) | np.isnan(principal)).all(axis=-1)
+    followed = np.array(principal)
+    for joint in np.flatnonzero(differs.any(axis=0)):
+        first, mine = int(differs[:, joint].argmax()), slice(joint, joint + 1)
+        held = _before(principal[: first + 1, mine], last[mine])[-1]
+        for t in range(first, len(principal)):
+            now = _continued(principal[t, mine], turned[t, mine], upright[t, mine], home[t, mine], held)
+            followed[t, mine] = now
+            held = np.where(np.isnan(now), held, now)
     return followed
+
+
+def _continued(principal: Array, turned: Array, upright: BoolArray, home: BoolArray, last: Array) -> Array:
+    """(…, 3) the set of angles nearest to those before, and principal ones near a joint's rest posture.
+
+    Args:
+        principal: (…, 3) principal angles.
+        turned: (…, 3) the other set of the same rotation.
+        upright: (…,) third axis near that of the rest posture.
+        home: (…,) near the rest posture.
+        last: (…, 3) angles before.
+    """
+    own, other = _nearest_turn(principal, last), _nearest_turn(turned, last)
+    closer = ((other - last) ** 2).sum(-1) < ((own - last) ** 2).sum(-1)
+    own = np.where((closer & ~upright)[..., None], other, own)
+    return np.where(home[..., None], principal, own)
+
+
+def _before(series: Array, start: Array) -> Array:
+    """(T, n, 3) the latest known values before each frame of a series, ``start`` (n, 3) where there are none."""
+    known = np.isfinite(series[:-1])
+    latest = np.zeros(series.shape, dtype=int)
+    frames = np.arange(1, len(series))[:, None, None]
+    latest[1:] = np.maximum.accumulate(np.where(known, frames, 0), axis=0)
+    return np.take_along_axis(np.concatenate([start[None], series]), latest, axis=0)
 
 
 def _nearest_turn(angles: Array, near: Array) -> Array:

@@ -87,11 +87,14 @@ def test_a_root_that_turns_round_and_round_keeps_counting_over_missing_frames():
 def test_following_frame_by_frame_equals_following_all_at_once():
     rng = np.random.default_rng(4)
     angles = np.cumsum(rng.normal(scale=0.3, size=(300, 3)), axis=0)
-    principal, winds = series("XYZ", angles), np.array([True])
-    whole, last, single = follow(principal, winds), None, []
+    tame = series("XYZ", 0.1 * angles)
+    principal = np.concatenate([series("XYZ", angles), tame, series("XYZ", -angles)], axis=1)
+    principal[40:50], principal[:3, 1] = np.nan, np.nan
+    winds = np.array([True, False, False])
+    whole, last, single = follow(principal, winds), np.full((3, 3), np.nan), []
     for frame in principal:
-        last = follow(frame[None], winds, last)[0]
-        single.append(last)
+        single.append(follow(frame[None], winds, last)[0])
+        last = np.where(np.isnan(single[-1]), last, single[-1])
     np.testing.assert_array_equal(whole, single)
 
 

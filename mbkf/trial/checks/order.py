@@ -36,7 +36,9 @@ def order_finding(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadin
     loaded = sorted((p for p in range(len(bears)) if bears[p] > BEARS), key=lambda p: -bears[p])
     pairs = list(combinations(sorted(loaded[:MOST_PLATES]), 2))
     tried = [_exchanged(evidence.plates, a, b) for a, b in pairs]
-    times, best = better_fit(evidence, [evidence.gives(one).sum(axis=1) for one in tried]) if pairs else (0.0, None)
+    times, best = (
+        better_fit(evidence, [evidence.gives(one).sum(axis=1) for one in tried]) if pairs else (0.0, None)
+    )
     if best is None or not times > BOUND:
         return None, evidence.plates
     one, other = (evidence.plates[p].name for p in pairs[best])

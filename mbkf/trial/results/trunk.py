@@ -37,16 +37,14 @@ def trunk_moments(model: Body, track: Track, ground: GroundReactions) -> TrunkMo
     above = [np.array(sections.bears_above(level)) for level in sections.levels]
     moments = np.full((len(track.q), len(WAYS), len(above), 3), np.nan)
     followed = np.asarray(np.isfinite(np.hstack([track.a, residual])).all(axis=1))
-    for t in np.flatnonzero(followed):
-        carried = np.array([support[t, one].sum(axis=0) for one in above])
-        moments[t] = sections.moments(track.q[t], track.v[t], track.a[t], carried, residual[t])
+    carried = np.stack([support[:, one].sum(axis=1) for one in above], axis=1)
+    motion = (track.q, track.v, track.a, carried, residual)
+    moments[followed] = sections.moments(*(one[followed] for one in motion))
     bears = bearing(track.support)
     for k, one in enumerate(above):
         moments[~ground.judged | bears[:, ~one].any(axis=1), 1, k] = np.nan
     sd, offset = _spreads(track, moments)
-    maps = {
-        name: _velocity_map(own, name, track.q, followed) for name in {one.above for one in sections.levels}
-    }
+    maps = _velocity_maps(own, {one.above for one in sections.levels}, track.q, followed)
     for k, level in enumerate(sections.levels):
         B = maps[level.above]
         moments[:, :, k] = np.einsum("tij,twi->twj", B, moments[:, :, k])
@@ -69,23 +67,27 @@ def _spreads(track: Track, moments: Array) -> tuple[Array, Array]:
     return track.level_sd + unknown, track.level_offset + unknown
 
 
-def _velocity_map(own: ClinicalAngles, segment: str, q: Array, followed: BoolArray) -> Array:
-    """(T, 3, 3) B of moments Bᵀ τ about extension, bending and rotation of a segment's joint; NaN where untracked.
+def _velocity_maps(
+    own: ClinicalAngles, segments: set[str], q: Array, followed: BoolArray
+) -> dict[str, Array]:
+    """(T, 3, 3) B of moments Bᵀ τ about extension, bending and rotation of segments' joints; NaN where untracked.
 
     Args:
         own: The coordinates, in the body's own axes.
-        segment: The segment.
+        segments: The segments.
         q: (T, nq) configurations.
         followed: (T,) frames with an estimate.
     """
-    model = own.model
-    (joint,) = (one for one in model.description.clinical_joints if one.distal == segment)
-    by_axis = {angle.axis: own.names.index(angle.name) for angle in joint.angles}
-    columns = [by_axis[axis] for axis in AXES]
-    B = np.full((len(q), 3, 3), np.nan)
-    known, angles = q[followed], own.angles(q[followed])
-    for i, dof in enumerate(range(*model.joint(segment).v.indices(model.nv))):
-        tau = np.zeros((len(known), model.nv))
-        tau[:, dof] = 1.0
-        B[followed, i] = own.moments(known, tau, angles)[:, columns]
-    return B
+    known, joints = q[followed], own.model.joints.values()
+    angles, axis = own.angles(known), np.concatenate([np.arange(j.v.stop - j.v.start) % 3 for j in joints])
+    # No coordinate mixes two joints, so one axis of all joints is taken at a time.
+    by_axis = [own.moments(known, np.tile(axis == one, (len(known), 1)), angles) for one in range(3)]
+    maps = {}
+    for segment in segments:
+        (joint,) = (one for one in own.model.description.clinical_joints if one.distal == segment)
+        columns = {angle.axis: own.names.index(angle.name) for angle in joint.angles}
+        B = np.full((len(q), 3, 3), np.nan)
+        for i, dof in enumerate(range(*own.model.joint(segment).v.indices(own.model.nv))):
+            B[followed, i] = by_axis[axis[dof]][:, [columns[one] for one in AXES]]
+        maps[segment] = B
+    return maps
