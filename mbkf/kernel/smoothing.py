@@ -45,7 +45,9 @@ class SparseBackwardPass(BackwardPass):
         if self.curvature is not None:
             self._spare, self.curvature, self._of = self.curvature, self._spare, None
 
-    def through_parts(self, P: Array, matrix: Array, rows: Array, vector: Array) -> None:
+    def through_parts(
+        self, P: Array, matrix: Array, rows: Array, vector: Array, change: Array | None = None
+    ) -> None:
         """From after a frame's readings to before them, as :meth:`through_readings`.
 
         With S = P − P L P, and Z = L P + Λ S / 2, the curvature is L + Λ − Z Λ − (Z Λ)ᵀ.
@@ -55,10 +57,11 @@ class SparseBackwardPass(BackwardPass):
             matrix: (n, n) information on the first n components.
             rows: (m, N) whitened Jacobian of the other readings: Λ is ``matrix`` on the first n, and rowsᵀ rows.
             vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
+            change: (N,) P (λ − vector), where it is known; it saves a product with P.
         """
         n = len(matrix)
         if self.curvature is not None and self._kernel is None:
-            super().through_parts(P, matrix, rows, vector)
+            super().through_parts(P, matrix, rows, vector, change)
             return
         if self.curvature is not None and self._kernel is not None:
             self._smooth(P, self.curvature)
@@ -68,7 +71,7 @@ class SparseBackwardPass(BackwardPass):
             )
             self._swap()
         kept = self.gradient - vector
-        change = P @ kept
+        change = P @ kept if change is None else change
         self.gradient = kept - (rows @ change) @ rows
         self.gradient[:n] -= matrix @ change[:n]
 

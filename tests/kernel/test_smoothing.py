@@ -58,14 +58,14 @@ def assert_follows(frames, tolerance, covariances=True):
     """Both passes tell the same of every frame, from the last to the first; spreads in units of the filter's."""
     N = len(frames[0][0])
     by_parts, by_matrices = SparseBackwardPass(N, covariances), BackwardPass(N, covariances)
-    for P, matrix, rows, vector, phi in frames:
+    for k, (P, matrix, rows, vector, phi) in enumerate(frames):
         scale = np.sqrt(np.diag(P))
         assert worst((by_parts.step(P) - by_matrices.step(P)) / scale) <= tolerance
         if covariances:
             found, expected = by_parts.covariance(P), by_matrices.covariance(P)
             np.testing.assert_array_equal(found, found.T)
             assert worst((found - expected) / np.outer(scale, scale)) <= tolerance
-        by_parts.through_parts(P, matrix, rows, vector)
+        by_parts.through_parts(P, matrix, rows, vector, -by_parts.step(P) - P @ vector if k % 2 else None)
         by_parts.through_motion(phi)
         by_matrices.through_readings(P, whole(matrix, rows), vector)
         by_matrices.through_plant(phi.matrix(N))

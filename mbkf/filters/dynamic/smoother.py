@@ -8,7 +8,7 @@ that look a little beyond their ends (:mod:`mbkf.filters.fixed_lag`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,14 +24,23 @@ FURTHEST_RAD = 0.5
 """A round corrects no joint by more than this."""
 
 
-@dataclass(frozen=True)
-class _Forward:
-    """One frame of a forward pass: posterior covariance, correction of the mean, readings, Φ to the next frame."""
+class _Frame(NamedTuple):
+    """One frame of a forward pass.
+
+    Attributes:
+        P: (N, N) posterior covariance.
+        delta: (N,) correction of the mean.
+        readings: The readings; None in the first frame, whose state is taken as it is.
+        vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
+        step: (N,) P times ``vector``.
+        transition: Φ from the frame before; None in the first frame.
+    """
 
     P: Array
     delta: Array
     readings: Readings | None
     vector: Array
+    step: Array
     transition: Transition | None
 
 
@@ -82,7 +91,7 @@ def _forward(
     means: Sequence[DynamicState],
     decided: Sequence[Decisions],
     memory: Sequence[Array],
-) -> list[_Forward]:
+) -> list[_Frame]:
     """The filter in corrections δ of the trajectory ``means``.
 
     Args:
@@ -94,11 +103,12 @@ def _forward(
     """
     plant = kalman.plant
     delta, P = plant.difference(means[0], begin), begin.P
-    passed = [_Forward(P, delta, None, np.zeros_like(delta), None)]
+    nothing = np.zeros_like(delta)
+    passed = [_Frame(P, delta, None, nothing, nothing, None)]
     for last, mean, decisions, room in zip(
         means[:-1], means[1:], decided[1:], memory[: len(means) - 1], strict=True
     ):
-        before = replace(last, P=P)
+        before = DynamicState(last.q, last.v, last.a, last.w, P, last.extra)
         prior = plant.predict(before, decisions.noise)
         transition = plant.step_transition(before, prior)
         kalman.inflate(prior.P, decisions.blocks)
@@ -106,13 +116,13 @@ def _forward(
         readings = kalman.linearise(mean, decisions)
         P = informed_with_rows(prior.P, readings.matrix, readings.rows, room)
         vector = readings.whole_vector - readings.apply(delta)
-        delta = delta + P @ vector
-        passed[-1] = replace(passed[-1], transition=transition)
-        passed.append(_Forward(P, delta, readings, vector, None))
+        step = P @ vector
+        delta += step
+        passed.append(_Frame(P, delta, readings, vector, step, transition))
     return passed
 
 
-def _backward(forward: Sequence[_Forward], covariances: int = 0) -> Iterator[tuple[Array, Array | None]]:
+def _backward(forward: Sequence[_Frame], covariances: int = 0) -> Iterator[tuple[Array, Array | None]]:
     """From the last frame to the first: correction of the mean, and the smoothed covariance where it is wanted.
 
     Args:
@@ -122,8 +132,9 @@ def _backward(forward: Sequence[_Forward], covariances: int = 0) -> Iterator[tup
     back = SparseBackwardPass(len(forward[0].delta), covariances > 0)
     for k in range(len(forward) - 1, -1, -1):
         here = forward[k]
-        yield here.delta + back.step(here.P), back.covariance(here.P) if k < covariances else None
-        transition = forward[k - 1].transition if k else None
-        if here.readings is not None and transition is not None:
-            back.through_parts(here.P, here.readings.matrix, here.readings.rows, here.vector)
-            back.through_motion(transition)
+        later = back.step(here.P)
+        yield here.delta + later, back.covariance(here.P) if k < covariances else None
+        if here.readings is not None and here.transition is not None:
+            matrix, rows = here.readings.matrix, here.readings.rows
+            back.through_parts(here.P, matrix, rows, here.vector, -later - here.step)
+            back.through_motion(here.transition)
