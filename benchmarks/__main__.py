@@ -91,7 +91,7 @@ def _parser() -> argparse.ArgumentParser:
         "--minutes",
         type=float,
         metavar="M",
-        help="robustness: a live run of so many minutes in place of its rows",
+        help="robustness: a live run of so many minutes in place of its rows; speed: a trial of so many minutes",
     )
     parser.add_argument(
         "--seed", type=int, default=0, metavar="N", help="app: another person, other walks (%(default)s)"

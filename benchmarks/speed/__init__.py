@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from benchmarks.checks import Check, Context, information
 from benchmarks.parts import Part, part_rows
-from benchmarks.speed import bodies, commands, growth, processor_time
+from benchmarks.speed import bodies, commands, growth, offline, processor_time
 from benchmarks.speed.products import Times
 from benchmarks.speed.steps import (
     INVERSE_DYNAMICS,
@@ -55,6 +55,7 @@ PARTS: dict[str, Part] = {
     "bodies": lambda context: bodies.rows(context.data),
     "commands": lambda context: commands.rows(context.out),
     "processor": processor_time.rows,
+    "offline": lambda context: offline.rows(context.out, context.minutes),
 }
 
 

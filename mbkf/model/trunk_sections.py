@@ -24,7 +24,7 @@ from mbkf.model.body import Body
 from mbkf.model.description import TrunkLevel
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, NewtonEuler
-from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.cardan import quaternion_matrices, rotation_matrix
 from mbkf.numerics.rotations import skew
 
 WAYS = ("top_down", "bottom_up")
@@ -78,7 +78,9 @@ class TrunkSections:
         self.transports = np.concatenate(
             [-skew(self.places_m), np.tile(np.eye(3), (len(self.levels), 1, 1))], axis=2
         )
-        self._turns = np.array([np.r_[model.joint(level.above).q] for level in self.levels], dtype=int)
+        above = dict.fromkeys(level.above for level in self.levels)
+        self._turns = [model.joint(name).q for name in above]
+        self._turned_by = [list(above).index(level.above) for level in self.levels]
 
     @cached_property
     def _upper(self) -> list[NewtonEuler]:
@@ -159,10 +161,12 @@ class TrunkSections:
         """
         shape, by_root = (len(self.levels), *by_state.shape), self.by_root(q)
         wrenches, slopes = np.empty((len(WAYS), *shape[:2])), np.zeros(shape)
-        loads = 3 * self._model.nv  # the feet are below
+        motion = 3 * self._model.nv  # the feet are below
+        loads = np.zeros((shape[0], 2 * ROOT))
+        loads[:, :ROOT] = carried
         for k, equations in enumerate(self._upper):
-            upper = equations.root(q, v, a, np.concatenate([carried[k], np.zeros(ROOT)]))
-            wrenches[0, k], slopes[k, :, :loads] = upper.residual, upper.by_state[:, :loads]
+            upper = equations.root(q, v, a, loads[k])
+            wrenches[0, k], slopes[k, :, :motion] = upper.residual, upper.by_state[:, :motion]
         np.subtract(wrenches[0], residual, out=wrenches[1])
         rows = np.empty((len(WAYS), shape[0], 3, shape[2]))
         np.matmul(by_root, slopes, out=rows[0])
@@ -179,5 +183,8 @@ class TrunkSections:
         Args:
             q: (…, nq) configurations.
         """
-        turns = quaternion_matrices(q[..., self._turns])
-        return np.asarray(np.swapaxes(turns, -1, -2) @ self.transports)
+        joints = [q[..., one] for one in self._turns]
+        turns = np.stack(
+            [rotation_matrix(one) if one.ndim == 1 else quaternion_matrices(one) for one in joints], axis=-3
+        )
+        return np.asarray(np.swapaxes(turns, -1, -2)[..., self._turned_by, :, :] @ self.transports)

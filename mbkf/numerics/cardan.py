@@ -31,6 +31,18 @@ def quaternion_matrices(quaternions: Array) -> Array:
     return np.stack([np.stack(row, -1) for row in rows], -2)
 
 
+def rotation_matrix(quaternion: Array) -> Array:
+    """(3, 3) rotation matrix of a unit quaternion (4,) in (x, y, z, w) order; quicker for a single one."""
+    x, y, z, w = quaternion.tolist()
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
 def cardan_angles(R_ijk: Array, parity: Array) -> Array:
     """Principal angles (…, 3) with |b| ≤ 90°, rad, of rotations (…, 3, 3) with ε ``parity`` (…)."""
     a = np.arctan2(-parity * R_ijk[..., 1, 2], R_ijk[..., 2, 2])

@@ -5,6 +5,8 @@ import pytest
 
 from benchmarks import speed
 from benchmarks.checks import Context
+from benchmarks.speed import offline
+from benchmarks.speed.offline import Taken, repeated
 from benchmarks.speed.products import Times, joined
 from benchmarks.speed.steps import (
     INVERSE_DYNAMICS,
@@ -16,6 +18,7 @@ from benchmarks.speed.steps import (
     kinematic_times,
 )
 from benchmarks.speed.walks import synthetic, with_plates
+from mbkf.errors import InvalidInput
 
 FRAMES_LEFT_OUT = 11
 
@@ -77,3 +80,27 @@ def test_further_plates_read_nothing(walk):
     assert recording.plates.shape[1] == own + 2
     assert not recording.plates[:, own:].any()
     assert len(with_plates(walk, 1).capture.plates) == 1
+
+
+def test_a_long_trial_is_a_short_one_forwards_and_backwards(walk):
+    own = walk.capture.markers.positions_m
+    frames = 2 * len(own) + 5
+    long = repeated(walk.capture, frames)
+    np.testing.assert_array_equal(long.markers.positions_m, np.concatenate([own, own[::-1], own[:5]]))
+    plate, again = walk.capture.plates[0], long.plates[0]
+    samples = round(frames * plate.rate_hz / long.markers.rate_hz)
+    assert len(again.force_n) == samples
+    np.testing.assert_array_equal(again.force_n[len(plate.force_n)], plate.force_n[-1])
+
+
+def test_memory_of_an_hour_is_that_of_its_frames(tmp_path, monkeypatch):
+    """A frame more costs as much in an hour as between the two lengths."""
+    monkeypatch.setattr(offline, "_written", lambda folder, motion, rate_hz, minutes: minutes)
+    taken = {1.0: Taken(12.0, 100.0, 12_000), 3.0: Taken(54.0, 340.0, 36_000)}
+    monkeypatch.setattr(offline, "_reconstructed", lambda trial, option: taken[trial])
+    pace, peak, more, hour = offline.rows(tmp_path, 3.0)
+    assert pace.value == pytest.approx(1.5) and not pace.passed
+    assert (peak.value, more.value) == (340.0, pytest.approx(10.0))
+    assert hour.value == pytest.approx(340.0 + 0.01 * (720_000 - 36_000)) and not hour.passed
+    with pytest.raises(InvalidInput, match="more than 1"):
+        offline.rows(tmp_path, 1.0)

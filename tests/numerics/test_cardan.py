@@ -12,6 +12,7 @@ from mbkf.numerics.cardan import (
     near_singularity,
     quaternion_matrices,
     rate_map,
+    rotation_matrix,
     velocity_map,
 )
 
@@ -37,7 +38,9 @@ def test_angles_of_every_order_agree_with_scipy(order):
 
 def test_quaternion_matrices_agree_with_scipy():
     rotations = Rotation.random(50, rng=2)
-    np.testing.assert_allclose(quaternion_matrices(rotations.as_quat()), rotations.as_matrix(), atol=1e-14)
+    found = quaternion_matrices(rotations.as_quat())
+    np.testing.assert_allclose(found, rotations.as_matrix(), atol=1e-14)
+    np.testing.assert_array_equal(found, [rotation_matrix(one) for one in rotations.as_quat()])
 
 
 @pytest.mark.parametrize("order", ORDERS)

@@ -1,0 +1,171 @@
+"""Processor time of a frame of `mbkf reconstruct`, and its memory and pace in long trials.
+
+The command is a process of its own, whose processor time and peak memory the operating system counts, start-up
+included. Long trials are a squat of a minute, played forwards and backwards in turn: backwards it obeys Newton's law as
+well. What an hour would take is extrapolated from two lengths; ``--minutes M`` runs a trial of M minutes instead.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.checks import Check, information
+from benchmarks.speed.products import product_seconds
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.records import Capture
+from mbkf.io.subject import write_subject
+from mbkf.trial.synth import synthesise
+
+MINUTE_S, HOUR_MINUTES = 60.0, 60.0
+MOTIONS = ("squat", "walk")
+FRAME_MS, FRAME_P, CAUSAL_MS = 0.9, 6.0, 0.5
+LONG_HZ, LONG_MINUTES = 200.0, 3.0
+PEAK_MB, PACE = 600.0, 1.05
+PRODUCTS = 400
+
+
+class Taken(NamedTuple):
+    """A command's processor time in s, its peak memory in MB, and the frames of its trial."""
+
+    seconds: float
+    peak_mb: float
+    frames: int
+
+    @property
+    def frame_ms(self) -> float:
+        """Processor time of a frame, start-up included."""
+        return 1e3 * self.seconds / self.frames
+
+
+def rows(folder: Path, minutes: float | None = None) -> list[Check]:
+    """Time of a frame by motion, smoothed and causal; memory and pace of an hour.
+
+    Args:
+        folder: For captures and results.
+        minutes: Length of the long trial, which is then the only one but for its first minute; None for all rows.
+    """
+    if minutes is not None:
+        return long_rows(folder, minutes)
+    checks: list[Check] = []
+    for motion in MOTIONS:
+        trial = _written(folder / motion, motion, 100.0, 1.0)
+        before = _product_s()
+        smoothed, causal = (_reconstructed(trial, option) for option in ("--smooth", "--causal"))
+        product_s = min(before, _product_s())
+        in_products = smoothed.seconds / smoothed.frames / product_s
+        checks += [
+            Check(f"reconstruct, 60 s {motion}, a frame", smoothed.frame_ms, FRAME_MS, "<=", "ms"),
+            Check("… in products", in_products, FRAME_P, "<=", "P"),
+            Check("… causal", causal.frame_ms, CAUSAL_MS, "<=", "ms"),
+            information("… causal, in products", causal.seconds / causal.frames / product_s, "P"),
+        ]
+    return checks + long_rows(folder, LONG_MINUTES)
+
+
+def long_rows(folder: Path, minutes: float) -> list[Check]:
+    """Memory and pace of a trial of so many minutes at 200 Hz beside its first minute, and what an hour would take.
+
+    Args:
+        folder: For captures and results.
+        minutes: More than one.
+
+    Raises:
+        InvalidInput: It is not more than one minute.
+    """
+    if minutes <= 1.0:
+        raise InvalidInput(
+            f"--minutes {minutes:g}: the long trial is compared with its first minute; give more than 1"
+        )
+    short, long = (
+        _reconstructed(_written(folder / f"{length:g} min", "squat", LONG_HZ, length), "--smooth")
+        for length in (1.0, minutes)
+    )
+    by_frame = (long.peak_mb - short.peak_mb) / (long.frames - short.frames)
+    hour = long.peak_mb + by_frame * (HOUR_MINUTES * MINUTE_S * LONG_HZ - long.frames)
+    length = f"{minutes:g} minutes at 200 Hz"
+    return [
+        Check(f"{length}: time of a frame over that of a minute", long.frame_ms / short.frame_ms, PACE, "<="),
+        information(f"{length}: peak memory", long.peak_mb, "MB"),
+        information(f"{length}: memory for a frame more", 1e3 * by_frame, "kB"),
+        Check("an hour at 200 Hz, at that rate: peak memory", hour, PEAK_MB, "<=", "MB"),
+    ]
+
+
+def repeated(capture: Capture, frames: int) -> Capture:
+    """So many frames of a capture, forwards and backwards in turn.
+
+    Args:
+        capture: Markers and plates.
+        frames: Number of frames wanted.
+    """
+    markers = capture.markers
+    laps = int(np.ceil(frames / markers.frames))
+
+    def laid(values: Array, count: int) -> Array:
+        return np.concatenate([values[:: -1 if lap % 2 else 1] for lap in range(laps)])[:count]
+
+    plates = []
+    for plate in capture.plates:
+        count = round(frames * plate.rate_hz / markers.rate_hz)
+        read = ("force_n", "moment_nm", "centre_of_pressure_m")
+        plates.append(replace(plate, **{name: laid(getattr(plate, name), count) for name in read}))
+    positions = laid(markers.positions_m, frames)
+    return Capture("", replace(markers, positions_m=positions), tuple(plates))
+
+
+def _written(folder: Path, motion: str, rate_hz: float, minutes: float) -> Path:
+    """A capture of so many minutes beside its subject."""
+    folder.mkdir(parents=True, exist_ok=True)
+    person, made = synthesise(motion, seconds=MINUTE_S, rate_hz=rate_hz)
+    write_c3d(repeated(made.trial, round(minutes * MINUTE_S * rate_hz)), folder / "trial.c3d")
+    write_subject(person, folder / "subject.toml")
+    return folder / "trial.c3d"
+
+
+def _reconstructed(trial: Path, option: str) -> Taken:
+    """The command on a capture, with modules that are compiled once and kept, as an installed package has them.
+
+    Raises:
+        InvalidInput: It fails.
+    """
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    out = trial.with_name(option.strip("-"))
+    words = [
+        "reconstruct",
+        trial,
+        "--subject",
+        trial.with_name("subject.toml"),
+        option,
+        "--out",
+        out,
+        "--overwrite",
+    ]
+    messages = out.with_suffix(".txt")
+    with messages.open("w") as said:
+        child = subprocess.Popen([sys.executable, "-m", "mbkf", *words], stdout=said, stderr=said, env=kept)
+        _, status, used = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode:
+        raise InvalidInput(messages.read_text().strip().splitlines()[-1])
+    unit = 1.0 if sys.platform == "darwin" else 1024.0  # the system counts bytes or kilobytes
+    return Taken(used.ru_utime + used.ru_stime, used.ru_maxrss * unit / 1e6, _frames(trial))
+
+
+def _frames(trial: Path) -> int:
+    from mbkf.io.capture import read_capture
+
+    return read_capture(trial).markers.frames
+
+
+def _product_s() -> float:
+    """P on a single thread: the median of many."""
+    return float(np.median([product_seconds() for _ in range(PRODUCTS)]))
