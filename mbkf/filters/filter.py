@@ -117,6 +117,7 @@ class Filter(Generic[StateT]):
         plant: Motion of the state.
         blocks: Instruments, laws and priors, in the order in which they decide.
         layout: Slices of the tangent state.
+        follows_spreads: False where innovations are not asked for; their running spreads then stay the expected ones.
     """
 
     def __init__(
@@ -130,7 +131,7 @@ class Filter(Generic[StateT]):
             update: Arithmetic of the update; all give the same up to rounding, and differ in speed.
         """
         self.plant, self.blocks, self.layout, self.update = plant, tuple(blocks), plant.layout, update
-        self._spreads = InnovationSpreads(self.blocks, plant.dt_s)
+        self._spreads, self.follows_spreads = InnovationSpreads(self.blocks, plant.dt_s), True
         for block in self.blocks:
             block.bind(self.layout, plant.model)
         # Blocks that override a method; at these sizes empty calls count.
@@ -223,7 +224,9 @@ class Filter(Generic[StateT]):
             kept = list(memory.blocks)
             for k, block in self._remembering:
                 kept[k] = block.remember(posterior, points[k], decided[k], kept[k])
-            spreads = self._spreads.after(memory.spreads, channels())
+            spreads = memory.spreads
+            if self.follows_spreads:
+                spreads = self._spreads.after(spreads, channels())
             return Memory(self.plant.remember(posterior, notes, memory.plant), kept, spreads)
 
         return Step(

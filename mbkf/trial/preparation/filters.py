@@ -84,8 +84,10 @@ def _kinematic(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
 
 
 def motion_filter(inputs: FilterInputs) -> TrackingFilter:
-    """The kinematic filter where its motion alone is wanted: its covariances are not smoothed."""
-    return _started(KinematicReport(_starter(inputs), smoothed_covariances=False), inputs)
+    """The kinematic filter where its motion alone is wanted, without smoothed covariances and spreads of innovations."""
+    kalman = _starter(inputs)
+    kalman.follows_spreads = False
+    return _started(KinematicReport(kalman, smoothed_covariances=False), inputs)
 
 
 def _dynamic(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:

@@ -33,7 +33,9 @@ def test_what_is_given_goes_with_the_plates():
 
 def test_one_plate_can_be_exchanged():
     found, (changed,) = evidence(), amplified(plates()[:1], [2.0])
-    other = found.with_plate(0, changed)
+    other = found.with_plate(0, changed, 2.0 * found.raw[:, 0])
+    np.testing.assert_allclose(other.given, found.gives(other.plates), atol=1e-9)
+    np.testing.assert_array_equal(other.raw[:, 1:], found.raw[:, 1:])
     np.testing.assert_allclose(other.given[:, 0], 2.0 * found.given[:, 0], atol=1e-9)
     np.testing.assert_array_equal(other.given[:, 1:], found.given[:, 1:])
     np.testing.assert_array_equal(other.accounted, found.accounted)
