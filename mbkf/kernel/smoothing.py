@@ -20,11 +20,12 @@ class SparseBackwardPass(BackwardPass):
         super().__init__(size, covariances)
         self._kernel = library() if covariances else None
         self._of: Array | None = None
+        self._given = False
         if self._kernel is not None:  # fresh memory costs more than the products that go there
-            self._smoothed, self._PL, self._spare = np.empty((3, size, size))
+            self._smoothed, (self._PL, self._spare) = np.empty((size, size)), np.empty((2, size, size))
 
     def covariance(self, P: Array) -> Array:
-        """(N, N) smoothed covariance of a frame with posterior covariance P.
+        """(N, N) smoothed covariance of a frame with posterior covariance P, not to be changed.
 
         Raises:
             ValueError: The pass carries no covariances.
@@ -32,11 +33,14 @@ class SparseBackwardPass(BackwardPass):
         if self.curvature is None or self._kernel is None:
             return super().covariance(P)
         self._smooth(P, self.curvature)
-        return self._smoothed.copy()
+        self._given = True
+        return self._smoothed
 
     def _smooth(self, P: Array, curvature: Array) -> None:
         """Works out P − P L P and P L; kept, since a frame's answer and its readings both need them."""
         if self._of is not P and self._kernel is not None:
+            if self._given:
+                self._smoothed, self._given = np.empty(P.shape), False
             self._kernel.smoothed_covariance(P, curvature, self._smoothed, self._PL)
             self._of = P
 
