@@ -116,8 +116,9 @@ def repeated(capture: Capture, frames: int) -> Capture:
     plates = []
     for plate in capture.plates:
         count = round(frames * plate.rate_hz / markers.rate_hz)
-        read = ("force_n", "moment_nm", "centre_of_pressure_m")
-        plates.append(replace(plate, **{name: laid(getattr(plate, name), count) for name in read}))
+        force_n, moment_nm = laid(plate.force_n, count), laid(plate.moment_nm, count)
+        pressed_m = laid(plate.centre_of_pressure_m, count)
+        plates.append(replace(plate, force_n=force_n, moment_nm=moment_nm, centre_of_pressure_m=pressed_m))
     positions = laid(markers.positions_m, frames)
     return Capture("", replace(markers, positions_m=positions), tuple(plates))
 
@@ -139,16 +140,8 @@ def _reconstructed(trial: Path, option: str) -> Taken:
     """
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     out = trial.with_name(option.strip("-"))
-    words = [
-        "reconstruct",
-        trial,
-        "--subject",
-        trial.with_name("subject.toml"),
-        option,
-        "--out",
-        out,
-        "--overwrite",
-    ]
+    subject = trial.with_name("subject.toml")
+    words = ("reconstruct", trial, "--subject", subject, option, "--out", out, "--overwrite")
     messages = out.with_suffix(".txt")
     with messages.open("w") as said:
         child = subprocess.Popen([sys.executable, "-m", "mbkf", *words], stdout=said, stderr=said, env=kept)

@@ -141,8 +141,8 @@ class TrunkSections:
         upper = np.empty(carried.shape)
         for t, motion in enumerate(zip(q, v, a, strict=True)):
             upper[t] = self.upper_wrenches(*motion)
-        for t in np.flatnonzero(carried.any(axis=(1, 2))):
-            upper[t] -= carried[t] @ self._model.spatial_jacobian(q[t])[:, :ROOT]
+        for loaded in np.flatnonzero(carried.any(axis=(1, 2))):
+            upper[loaded] -= carried[loaded] @ self._model.spatial_jacobian(q[loaded])[:, :ROOT]
         wrenches = np.stack([upper, upper - residual[:, None]], axis=1)
         return np.asarray(np.einsum("tkij,twkj->twki", self.by_root(q), wrenches))
 

@@ -155,7 +155,7 @@ def _laid_map(plate: PlateReadings, quarters: int, mirrored: bool) -> Array:
 
 def _room_map(quarters: int) -> Array:
     """(6, 6) from a wrench about the world's origin to that of :func:`turned_with_room`."""
-    return np.kron(np.eye(2), _quarters(quarters))
+    return np.asarray(np.kron(np.eye(2), _quarters(quarters)), dtype=np.float64)
 
 
 def _quarters(quarters: int) -> Array:
