@@ -84,7 +84,7 @@ def _kinematic(inputs: FilterInputs, own: OwnParts) -> TrackingFilter:
 
 
 def motion_filter(inputs: FilterInputs) -> TrackingFilter:
-    """The kinematic filter where its motion alone is wanted, without smoothed covariances and spreads of innovations."""
+    """The kinematic filter where its motion alone is wanted: without smoothed covariances, spreads of innovations."""
     kalman = _starter(inputs)
     kalman.follows_spreads = False
     return _started(KinematicReport(kalman, smoothed_covariances=False), inputs)
