@@ -14,11 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from benchmarks.screenshots import FLAGS
 from mbkf.errors import InvalidInput, MissingDependency
 
 SIZE = {"width": 1280, "height": 720}
 """The smallest screen that the page is made for."""
+
+FLAGS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""Options of a browser without a graphics card."""
 
 PATIENCE_S = 180.0
 

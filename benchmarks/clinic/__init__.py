@@ -13,8 +13,10 @@ from benchmarks.clinic.emg import emg_rows
 from benchmarks.clinic.norms import norms_rows
 from benchmarks.clinic.page import page_rows
 from benchmarks.clinic.scores import score_rows
+from benchmarks.clinic.screenshots import screenshot_rows
 from benchmarks.clinic.sessions import sessions_rows
 from benchmarks.clinic.sheet import sheet_rows
+from benchmarks.clinic.video import video_rows
 from benchmarks.clinic.words import words_rows
 from benchmarks.parts import Part, part_rows
 
@@ -24,8 +26,10 @@ PARTS: Mapping[str, Part] = {
     "norms": lambda context: norms_rows(context.out),
     "page": lambda context: page_rows(context.out, context.seed),
     "scores": lambda _: score_rows(),
+    "screenshots": lambda context: screenshot_rows(context.require_data(), context.out),
     "sessions": lambda context: sessions_rows(context.require_data(), context.out),
     "sheet": lambda context: sheet_rows(context.require_data(), context.out),
+    "video": lambda context: video_rows(context.out, context.seed),
     "words": lambda context: words_rows(context.require_data(), context.out),
 }
 """Rows by the part's name."""

@@ -7,11 +7,13 @@ writes them, and your statements about a session in its session.toml. Ctrl-C end
 Examples:
   mbkf app                       sessions in the folder mbkf of your home
   mbkf app study --port 8123
+  mbkf app study --shortcut      writes a shortcut that opens this page by a click
 """
 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from mbkf.cli.options import add_chart_options, add_page_options, count
 
@@ -25,19 +27,26 @@ def options(parser: argparse.ArgumentParser) -> None:
     add_page_options(parser)
     add_chart_options(parser, "clinical")
     parser.add_argument("--workers", type=count, metavar="N", help="processes (one for each processor)")
+    parser.add_argument(
+        "--shortcut",
+        action="store_true",
+        help="write a shortcut that opens the page with these options (menu of Linux, desktop of macOS and Windows)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Serves the page until interrupted."""
-    from pathlib import Path
-
     from mbkf.app.charts import Charts
     from mbkf.app.server import AppServer
     from mbkf.cli.opening import open_page, printed_address
+    from mbkf.cli.shortcut import write_shortcut
     from mbkf.cli.stopping import end_within, stopped_by_signal
     from mbkf.io.atomic import check_folder
 
     folder = check_folder(Path.home() / "mbkf" if args.folder is None else args.folder)
+    if args.shortcut:
+        print(write_shortcut(_words(args, folder)))
+        return 0
     charts = Charts(args.convention, args.moments, args.colours)
     server = AppServer(folder, args.port, args.workers, charts)
     try:
@@ -50,3 +59,13 @@ def run(args: argparse.Namespace) -> int:
         server.close()
         end_within(END_S)
     return 0
+
+
+def _words(args: argparse.Namespace, folder: Path) -> list[str]:
+    """Words of a call of this command with the given options."""
+    given = {"port": args.port or None, "convention": args.convention, "moments": args.moments}
+    given |= {"colours": args.colours, "workers": args.workers}
+    options = [
+        word for name, value in given.items() if value is not None for word in (f"--{name}", str(value))
+    ]
+    return ["app", str(folder.absolute()), *options]

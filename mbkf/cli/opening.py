@@ -16,6 +16,8 @@ from html import escape
 from pathlib import Path
 from typing import Protocol
 
+from mbkf.cli.windows import opened_by_windows
+
 PREFIX = "mbkf-open-"
 """Beginning of the file's name; it lies in the home folder, since confined browsers see no folder of the system's."""
 
@@ -49,6 +51,16 @@ def printed_address(server: Served, browser: bool) -> str:
     return server.url if sys.stdout.isatty() or not browser else server.url.partition("?")[0]
 
 
+def open_file(file: Path) -> None:
+    """Opens a file in the user's browser; under WSL in that of Windows, which knows no path of Linux.
+
+    Args:
+        file: A page.
+    """
+    if not opened_by_windows(file):
+        webbrowser.open(file.absolute().as_uri())
+
+
 def open_page(server: Served) -> None:
     """Opens a server's page in the user's browser.
 
@@ -64,7 +76,7 @@ def open_page(server: Served) -> None:
     atexit.register(remove)
     with os.fdopen(descriptor, "w", encoding="utf-8") as text:
         text.write(PAGE.format(address=escape(server.entrance(remove))))
-    webbrowser.open(file.as_uri())
+    open_file(file)
 
 
 def _made() -> tuple[int, str]:

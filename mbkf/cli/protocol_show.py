@@ -26,8 +26,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Prints the set, and writes and opens its page."""
     import tempfile
-    import webbrowser
 
+    from mbkf.cli.opening import open_file
     from mbkf.cli.protocol import print_set
     from mbkf.cli.tables import terminal
     from mbkf.io.atomic import write_text
@@ -42,5 +42,5 @@ def run(args: argparse.Namespace) -> int:
     write_text(out, show_page(protocol))
     console.print(str(out), soft_wrap=True)
     if not args.no_browser:
-        webbrowser.open(out.absolute().as_uri())
+        open_file(out)
     return 0

@@ -81,6 +81,7 @@ _FORMS: Mapping[str, tuple[bytes, ...]] = {
     "a capture (C3D)": (rb".P.*MANUFACTURER.*" + _MARK,),
     "a motion (BVH)": (rb"HIERARCHY" + BVH_BLANKS.encode() + rb"\r?\n",),
     "a scene (glTF)": (rb'glTF.{16}.{0,200}"generator": ?"mbkf ',),
+    "a shortcut": (rb"(?:\[Desktop Entry\]|#!/bin/sh|@echo off\r)\n(?:#|rem) " + _MARK,),
     "a model (XML)": (rb"<\?xml[^\n]*\n<!-- " + _MARK,),
     PAGE: (
         rb'<!DOCTYPE html>.*(?:<meta name="generator" content="mbkf|<title>mbkf</title>|<nav><b>mbkf</b>)',

@@ -121,9 +121,8 @@ def test_captures_of_a_benchmark_are_those_of_its_sources(name):
 def test_libraries_that_a_benchmark_imports_are_those_that_it_states(name):
     own = set().union(*(imported(module)[1] for module in own_modules(name)))
     stated = needs.needs(name)
-    pictures = {"playwright"} if name == "verdict" else set()  # benchmarks.verdict.pictures runs by itself
     pages = {"matplotlib"} if name == "foreign" else set()  # python -m benchmarks.foreign --page
-    assert own - pictures - pages <= {*stated.libraries, *stated.some_rows}
+    assert own - pages <= {*stated.libraries, *stated.some_rows}
 
 
 def test_the_extra_that_is_named_brings_the_library():

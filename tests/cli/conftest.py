@@ -1,5 +1,7 @@
 """Fixtures of the tests that call the command line."""
 
+import os
+
 import pytest
 
 from mbkf.cli.main import main
@@ -63,3 +65,26 @@ def refuse_reconstruct(person, tmp_path, refused):
         refused(["reconstruct", *words, *subject, "--out", tmp_path / "out"], *fragments)
 
     return check
+
+
+WINDOWS = {
+    "wslpath": r"""[ "$1" = -w ] && printf '\\\\wsl.localhost\\Ubuntu%s' "$(printf %s "$2" | tr / '\\')" && exit
+[ "$2" = 'C:\Users\Ána\OneDrive\Desktop' ] && echo {desktop}""",
+    "powershell.exe": r"printf 'C:\\Users\\Ána\\OneDrive\\Desktop\r\n'",
+    "explorer.exe": "printf '%s' \"$1\" > {opened}; exit 1",
+}
+"""Scripts in place of programs of WSL and Windows."""
+
+
+@pytest.fixture
+def wsl(tmp_path, monkeypatch):
+    """A folder with fake programs of Windows at the head of PATH."""
+    places = {"desktop": tmp_path / "Desktop", "opened": tmp_path / "opened"}
+    for name, text in WINDOWS.items():
+        program = tmp_path / "bin" / name
+        program.parent.mkdir(exist_ok=True)
+        program.write_text("#!/bin/sh\n" + text.format(**places) + "\n", encoding="utf-8")
+        program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setenv("WSL_DISTRO_NAME", "Ubuntu")
+    return tmp_path

@@ -36,7 +36,7 @@ FAILING = (
 )  # fmt: skip
 """Requests of the page's server that fail."""
 
-_READ = """() => {
+READ = """() => {
   const found = [], spoken = ["title", "aria-label", "placeholder", "alt"];
   const silent = (one) => one.closest("script, style, code, [translate=no]");
   const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT);
@@ -50,6 +50,7 @@ _READ = """() => {
   const rows = "ul.flags li, table.reasons tbody tr, ul.problems li, details.reasons li, section#trials li";
   return { texts: found, problems: [...document.querySelectorAll(rows)].map((one) => one.textContent.trim()) };
 }"""
+"""Script that returns the texts of a page, those that only a reader of the screen speaks included, and its problems."""
 
 _FETCH = """async (path) => {
   const answer = await fetch(path), text = await answer.text();
@@ -130,7 +131,7 @@ def _read_session(user: Visit, session: str) -> Iterator[Read]:
 def _read(name: str, frame: Any) -> Read:
     """The texts of a page, and of them the reasons and remarks: elements of lists or rows of tables."""
     frame.wait_for_load_state()
-    found = frame.evaluate(_READ)
+    found = frame.evaluate(READ)
     return Read(name, found["texts"], found["problems"])
 
 

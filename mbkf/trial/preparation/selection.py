@@ -23,6 +23,8 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
         NotObservable: There are too few of them, or they are those of several persons.
     """
     found = match_names(markers.names, subject.markers)
+    if not markers.names:
+        raise NotObservable("the capture holds no markers; export it again with them, or leave it out")
     if len(found) < MIN_MARKERS and all(name.startswith("*") for name in markers.names):
         raise NotObservable("no marker of the capture has a name; name them with 'mbkf label'")
     if len(found) < MIN_MARKERS:

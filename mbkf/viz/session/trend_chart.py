@@ -14,8 +14,8 @@ WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 250.0, 130.0, 36.0, 14.0, 22.0, 20.0
 APART = {"r": 2.5, "": 0.0, "l": -2.5}
 """Shift of a side's points, so that intervals of both stay visible."""
 
-LEAST_LABEL = 52.0
-"""Least distance of two days that are written below."""
+LABEL = 58.0
+"""Width of a day that is written below, with a gap."""
 
 
 @dataclass(frozen=True)
@@ -109,10 +109,10 @@ def _days(box: _Box, labels: Sequence[tuple[int, str]]) -> str:
     """Days below the frame, the first and the last always, others where there is room."""
     shown = [labels[0]]
     for day, text in labels[1:-1]:
-        if box.x(day) - box.x(shown[-1][0]) >= LEAST_LABEL <= box.x(labels[-1][0]) - box.x(day):
+        if box.x(day) - box.x(shown[-1][0]) >= LABEL <= box.x(labels[-1][0]) - box.x(day):
             shown.append((day, text))
     shown.append(labels[-1])
-    places = [min(max(box.x(day), 26.0), WIDTH - 26.0) for day, _ in shown]
+    places = [min(max(box.x(day), 0.5 * LABEL), WIDTH - 0.5 * LABEL) for day, _ in shown]
     texts = "".join(
         f'<text class="x" x="{x:.1f}" y="{HEIGHT - 6:g}">{escape(text)}</text>'
         for x, (_, text) in zip(places, shown, strict=True)

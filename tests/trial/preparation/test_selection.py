@@ -83,3 +83,10 @@ def test_a_plate_that_the_reader_left_out_may_be_withheld():
     assert without_plates(capture, ["2"]).plates == ()
     with pytest.raises(UnknownName, match="unknown plate '3'"):
         without_plates(capture, ["3"])
+
+
+def test_a_capture_without_markers_is_not_one_without_names(subject):
+    with pytest.raises(NotObservable, match=r"holds no markers; export it again"):
+        subject_markers(trajectories(()), subject)
+    with pytest.raises(NotObservable, match="no marker of the capture has a name"):
+        subject_markers(trajectories(("*1", "*2")), subject)

@@ -35,7 +35,7 @@ def test_a_remark_on_every_trial_names_all():
 def test_lines_that_do_not_fit_are_counted(lines, shown, left):
     one = with_trials(("look", ("a", "b" * LETTERS_PER_LINE, "c")))
     page = warnings_box(one, Terms("en"), lines)
-    assert page.count("<li") == shown and (f"{left} more reasons" in page) == bool(left)
+    assert page.count("<li") == shown and (f"section on trials: {left}." in page) == bool(left)
     assert fitting(["a", "b" * (LETTERS_PER_LINE + 1), "c"], lines) == shown
 
 

@@ -1,21 +1,16 @@
-"""Takes the README's pictures of the live page and the report, with a synthetic walk in headless Chromium.
-
-Run ``python -m benchmarks.screenshots FOLDER``.
-"""
+"""Pictures of the live page and of a trial's report, with the walk of ``mbkf demo``."""
 
 from __future__ import annotations
 
-import io
-import shutil
-import sys
-import tempfile
-import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.app.visit import browser
+from benchmarks.screenshots.picture import Taken, Taking
 from mbkf.cli.main import main as mbkf_command
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
@@ -30,70 +25,60 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.viz.live.page import LivePage
 
-FLAGS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 SETTINGS = ReconstructSettings(smooth=False, correct_markers=False, other_contacts=False)
-LIVE_S = 9.0
-"""How long the stream runs before its picture is taken."""
+SIZE = {"width": 1280, "height": 760}
+LIVE_S = 8.0
+"""Length of the stream, whose last frame the picture shows."""
 
 
-def take(folder: Path, target: Path) -> None:
-    """Takes the three pictures of a demo's folder."""
-    from playwright.sync_api import sync_playwright
+def live_pictures(scratch: Path) -> Taking:
+    """Takes them.
 
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(FLAGS))
-        _live(browser, read_reconstruction(folder / "result"), target / "screenshot_live.png")
-        _live_verdict(browser, _with_turned_plates(folder), target / "screenshot_live_verdict.png")
-        page = browser.new_page(viewport={"width": 1180, "height": 900}, color_scheme="light")
-        page.goto((folder / "report.html").absolute().as_uri())
+    Args:
+        scratch: An empty folder.
+    """
+    assert mbkf_command(["demo", "--motion", "walk", "--seed", "1", "--out", str(scratch)]) == 0
+    with browser() as made:
+        yield Taken("screenshot_live", _live(made, read_reconstruction(scratch / "result")))
+        yield Taken("screenshot_live_verdict", _live_verdict(made, _with_turned_plates(scratch)))
+        page = made.new_page(viewport={"width": 1180, "height": 900}, color_scheme="light")
+        page.goto((scratch / "report.html").absolute().as_uri())
         page.add_style_tag(content="nav { display: none !important }")
-        _report(page, "quality", 0.0, 752.0, target / "screenshot_quality.png")
-        _report(page, "motion", _top_of_cycles(page), 696.0, target / "screenshot_cycles.png")
-        browser.close()
+        yield Taken("screenshot_quality", _part(page, "quality", 0.0, 752.0))
+        yield Taken("screenshot_cycles", _part(page, "motion", _top_of_cycles(page), 696.0))
 
 
-def _live(browser: Any, r: Reconstruction, target: Path) -> None:
-    model = HumanModel.of(r.subject)
-    live = LivePage(model, r.marker_names, r.plate_corners_m, title="walk, live")
-    done = threading.Event()
-
-    def feed() -> None:
-        k = 0
-        while not done.wait(1.0 / r.rate_hz):
-            live.take(_frame(r, k))
-            k += 1
-
-    thread = threading.Thread(target=feed)
-    thread.start()
-    page = browser.new_page(viewport={"width": 1280, "height": 760})
+def _live(made: Any, r: Reconstruction) -> bytes:
+    live = LivePage(HumanModel.of(r.subject), r.marker_names, r.plate_corners_m, title="walk, live")
+    page = made.new_page(viewport=SIZE)
     page.goto(live.url)
     low, high = page.locator(".card").first.locator("input").all()
     low.fill("10")
     high.fill("60")
     high.blur()
-    page.wait_for_timeout(1e3 * LIVE_S)
-    keep(page.screenshot(), target)
+    for k in range(round(LIVE_S * r.rate_hz)):
+        live.take(_frame(r, k))
+        time.sleep(1.0 / r.rate_hz)
+    png: bytes = page.screenshot()
     page.close()
-    done.set()
-    thread.join()
     live.close()
+    return png
 
 
-def _live_verdict(browser: Any, r: Reconstruction, target: Path) -> None:
+def _live_verdict(made: Any, r: Reconstruction) -> bytes:
     """The top of the live page with the reasons of its verdict."""
     live = LivePage(HumanModel.of(r.subject), r.marker_names, r.plate_corners_m, title="walk, live")
     for k in range(2):
         live.take(_frame(r, k))
-    page = browser.new_page(viewport={"width": 1280, "height": 760})
+    page = made.new_page(viewport=SIZE)
     page.goto(live.url)
     page.locator("#judgement summary").click()
     live.take(_frame(r, 2))
-    page.wait_for_timeout(300)
-    box = page.locator("#judgement").bounding_box()
-    clip = {"x": 0, "y": 0, "width": 1280, "height": box["y"] + box["height"] + 150}
-    keep(page.screenshot(clip=clip), target)
+    page.wait_for_timeout(300.0)
+    png: bytes = page.screenshot(clip={"x": 0, "y": 0, "width": SIZE["width"], "height": 480})
     page.close()
     live.close()
+    return png
 
 
 def _with_turned_plates(folder: Path) -> Reconstruction:
@@ -122,22 +107,8 @@ def _top_of_cycles(page: Any) -> float:
     return float(heading["y"] - page.locator("#motion").bounding_box()["y"] - 12.0)
 
 
-def _report(page: Any, section: str, top: float, height: float, target: Path) -> None:
+def _part(page: Any, section: str, top: float, height: float) -> bytes:
     box = page.locator(f"#{section}").bounding_box()
     clip = {"x": box["x"] - 10, "y": box["y"] + top, "width": box["width"] + 20, "height": height}
-    keep(page.screenshot(full_page=True, clip=clip), target)
-
-
-def keep(png: bytes, target: Path) -> None:
-    """Writes a picture as small as it goes without loss."""
-    from PIL import Image
-
-    Image.open(io.BytesIO(png)).convert("RGB").save(target, optimize=True)
-
-
-if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as scratch:
-        code = mbkf_command(["demo", "--motion", "walk", "--seed", "1", "--out", scratch])
-        if code == 0:
-            take(Path(scratch), Path(sys.argv[1]))
-    sys.exit(code)
+    png: bytes = page.screenshot(full_page=True, clip=clip)
+    return png
