@@ -12,7 +12,7 @@ import threading
 import time
 import uuid
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -68,11 +68,13 @@ class Run:
         report: The contents of live.json.
         folder: With results and log.
         pauses_ms: By how much an idle process woke late on this machine meanwhile.
+        work_ms: (n, 2) what a fixed piece of work took there after each pause, and right afterwards once more.
     """
 
     report: dict[str, Any]
     folder: Path
     pauses_ms: Array
+    work_ms: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 class Wire(NamedTuple):
@@ -105,12 +107,17 @@ def wire_of(protocol: str) -> Wire:
 
 
 class Pauses:
-    """A thread that does nothing but wake every few milliseconds, and notes how late it does."""
+    """A thread that does nothing but wake every few milliseconds, and notes how late it does.
+
+    It then reads a line of JSON twice: where others use the processor's caches meanwhile, the first time takes longer.
+    """
 
     EVERY_S = 0.005
+    WORK = json.dumps({str(k): [0.1 * k, 0.2 * k, 0.3 * k] for k in range(80)})
 
     def __init__(self) -> None:
         self._late: list[float] = []
+        self._work: list[tuple[float, float]] = []
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -121,11 +128,21 @@ class Pauses:
         self._thread.join()
         return 1e3 * np.array(self._late)
 
+    def work_ms(self) -> Array:
+        """(n, 2) how long the work took, ms."""
+        return 1e3 * np.array(self._work).reshape(-1, 2)
+
     def _run(self) -> None:
         while not self._ended.is_set():
             begin = time.perf_counter()
             time.sleep(self.EVERY_S)
             self._late.append(time.perf_counter() - begin - self.EVERY_S)
+            self._work.append((self._worked(), self._worked()))
+
+    def _worked(self) -> float:
+        begin = time.thread_time()
+        json.loads(self.WORK)
+        return time.thread_time() - begin
 
 
 def play(
@@ -136,6 +153,7 @@ def play(
     view: bool = False,
     speed: float = 1.0,
     filter_words: Sequence[str] = ("dynamic",),
+    more: Sequence[str | Path] = (),
 ) -> Run:
     """Plays a trial into a live run.
 
@@ -146,6 +164,7 @@ def play(
         view: Whether a live page is open, too.
         speed: Times real time.
         filter_words: What follows ``--filter``: its name, and options such as a preset.
+        more: Further options of ``mbkf live``.
 
     Raises:
         InvalidInput: One of the commands failed.
@@ -155,6 +174,7 @@ def play(
     words: list[str | Path] = ["mbkf", "live", *wire.receive, "--subject", trial.subject]
     words += ["--filter", *filter_words, "--seconds", f"{trial.seconds:.6f}", "--keep-log", "--out", folder]
     words += ["--view"] if view else []
+    words += more
     live = _start(words)
     watching = threading.Thread(target=_watch, args=(live.stderr, view), daemon=True)
     watching.start()
@@ -175,7 +195,8 @@ def play(
             if process.poll() is None:
                 process.kill()
                 process.wait()
-    return Run(json.loads((folder / "live.json").read_text(encoding="utf-8")), folder, late)
+    report = json.loads((folder / "live.json").read_text(encoding="utf-8"))
+    return Run(report, folder, late, pauses.work_ms())
 
 
 def difference(run: Run) -> float:
@@ -195,14 +216,19 @@ def difference(run: Run) -> float:
 
 def largest_difference(one: Reconstruction, other: Reconstruction) -> float:
     """Over the quantities compared."""
-    return max(_difference(getattr(one, name), getattr(other, name)) for name in COMPARED)
+    return max(apart(getattr(one, name), getattr(other, name)) for name in COMPARED)
 
 
-def _difference(one: Array, other: Array) -> float:
+def apart(one: Array, other: Array) -> float:
+    """Largest difference, relative to the value where that is larger than one; NaN where different samples are known.
+
+    Args:
+        one: The values.
+        other: Those that they are compared with.
+    """
     if one.shape != other.shape or (np.isnan(one) != np.isnan(other)).any():
         return float("nan")
-    apart = np.abs(one - other) / np.maximum(1.0, np.abs(other))
-    return float(np.nanmax(apart, initial=0.0))
+    return float(np.nanmax(np.abs(one - other) / np.maximum(1.0, np.abs(other)), initial=0.0))
 
 
 def _start(words: Sequence[str | Path]) -> subprocess.Popen[str]:

@@ -37,7 +37,7 @@ PATIENCE_S, LINGER_S = 20.0, 0.5
 END_FRAMES = 10
 """Of so many frames at the end one has to be tracked."""
 
-MakeWire = Callable[[str, Played, str, bool], Wire]
+MakeWire = Callable[[Played], Wire]
 
 ACCOUNTS = ("frames_written", "frames_not_written", "frames_unanswered", "frames_late", "frames_overwritten")
 
@@ -99,7 +99,7 @@ def wire_of(protocol: str, walk: Played, name: str, counted: bool) -> Wire:
 
 
 def outcome(
-    protocol: str, fault: Fault, seed: int, walk: Played, folder: Path, make: MakeWire = wire_of
+    protocol: str, fault: Fault, seed: int, walk: Played, folder: Path, make: MakeWire | None = None
 ) -> dict[str, object]:
     """Runs a live reconstruction on a stream with a fault, and returns its end.
 
@@ -109,14 +109,14 @@ def outcome(
         seed: Which of its kind.
         walk: What is played.
         folder: Holds the subject; the run's own folder is made in it.
-        make: Makes the player: (protocol, capture, name, whether frames are counted) -> the player.
+        make: Makes the player of a capture; None for the one of LSL or NatNet.
     """
     died: list[str] = []
     threading.excepthook = lambda args: died.append(f"{args.thread and args.thread.name}: {args.exc_value!r}")
     schedule = Schedule(walk, seed)
     fault(schedule)
     own = f"{protocol}-{os.getpid()}-{seed}"
-    wire = make(protocol, walk, f"mbkf-{own}", schedule.counted)
+    wire = wire_of(protocol, walk, f"mbkf-{own}", schedule.counted) if make is None else make(walk)
     go, stop = threading.Event(), threading.Event()
     sender = Sender(wire, schedule, go, stop)
     settings = ReconstructSettings(correct_markers=False)
@@ -166,7 +166,7 @@ def _told(
     }
 
 
-def main(words: Iterable[str], faults: Mapping[str, Fault], make: MakeWire = wire_of) -> None:
+def main(words: Iterable[str], faults: Mapping[str, Fault], make: MakeWire | None = None) -> None:
     """Follows what the words name, a line before and after each.
 
     Args:

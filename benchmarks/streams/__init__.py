@@ -1,8 +1,9 @@
 """Streams: captures played through simulators of laboratories' servers into `mbkf live`.
 
-Rows: frames lost, equality with `reconstruct --causal`, latency beyond that of an idle process, disturbed streams, and
-the simulator read by a client that others wrote. Replay and live run are processes of their own. Latencies are those of
-this machine and of whatever else it does; bounds hold on a quiet one.
+Rows: frames lost, equality with `reconstruct --causal`, the recording, latency beyond that of an idle process, more
+markers, points without names, disturbed streams, results out, and the simulator read by a client that others wrote.
+Replay and live run are processes of their own. Latencies are those of this machine and of whatever else it does; bounds
+hold on a quiet one: beside them stands how much longer a fixed piece of work takes after a pause than right away.
 """
 
 from __future__ import annotations
@@ -11,21 +12,32 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from benchmarks.checks import Check, Context, information, number
-from benchmarks.live import lost, synthetic
-from benchmarks.live.runs import Run, difference, play
+from benchmarks.live import lost
+from benchmarks.live.runs import COMPARED, Run, apart, difference, play
 from benchmarks.parts import part_rows
 from benchmarks.robustness import stream_faults
 from benchmarks.streams.clients import client_rows
 from benchmarks.streams.faults import FAULTS
+from benchmarks.streams.scenes import MANY, belt_walk
+from mbkf.io.capture import read_capture
+from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.subject import read_subject
+from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.trial.live.log import SUBJECT_FILE
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS, QUICK_SECONDS = 20.0, 5.0
 RATES_HZ = (100.0, 300.0)
-EQUAL = 0.0
+EQUAL, SINGLE = 0.0, 1e-4
+"""Bounds of differences: of the same frames, and of frames in a file's single precision."""
+
 MEDIAN_MS, P99_MS = 1.0, 3.0
 """Bounds of latency beyond that of an idle process."""
 
@@ -38,15 +50,40 @@ def run(context: Context) -> list[Check]:
 def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
     """Rows of a protocol."""
     seconds = QUICK_SECONDS if context.quick else SECONDS
-    for rate_hz in RATES_HZ:
-        trial = synthetic(context.out, seconds, rate_hz)
-        found = play(trial, protocol, context.out / f"run-{rate_hz:g}")
+    scene = partial(belt_walk, context.out, seconds)
+    for trial in (
+        *(scene(rate_hz) for rate_hz in RATES_HZ),
+        scene(RATES_HZ[0], markers=MANY),
+        scene(RATES_HZ[0], named=False),
+    ):
+        folder = context.out / trial.name.replace(" ", "-").replace(",", "")
+        file = folder.with_suffix(".c3d")
+        found = play(trial, protocol, folder, more=("--record", file, "--overwrite"))
         yield lost(trial.name, found)
         yield Check(f"{trial.name}: difference from reconstruct --causal", difference(found), EQUAL, "<=")
+        if not trial.unlabelled:
+            apart = recorded_difference(found, file)
+            yield Check(f"{trial.name}: difference from the recorded C3D file", apart, SINGLE, "<=")
         yield from latency(trial.name, found)
     yield from fault_rows(context, protocol)
     if protocol == "qualisys":
         yield from client_rows(context)
+
+
+def recorded_difference(found: Run, file: Path) -> float:
+    """Largest difference of a run from the causal results of its recording, from a second on, but for the last frame.
+
+    The file's plates begin with its first frame, half of whose samples the run has from before, and pelvis angles and
+    moments depend on the direction of all frames; both are left out. Relative to the value where that is larger than
+    one; NaN where different samples are known. The recording may go on after the run.
+    """
+    subject = read_subject(found.folder / LOG_FOLDER / SUBJECT_FILE)
+    settings = ReconstructSettings(smooth=False, correct_markers=False)
+    capture = read_capture(file, tare=False)
+    again, run = reconstruct(capture, subject, settings=settings), read_reconstruction(found.folder)
+    part = slice(round(capture.markers.rate_hz), min(run.frames, again.frames) - 1)
+    names = [name for name in COMPARED if name not in ("angles", "moments")]
+    return max(apart(getattr(run, name)[part], getattr(again, name)[part]) for name in names)
 
 
 def latency(name: str, found: Run) -> Iterator[Check]:
@@ -56,6 +93,9 @@ def latency(name: str, found: Run) -> Iterator[Check]:
         whole = number(found.report["latency_ms_median" if percent == 50.0 else "latency_ms_p99"])
         yield Check(f"{name}: latency beyond an idle process, {word}", whole - idle, bound, "<=", "ms")
         yield information(f"{name}: an idle process woke late, {word}, ms", idle)
+    if len(found.work_ms):
+        after, again = np.median(found.work_ms, axis=0)
+        yield information(f"{name}: work after a pause, times that right away", float(after / again))
 
 
 def fault_rows(context: Context, protocol: str) -> Iterator[Check]:

@@ -7,7 +7,7 @@ import sys
 
 from benchmarks.robustness.stream_child import main
 from benchmarks.streams.faults import FAULTS
-from benchmarks.streams.wires import wire_of
+from benchmarks.streams.wires import WIRES
 
 if __name__ == "__main__":
-    main(sys.argv[1:], FAULTS[sys.argv[2]], wire_of)
+    main(sys.argv[1:], FAULTS[sys.argv[2]], WIRES[sys.argv[2]])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 import struct
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,19 +17,6 @@ from mbkf.stream.qualisys.source import QualisysSource
 from mbkf.stream.source import FrameSource, PlateSamples
 from mbkf.stream.udp.player import UdpPlayer, description, line
 from mbkf.stream.udp.source import UdpSource
-
-
-def wire_of(protocol: str, walk: Played, name: str, counted: bool) -> Wire:
-    """The player of a protocol.
-
-    Args:
-        protocol: "udp" or "qualisys".
-        walk: The capture.
-        name: Of the stream, where the protocol has names.
-        counted: Whether frames carry a count.
-    """
-    del name, counted
-    return QualisysWire(walk) if protocol == "qualisys" else UdpWire(walk)
 
 
 def disturbed(played: Played, one: Sent, samples: PlateSamples) -> PlayedFrame:
@@ -201,3 +189,7 @@ class QualisysWire:
         shown = disturbed(self._played, one, self._samples[one.frame])
         number = int(one.number) if abs(one.number) < 2.0**62 else 2**31
         return server.data(shown, components, number)
+
+
+WIRES: dict[str, Callable[[Played], Wire]] = {"udp": UdpWire, "qualisys": QualisysWire}
+"""Players by protocol."""

@@ -6,6 +6,7 @@ import argparse
 import os
 import threading
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -151,7 +152,8 @@ def sinks(
             from mbkf.stream.results.datagrams import DatagramResults
             from mbkf.stream.results.websocket import parse_address
 
-            found.append(DatagramResults(setup.model, kind, *parse_address(to, option)))
+            place = parse_address(to, option)
+            found.append(DatagramResults(setup.model, kind, *place, partial(session.note, "results")))
     if args.view:
         from mbkf.viz.live.page import LivePage
 

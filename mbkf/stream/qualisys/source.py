@@ -3,35 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from contextlib import suppress
-from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import InvalidInput, InvalidPacket, MbkfError
-from mbkf.io.resample import WHOLE
 from mbkf.stream.known import KnownStream
 from mbkf.stream.qualisys import packets
 from mbkf.stream.qualisys.client import PARAMETERS, Packet, QtmClient
 from mbkf.stream.qualisys.parameters import MM, QtmDescription, read_parameters
 from mbkf.stream.qualisys.plates import PlateForceReader
+from mbkf.stream.qualisys.waiting import WaitingFrames
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 
 RECONNECT_AFTER_S, AGAIN_S = 3.0, 0.5
 """After so long without a packet the connection is made anew; attempts are so far apart."""
-
-FORCES_WITHIN_S, SILENT_S = 0.1, 1.0
-"""A frame waits so long for the forces of its time, which QTM hands on in chunks; after so long without any it does not
-wait."""
-
-HELD_SAMPLES = 20_000
-"""Samples of the plates that wait for their frame, at most."""
-
-MOST_VAIN = 20
-"""After so many frames in a row that waited in vain, forces are numbered otherwise than frames, or come later."""
 
 ASK_AGAIN_S = 0.25
 """Interval of questions for parameters while frames do not fit them."""
@@ -76,10 +64,8 @@ class QualisysSource:
         self._described: QtmDescription | None = None
         self._plates: PlateForceReader | None = None
         self.receiving = False
-        self._samples: list[PlateSamples] = []
-        self._held: deque[SourceFrame] = deque()
-        self._newest, self._vain = -1, 0
-        self._heard_s = self._forces_s = self._tried_s = self._asked_s = 0.0
+        self._waiting: WaitingFrames | None = None
+        self._heard_s = self._tried_s = self._asked_s = 0.0
         self._lost = False
         self._news: list[tuple[str, str]] = []
         self._reported: set[str] = set()
@@ -98,25 +84,24 @@ class QualisysSource:
             return None
         self._described = read_parameters(self._client.parameters, self._up)
         self._known, self._plates = KnownStream(self._described.stream), PlateForceReader(self._described)
+        self._waiting = WaitingFrames(self._described.stream, self._report)
         self._news += [("plates", sentence) for sentence in self._described.left_out]
         return self._described.stream
 
     def read(self, timeout_s: float) -> SourceFrame | None:
         """The next frame, with the forces until its end where they come in time."""
-        assert self._known is not None, "connect first"
+        assert self._waiting is not None, "connect first"
         until = time.perf_counter() + timeout_s
         if not self.receiving:
             self.receiving = True
             self._heard_s = time.perf_counter()
             self._ask_for_frames()
         while True:
-            ready = self._due()
+            ready = self._waiting.due()
             if ready is not None:
                 return ready
             now = time.perf_counter()
-            wait_s = until - now
-            if self._held:
-                wait_s = min(wait_s, self._held[0].arrival_s + FORCES_WITHIN_S - now)
+            wait_s = min(until - now, self._waiting.wait_s(now))
             found = self._take(max(0.0, wait_s), now)
             if found is not None:
                 self._put(found)
@@ -211,7 +196,8 @@ class QualisysSource:
             self._report("connection", f"QTM answers: {packets.text_of(one.payload)[:200]}")
 
     def _put_frame(self, frame: packets.DataFrame, arrival_s: float) -> None:
-        assert self._described is not None and self._known is not None and self._plates is not None
+        assert self._described is not None and self._known is not None
+        assert self._plates is not None and self._waiting is not None
         if self._known.refused:
             return
         known = self._known
@@ -220,11 +206,7 @@ class QualisysSource:
             samples = known.plate_samples(self._plates.samples(frame.forces))
             if self._plates.axes != before:
                 self._news.append(("plates axes", f"QTM states forces in axes of the {self._plates.axes}"))
-            if len(samples.index):
-                self._samples.append(samples)
-                while len(self._samples) > 1 and sum(len(one.index) for one in self._samples) > HELD_SAMPLES:
-                    self._samples.pop(0)
-                self._newest, self._forces_s = int(samples.index[-1]), arrival_s
+            self._waiting.put_samples(samples, arrival_s)
         labelled = frame.points.get(packets.MARKERS_RESIDUAL, frame.points.get(packets.MARKERS))
         bare = frame.points.get(packets.POINTS_RESIDUAL, frame.points.get(packets.POINTS))
         if labelled is None and (bare is None or known.stream.marker_names):
@@ -234,7 +216,7 @@ class QualisysSource:
             markers = self._markers(labelled, len(self._described.stream.marker_names))
         points = NO_POINTS if bare is None or not len(bare) else self._world(bare)
         none = PlateSamples.none(len(known.stream.plates))
-        self._held.append(SourceFrame(frame.number, arrival_s, markers, points, none))
+        self._waiting.put(SourceFrame(frame.number, arrival_s, markers, points, none))
 
     def _markers(self, found: NDArray[np.float32] | None, described: int) -> Array:
         """(M, 3) known markers; NaN where their number is not that of the parameters, which are then asked for."""
@@ -247,35 +229,6 @@ class QualisysSource:
     def _world(self, points_mm: NDArray[np.float32]) -> Array:
         assert self._described is not None
         return np.asarray(points_mm.astype(float) @ (MM * self._described.rotation.T))
-
-    def _due(self) -> SourceFrame | None:
-        """The oldest frame, once the forces of its time are here or are not waited for any more."""
-        if not self._held:
-            return None
-        assert self._known is not None
-        one, stream, now = self._held[0], self._known.stream, time.perf_counter()
-        ratio = stream.plate_rate_hz / stream.rate_hz
-        wanted = ceil((one.number + 0.5) * ratio - WHOLE)
-        waits = self._vain < MOST_VAIN and now - self._forces_s < SILENT_S
-        if stream.plates and waits and self._newest < wanted:
-            if now - one.arrival_s < FORCES_WITHIN_S:
-                return None
-            self._vain += 1
-            if self._vain == MOST_VAIN:
-                self._report(
-                    "plates late", "QTM sends forces too late for their frames, which do not wait for them"
-                )
-        else:
-            self._vain = MOST_VAIN if self._vain == MOST_VAIN else 0
-        self._held.popleft()
-        samples, self._samples = self._samples, []
-        if not samples:
-            return one
-        index = np.concatenate([chunk.index for chunk in samples])
-        wrench = np.concatenate([chunk.wrench for chunk in samples])
-        return SourceFrame(
-            one.number, one.arrival_s, one.markers_m, one.unlabelled_m, PlateSamples(index, wrench)
-        )
 
     def _ask_for_parameters(self) -> None:
         now = time.perf_counter()

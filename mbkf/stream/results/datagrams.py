@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import socket
 import time
-from contextlib import suppress
+from collections.abc import Callable
 
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
@@ -24,7 +25,9 @@ JSON, OSC = "json", "osc"
 class DatagramResults:
     """A :class:`mbkf.stream.results.frame.FrameSink`."""
 
-    def __init__(self, model: Body, kind: str, address: str, port: int) -> None:
+    def __init__(
+        self, model: Body, kind: str, address: str, port: int, report: Callable[[str], None] | None = None
+    ) -> None:
         """Opens the socket.
 
         Args:
@@ -32,6 +35,7 @@ class DatagramResults:
             kind: :data:`JSON` or :data:`OSC`.
             address: Address of the receiver.
             port: Its port.
+            report: Takes a sentence on messages that are too large, once.
 
         Raises:
             InvalidInput: It cannot be sent to.
@@ -39,6 +43,7 @@ class DatagramResults:
         self._values = ResultValues(model)
         self._bundles = OscBundles(self._values.names) if kind == OSC else None
         self._names_due_s = 0.0
+        self._kind, self._report = kind, report
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.connect((address, port))
@@ -68,5 +73,12 @@ class DatagramResults:
         self._put(json.dumps(frame_message(frame, values)).encode())
 
     def _put(self, data: bytes) -> None:
-        with suppress(OSError):  # nobody listens, or a datagram is too large for the network
+        try:
             self._socket.send(data)
+        except OSError as error:  # nobody listens, or the message is too large
+            if error.errno == errno.EMSGSIZE and self._report is not None:
+                report, self._report = self._report, None
+                report(
+                    f"results: messages of {self._kind} are too large for a datagram and are left out (the first had "
+                    f"{len(data)} bytes); take --websocket, or --spreads none"
+                )

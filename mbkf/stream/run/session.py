@@ -116,6 +116,10 @@ class LiveSession:
             self._setup = prepare(found, *known, self._source.patient, self._events.note)
         return True
 
+    def note(self, kind: str, what: str) -> None:
+        """Records an event of the run: one word, and a sentence."""
+        self._events.note(kind, what)
+
     @property
     def setup(self) -> LiveSetup:
         """The stream, markers, body and filter; only after :meth:`connect`."""

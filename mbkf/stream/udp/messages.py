@@ -25,6 +25,9 @@ RATES_HZ = (1.0, 100_000.0)
 
 MOST_MARKERS, MOST_PLATES = 1000, 64
 
+MOST_LETTERS, MOST_SHOWN = 200, 40
+"""Letters of a text, and of a refused value that a message shows, at most."""
+
 DESCRIBING = ("trial", "rate", "unit", "moment_unit", "up", "names", "plates", "start")
 """Keys of a description; each stays until it is sent again."""
 
@@ -191,15 +194,21 @@ def _numbers(value: object, key: str, shape: Sequence[int]) -> Array:
 
 def _within(value: object, key: str, low: float, high: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise InvalidInput(f'UDP: "{key}" is {value!r}; send a number from {low:g} to {high:g}')
+        raise InvalidInput(f'UDP: "{key}" is {_shown(value)}; send a number from {low:g} to {high:g}')
     return float(value)
 
 
 def _text(fields: Mapping[str, object], key: str, default: str) -> str:
     text = fields.get(key, default)
-    if not isinstance(text, str):
-        raise InvalidInput(f'UDP: "{key}" is not a text')
+    if not isinstance(text, str) or len(text) > MOST_LETTERS:
+        raise InvalidInput(f'UDP: "{key}" is not a text of at most {MOST_LETTERS} letters')
     return text
+
+
+def _shown(value: object) -> str:
+    """The beginning of a value, for a message."""
+    text = repr(value)
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]} …"
 
 
 def described_again(fields: dict[str, object], more: Mapping[str, object]) -> bool:

@@ -9,7 +9,7 @@ from benchmarks.live.runs import Run, wire_of
 from benchmarks.robustness.stream_schedule import Schedule
 from benchmarks.streams.clients import VARIABLE, client_rows
 from benchmarks.streams.faults import FAULTS
-from benchmarks.streams.wires import wire_of as player_of
+from benchmarks.streams.wires import WIRES
 from mbkf.stream.played import played
 from tests.captures import made_capture
 from tests.stream.reading import connected, read
@@ -37,7 +37,7 @@ def test_there_are_twenty_faults_and_each_disturbs_alike_from_one_seed(protocol)
 
 @pytest.mark.parametrize("protocol", FAULTS)
 def test_a_wire_and_its_source_know_each_other(protocol):
-    wire = player_of(protocol, WALK, "x", True)
+    wire = WIRES[protocol](WALK)
     source = wire.source()
     wire.listening()
     stream = connected(source)

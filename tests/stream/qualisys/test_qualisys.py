@@ -9,7 +9,7 @@ import pytest
 from benchmarks.streams.qualisys_server import CAMERAS_CHANGED, QtmServer
 from mbkf.errors import InvalidInput
 from mbkf.stream.played import played
-from mbkf.stream.qualisys import packets
+from mbkf.stream.qualisys import packets, waiting
 from mbkf.stream.qualisys import source as source_module
 from mbkf.stream.qualisys.client import Packet, QtmClient
 from mbkf.stream.qualisys.source import QualisysSource
@@ -190,7 +190,7 @@ def test_bytes_that_are_no_packet_end_the_connection_and_a_new_one_is_made(labor
 
 def test_forces_that_come_late_are_waited_for(laboratory, monkeypatch):
     """QTM hands on forces in chunks: a frame goes on once those of its time are here."""
-    monkeypatch.setattr(source_module, "FORCES_WITHIN_S", PATIENCE_S)
+    monkeypatch.setattr(waiting, "FORCES_WITHIN_S", PATIENCE_S)
     one = laboratory()
     first, second, third = (f for f in one.played.frames() if f.number < 3)
     one.frames(0)
@@ -206,23 +206,23 @@ def test_forces_that_come_late_are_waited_for(laboratory, monkeypatch):
 
 
 def test_forces_without_frames_do_not_pile_up(laboratory, monkeypatch):
-    monkeypatch.setattr(source_module, "HELD_SAMPLES", 20)
+    monkeypatch.setattr(waiting, "HELD_SAMPLES", 20)
     one = laboratory()
     frames = [f for f in one.played.frames() if f.number in range(5)]
     for frame in frames:
         one.source._put(Packet(0.0, packets.DATA, one.server.data(frame, (4,))))
-    assert sum(len(chunk.index) for chunk in one.source._samples) == 20
-    assert one.source._samples[-1].index[-1] == frames[-1].plates.index[-1]
+    assert sum(len(chunk.index) for chunk in one.source._waiting._samples) == 20
+    assert one.source._waiting._samples[-1].index[-1] == frames[-1].plates.index[-1]
 
 
 def test_frames_do_not_wait_for_ever_for_forces_numbered_otherwise(laboratory, monkeypatch):
-    monkeypatch.setattr(source_module, "FORCES_WITHIN_S", 0.001)
+    monkeypatch.setattr(waiting, "FORCES_WITHIN_S", 0.001)
     one = laboratory()
     one.frames(0)
     frame = next(f for f in one.played.frames() if f.number == 1)
-    for number in range(500, 500 + source_module.MOST_VAIN):
+    for number in range(500, 500 + waiting.MOST_VAIN):
         one.server.send_data(one.server.streaming()[0], one.server.data(frame, (9, 4), number))
-    assert len(read(one.source, source_module.MOST_VAIN)) == source_module.MOST_VAIN
+    assert len(read(one.source, waiting.MOST_VAIN)) == waiting.MOST_VAIN
     assert "too late" in one.event("plates late")
 
 

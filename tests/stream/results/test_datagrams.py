@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
+from mbkf.stream.results import datagrams
 from mbkf.stream.results.datagrams import JSON, OSC, DatagramResults
 from mbkf.stream.results.values import ResultValues
 from tests.stream.results.test_websocket import MODEL, shown_frame
@@ -43,6 +44,18 @@ def test_osc_holds_the_numbers(receiver):
     results.close()
     bundle = receiver.recv(65536)
     assert bundle.startswith(b"#bundle\0") and f"/mbkf/{ResultValues(MODEL).names[0]}\0".encode() in bundle
+
+
+def test_messages_that_are_too_large_are_stated_once(receiver, monkeypatch):
+    told = []
+    results = DatagramResults(MODEL, JSON, *receiver.getsockname(), told.append)
+    monkeypatch.setattr(datagrams, "frame_message", lambda *_: {"values": [0] * 40_000})
+    for number in range(3):
+        results.take(shown_frame(MODEL, number))
+    results.close()
+    (sentence,) = told
+    assert "messages of json are too large for a datagram" in sentence
+    assert "names" in json.loads(receiver.recv(65536)), "smaller ones are sent"
 
 
 def test_nobody_has_to_listen(receiver):

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from mbkf.errors import InvalidPacket, MbkfError
+from mbkf.errors import InvalidInput, InvalidPacket, MbkfError
 from mbkf.stream.source import UNCOUNTED
 from mbkf.stream.udp.messages import described_again, described_fully, read_description, read_messages
 
@@ -123,6 +123,13 @@ def test_a_description_that_cannot_be_is_refused_with_its_reason(fields, words):
     complete = {"rate": 100} | fields if fields else fields
     with pytest.raises(MbkfError, match=words):
         described_fully(complete, True)
+
+
+@pytest.mark.parametrize("fields", [{"rate": [7] * 10_000}, {"rate": 100, "unit": "m" * 10_000}])
+def test_a_refusal_does_not_repeat_a_long_value(fields):
+    with pytest.raises(InvalidInput) as refused:
+        read_description(fields)
+    assert len(str(refused.value)) < 200
 
 
 def test_keys_stay_until_they_are_sent_again():
