@@ -138,6 +138,7 @@ NEEDS: Mapping[str, Needs] = {
             "gait2354_walk",
             "gaitalytics_walk",
             "landings",
+            "opensim_gappy_walk",
             "rajagopal_walk_run",
             "rehazenter_walk",
             "unipd_walk",

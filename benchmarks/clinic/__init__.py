@@ -16,6 +16,7 @@ from benchmarks.clinic.scores import score_rows
 from benchmarks.clinic.screenshots import screenshot_rows
 from benchmarks.clinic.sessions import sessions_rows
 from benchmarks.clinic.sheet import sheet_rows
+from benchmarks.clinic.straight import straight_rows
 from benchmarks.clinic.video import video_rows
 from benchmarks.clinic.words import words_rows
 from benchmarks.parts import Part, part_rows
@@ -29,6 +30,7 @@ PARTS: Mapping[str, Part] = {
     "screenshots": lambda context: screenshot_rows(context.require_data(), context.out),
     "sessions": lambda context: sessions_rows(context.require_data(), context.out),
     "sheet": lambda context: sheet_rows(context.require_data(), context.out),
+    "straight": lambda context: straight_rows(context.require_data()),
     "video": lambda context: video_rows(context.out, context.seed),
     "words": lambda context: words_rows(context.require_data(), context.out),
 }

@@ -51,6 +51,7 @@ def report_of(
     charts: Charts | None = None,
     *,
     trend: bool = False,
+    straight: bool = False,
 ) -> str:
     """The report of a session.
 
@@ -62,6 +63,7 @@ def report_of(
         language: Code of the report's language.
         charts: Convention and colours; None: those of the workspace.
         trend: Adds the trend over all dated visits of the person.
+        straight: Leaves out the gait cycles in which the pelvis turns.
 
     Raises:
         InvalidInput: Session, result, file of norms or language does not exist, or the norms hold this person.
@@ -79,10 +81,10 @@ def report_of(
                 f"{norms} holds walks of {_person(session)}, who would be compared with themselves; build the norms "
                 "again in this report, which leaves this person out"
             )
-    earlier = read_whole(workspace, before, chosen.read) if before else None
-    whole = read_whole(workspace, session, chosen.read)
+    earlier = read_whole(workspace, before, chosen.read, straight) if before else None
+    whole = read_whole(workspace, session, chosen.read, straight)
     names = _other_visits(workspace, session) if trend else []
-    visits = [read_whole(workspace, name, chosen.read) for name in names]
+    visits = [read_whole(workspace, name, chosen.read, straight) for name in names]
     laboratory = laboratory_of(workspace)
     return session_page(
         whole, earlier, bands, language, colours=chosen.colours, laboratory=laboratory, visits=visits
@@ -102,13 +104,14 @@ def _other_visits(workspace: Workspace, session: str) -> list[str]:
     ]
 
 
-def read_whole(workspace: Workspace, session: str, convention: Convention) -> Session:
+def read_whole(workspace: Workspace, session: str, convention: Convention, straight: bool = False) -> Session:
     """A session with all results of trials that are not left out.
 
     Args:
         workspace: The sessions.
         session: Its name.
         convention: Axes and signs of curves.
+        straight: Leaves out the gait cycles in which the pelvis turns.
 
     Raises:
         InvalidInput: The session does not exist, or has no result.
@@ -117,7 +120,7 @@ def read_whole(workspace: Workspace, session: str, convention: Convention) -> Se
     notes = workspace.stated(session)
     folder = workspace.root.name if session == "." else session
     heading = f"{notes.name}, {folder}" if notes.name not in ("", folder) else folder
-    return session_from(workspace.results(session), heading, notes, convention)
+    return session_from(workspace.results(session), heading, notes, convention, straight)
 
 
 def norms_selection(workspace: Workspace, session: str, language: str) -> Plain:

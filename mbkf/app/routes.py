@@ -165,6 +165,7 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
             language,
             charts,
             trend=bool(query["trend"]),
+            straight=bool(query["straight"]),
         )
 
     def selection(query: Query) -> object:
@@ -177,7 +178,7 @@ def _report_routes(workspace: Workspace) -> list[BaseRoute]:
         charts = workspace.charts.chosen(query)
         kind = "parquet" if query["as"] == "parquet" else "csv"
         return f"curves.{kind}", session_curves(
-            reports.read_whole(workspace, query["session"], charts.read), kind
+            reports.read_whole(workspace, query["session"], charts.read, bool(query["straight"])), kind
         )
 
     return [

@@ -67,6 +67,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="laboratory.toml with name, address and logo (that in the folder of results or above it)",
     )
+    session.add_argument(
+        "--straight",
+        action="store_true",
+        help="leave out gait cycles in which the pelvis turns (by more than 15°)",
+    )
     add_out(session, "FILE", "write every curve, too: .csv or .parquet", option="--curves")
     session.add_argument("--name", metavar="TEXT", help="heading of the page (the folder's name)")
 
@@ -83,6 +88,7 @@ def run(args: argparse.Namespace) -> int:
     folders = [Path(folder) for folder in args.folders]
     for_session = [args.against, args.norms, args.curves, args.name, args.emg_reference]
     for_session += [args.session, args.laboratory, args.visits]
+    for_session += [args.straight or None]
     one = len(folders) == 1 and ((folders[0] / MOTION_FILE).is_file() or not folders[0].is_dir())
     if one and not any(option is not None for option in for_session):
         return _trial(args, folders[0])
@@ -153,7 +159,9 @@ def _session(args: argparse.Namespace, folders: list[Path]) -> int:
     def read(places: list[Path], name: str | None, file: str | None = None) -> Session:
         results = [result for place in places for result in results_in(place)]
         notes = read_session(file) if file else stated_on_results(places[0], results[0])
-        return session_from(results, name or storable(places[0].absolute().name), notes, convention)
+        return session_from(
+            results, name or storable(places[0].absolute().name), notes, convention, args.straight
+        )
 
     convention = _convention(args)
     session = read(folders, args.name, args.session)

@@ -29,7 +29,7 @@ from mbkf.study.session.squats import squat_measures
 from mbkf.study.survey.movement import SUNK_M, kind_of_markers
 from mbkf.trial.gait.convention import Convention, convention_of_result
 from mbkf.trial.gait.convention_angles import convention_angles
-from mbkf.trial.gait.cycles import Gait, find_gait
+from mbkf.trial.gait.cycles import STRAIGHT_DEG, Gait, find_gait
 from mbkf.trial.verdict.judge import verdict_of
 from mbkf.trial.verdict.parts import LEGS, PELVIS
 from mbkf.trial.verdict.restated import unstated
@@ -80,6 +80,7 @@ def session_from(
     name: str,
     notes: SessionNotes | None = None,
     convention: Convention | None = None,
+    straight: bool = False,
 ) -> Session:
     """Reads the results of a session.
 
@@ -88,6 +89,7 @@ def session_from(
         name: How the session is called.
         notes: Statements of the session file: kinds of trials, which are left out, and the person.
         convention: Axes and signs of curves; None: the one that the first trial was reconstructed with.
+        straight: Leaves out the gait cycles in which the pelvis turns; each trial's remarks state their number.
 
     Raises:
         FileFormatError: A result is damaged.
@@ -96,7 +98,8 @@ def session_from(
     stated = notes or SessionNotes()
     read = ((read_reconstruction(folder), folder) for folder in folders)
     pairs = ((r, _with_events(stated.trial(r.trial), folder)) for r, folder in read)
-    return _session(((r, trial) for r, trial in pairs if not trial.excluded), name, stated, convention)
+    kept = ((r, trial) for r, trial in pairs if not trial.excluded)
+    return _session(kept, name, stated, convention, straight)
 
 
 def session_of(
@@ -125,6 +128,7 @@ def _session(
     name: str,
     stated: SessionNotes,
     convention: Convention | None,
+    straight: bool = False,
 ) -> Session:
     """The session of trials, each with its statements in the session file.
 
@@ -136,7 +140,8 @@ def _session(
         seen[r.trial] += 1
         convention = convention or convention_of_result(r)
         notes = replace(own, condition=own.condition or stated.visit.condition)
-        parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes, convention))
+        one = r if seen[r.trial] == 1 else _again(r, seen[r.trial])
+        parts.append(_part(one, notes, convention, straight))
     if not parts or convention is None:
         raise InvalidInput(f"{name}: no trial to report on was found; reconstruct at least one trial first")
     return Session(
@@ -214,10 +219,13 @@ def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
     )
 
 
-def _part(r: Reconstruction, stated: TrialNotes, convention: Convention) -> _Part:
+def _part(r: Reconstruction, stated: TrialNotes, convention: Convention, straight: bool) -> _Part:
     r = replace(r, verdict=verdict_of(r))
     trial = replace(trial_summary(r, stated.kind), condition=stated.condition)
     gait = find_gait(r, stated.events) if trial.kind in GAIT_KINDS and r.tracked.any() else None
+    if straight and gait is not None:
+        whole, gait = gait, find_gait(r, stated.events, straight=True)
+        trial = replace(trial, remarks=(*trial.remarks, *_turned(whole, gait)))
     read = convention_angles(r, convention)
     right, left = (with_emg(r, cycles_of_trial(r, gait, side, convention, read)) for side in range(2))
     moves = all(verdict_of(r).may_use(part) for part in (PELVIS, *LEGS))
@@ -232,6 +240,16 @@ def _part(r: Reconstruction, stated: TrialNotes, convention: Convention) -> _Par
         jump_measures(r) if trial.kind == TrialKind.JUMP and moves else (),
         squat_measures(r) if trial.kind == TrialKind.SQUAT and moves else (),
     )
+
+
+def _turned(whole: Gait, straight: Gait | None) -> tuple[str, ...]:
+    """A remark on the cycles that were left out."""
+    count = len(whole.cycles)
+    turned = count - (0 if straight is None else len(straight.cycles))
+    text = (
+        f"{turned} of {count} gait cycles left out: the pelvis turns by more than {STRAIGHT_DEG:.0f}° in them"
+    )
+    return (text,) if turned else ()
 
 
 def _again(r: Reconstruction, number: int) -> Reconstruction:

@@ -28,6 +28,11 @@ CYCLE_S = (0.3, 2.5)
 OPPOSITE = (0.2, 0.8)
 """Shares of a cycle between which the other foot strikes; in hops and jumps it does not."""
 
+STRAIGHT_DEG = 15.0
+"""A pelvis that faces another way by more than this at the second strike of a cycle turns in it. The pelvis of six
+persons who walked straight differed by 6° at most, that of seven made ones who turned round a corner by 48° at least.
+"""
+
 BELT_FROM_M_S = 0.15
 """Standing feet that move back faster than this, under a pelvis that stays, stand on a belt."""
 
@@ -94,16 +99,24 @@ class Gait:
         return tuple(cycle for cycle in self.cycles if cycle.side == side)
 
 
-def find_gait(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> Gait | None:
+def find_gait(
+    r: Reconstruction, by_hand: Iterable[FootEvent] | None = None, straight: bool = False
+) -> Gait | None:
     """The gait of a reconstruction; None where no foot makes a whole cycle.
 
     Args:
         r: The reconstruction.
         by_hand: All strikes and toe-offs, as a person set them; None: those that are found.
+        straight: Leaves out the cycles in which the pelvis turns (:data:`STRAIGHT_DEG`).
     """
     feet = feet_in_motion(r)
     events = foot_events(r, feet) if by_hand is None else events_by_hand(by_hand, r.times_s)
-    cycles = tuple(cycle for side in range(2) for cycle in cycles_of(events, side))
+    cycles = tuple(
+        cycle
+        for side in range(2)
+        for cycle in cycles_of(events, side)
+        if not (straight and abs(turned_deg(feet, cycle)) > STRAIGHT_DEG)
+    )
     if not cycles:
         return None
     belt = belt_velocity(feet, cycles)
@@ -126,6 +139,21 @@ def cycles_of(events: tuple[FootEvents, FootEvents], side: int) -> list[Cycle]:
                 Cycle(side, float(start), float(offs[0]), float(end), float(opposite[0]), float(support))
             )
     return found
+
+
+def turned_deg(feet: FeetInMotion, cycle: Cycle) -> float:
+    """Angle by which the pelvis turns to the left between both strikes of a cycle, degrees; 0 where it is not known.
+
+    Args:
+        feet: Feet and pelvis.
+        cycle: The cycle.
+    """
+    known = ~np.isnan(feet.forward).any(axis=1)
+    if not known.any():
+        return 0.0
+    yaw = np.unwrap(np.arctan2(feet.forward[known, 1], feet.forward[known, 0]))
+    start, end = np.interp((cycle.start_s, cycle.end_s), feet.times_s[known], yaw)
+    return float(np.rad2deg(end - start))
 
 
 def over_cycle(times_s: Array, values: Array, cycle: Cycle) -> Array:

@@ -13,11 +13,13 @@ async function sessionReport(session, act) {
     return { select, label: element("label", {}, word(name) + " ", select) };
   };
   const picked = Object.entries(found.chart_choices).map(([name, values]) => [name, pick(name, values)]);
-  const charts = () => Object.fromEntries(picked.map(([name, one]) => [name, one.select.value]));
+  const straight = element("input", { type: "checkbox" });
+  const charts = () => ({ ...Object.fromEntries(picked.map(([name, one]) => [name, one.select.value])), straight: straight.checked ? 1 : "" });
   const source = () => "report?" + query({ session, before: chosenBefore.select.value, norms: chosenNorms.select.value, language, trend: trend.checked ? 1 : "", ...charts() });
   const show = () => { frame.contentWindow.location.replace(source()); }; // no step of its own for back
   for (const one of [chosenBefore, chosenNorms, ...picked.map(([, one]) => one)]) one.select.onchange = () => { show(); link(); };
   trend.onchange = () => show();
+  straight.onchange = () => { show(); link(); };
   const take = (norms) => {
     if (![...chosenNorms.select.options].some((one) => one.value === norms)) chosenNorms.select.append(new Option(norms, norms));
     chosenNorms.select.value = norms;
@@ -42,7 +44,7 @@ async function sessionReport(session, act) {
   const curves = ["csv", "parquet"].map((kind) => [kind, keep("", `${fileName(session)}-curves.${kind}`, kind.toUpperCase())]);
   const link = () => { for (const [kind, one] of curves) one.href = "report/curves?" + query({ session, as: kind, ...charts() }); };
   link();
-  act.dialog(session, frame, [...beside(found.previous, "previous_report"), ...beside(found.next, "next_report"), chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), build, load, print, save, ...curves.map(([, one]) => one)]);
+  act.dialog(session, frame, [...beside(found.previous, "previous_report"), ...beside(found.next, "next_report"), chosenBefore.label, ...(several ? [element("label", {}, trend, " " + word("all_visits"))] : []), chosenNorms.label, ...picked.map(([, one]) => one.label), element("label", {}, straight, " " + word("straight_only")), build, load, print, save, ...curves.map(([, one]) => one)]);
   show();
 }
 

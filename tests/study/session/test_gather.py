@@ -12,8 +12,10 @@ from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, Trial
 from mbkf.io.verdict import Reason, Verdict
 from mbkf.study.batch.inputs import RECORD, write_record
 from mbkf.study.session.gather import results_in, session_from, session_of, trial_summary
+from mbkf.trial.gait import cycles
 from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.summary import summarise
+from mbkf.viz.sentences import said
 from tests.recordings import recorded
 from tests.study.session.sessions import session, walks
 
@@ -116,3 +118,22 @@ def test_results_are_found_in_folders_and_read(tmp_path):
         results_in(tmp_path / "P1" / "monday" / "nothing")
     with pytest.raises(InvalidInput, match="no trial to report on"):
         session_from(found[1:], "x", SessionNotes(trials={"walk 1": TrialNotes(excluded="fell")}))
+
+
+def test_cycles_of_a_turn_are_left_out_on_demand_and_counted(tmp_path, monkeypatch):
+    (r,) = walks(1)
+    write_reconstruction(r, summarise(r), tmp_path)
+    whole = len(find_gait(r).cycles)
+    left = len(find_gait(r).of(1))
+    monkeypatch.setattr(cycles, "turned_deg", lambda _, cycle: 20.0 * cycle.side)
+    found = session_from([tmp_path], "x", straight=True)
+    assert [len(side.cycles) for side in found.gaits[0].sides] == [whole - left, 0]
+    remark = f"{left} of {whole} gait cycles left out: the pelvis turns by more than 15° in them"
+    assert found.trials[0].remarks[-1] == remark
+    assert (
+        said(remark, "es")
+        == f"{left} de {whole} ciclos de marcha omitidos: la pelvis gira más de 15° en ellos"
+    )
+    monkeypatch.setattr(cycles, "turned_deg", lambda *_: -20.0)
+    assert session_from([tmp_path], "x", straight=True).gaits == ()
+    assert remark not in session_from([tmp_path], "x").trials[0].remarks

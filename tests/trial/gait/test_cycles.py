@@ -5,8 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.trial.gait.cycles import Cycle, belt_velocity, cycles_of, find_gait, over_cycle
-from mbkf.trial.gait.events import FeetInMotion, FootEvents, plain_found
+from mbkf.trial.gait import cycles
+from mbkf.trial.gait.cycles import (
+    STRAIGHT_DEG,
+    Cycle,
+    belt_velocity,
+    cycles_of,
+    find_gait,
+    over_cycle,
+    turned_deg,
+)
+from mbkf.trial.gait.events import FeetInMotion, FootEvents, feet_in_motion, plain_found
 from tests.dynamics import trial
 from tests.motions import assert_near
 from tests.recordings import walk, walker
@@ -151,3 +160,26 @@ def test_support_that_nobody_knows_is_told_as_such():
     gait = find_gait(walk(), told)
     assert gait.of(0) and not gait.of(1), "without toe-offs the left foot has no cycle"
     assert np.isnan(named(gait)["Double support"][0]).all()
+
+
+def test_a_pelvis_turns_by_the_angle_between_both_strikes():
+    times = np.linspace(0.0, 3.0, 301)
+    yaw = np.deg2rad(170.0 + 40.0 * times)
+    forward = np.column_stack([np.cos(yaw), np.sin(yaw)])
+    forward[95:130] = np.nan
+    feet = replace(feet_in_motion(walk()), times_s=times, forward=forward)
+    (first, second) = cycles_of((RIGHT, LEFT), 0)
+    assert turned_deg(feet, first) == pytest.approx(40.0) == turned_deg(feet, second)
+    assert turned_deg(replace(feet, forward=np.full_like(forward, np.nan)), first) == 0.0
+
+
+def test_straight_cycles_stay_and_those_of_a_turn_are_left_out(monkeypatch):
+    feet, whole = feet_in_motion(walk()), find_gait(walk())
+    assert find_gait(walk(), straight=True).cycles == whole.cycles
+    last = max(cycle.start_s for cycle in whole.cycles)
+    for beyond, stays in ((1.0, False), (-1.0, True)):
+        yaw = np.deg2rad(STRAIGHT_DEG + beyond) * (feet.times_s > last + 0.1)
+        turning = replace(feet, forward=np.column_stack([np.cos(yaw), np.sin(yaw)]))
+        monkeypatch.setattr(cycles, "feet_in_motion", lambda _, made=turning: made)
+        found = {cycle.start_s for cycle in find_gait(walk(), straight=True).cycles}
+        assert (last in found) is stays and min(one.start_s for one in whole.cycles) in found
