@@ -79,6 +79,12 @@ class Visit:
         born, seen = date.fromisoformat(self.birth_date), date.fromisoformat(self.date)
         return seen.year - born.year - ((seen.month, seen.day) < (born.month, born.day))
 
+    @property
+    def fault(self) -> str:
+        """The reason for which the days exclude each other; empty where they do not."""
+        wrong = bool(self.date) and self.birth_date > self.date
+        return f"birth_date {self.birth_date} lies after date {self.date}" if wrong else ""
+
     def within(self, above: Visit) -> Visit:
         """This visit with the entries of the folder above it where it states no own ones."""
         own = {one: getattr(self, one) or getattr(above, one) for one in _TEXTS}
@@ -108,8 +114,8 @@ def visit_of(read: Entries, own: Mapping[str, object]) -> Visit:
         read.get(_CLINICIAN) or "",
         {key: _own(key, value, read) for key, value in own.items()},
     )
-    if found.date and found.birth_date > found.date:
-        raise read.fault(f"birth_date {found.birth_date} lies after date {found.date}", "birth_date")
+    if found.fault:
+        raise read.fault(found.fault, "birth_date")
     return found
 
 

@@ -203,21 +203,22 @@ def _trials(
     trials = []
     for one in found.persons:
         person, moving = _person(root, place, one, stated, found)
-        trials += [
-            Trial(person, path, forces, folder_name(path.stem), stated.trial(path.stem).events)
-            for path, forces in moving
-        ]
+        trials += [_trial(person, one, stated) for one in moving]
     if found.unknown:
         files, persons = PersonFiles("", found.unknown), dict.fromkeys(trial.person for trial in trials)
         lost, moving = _person(root, place, files, stated, FolderPersons((files,)))
         hosts = tuple(replace(one, unsorted=()) for one in persons)
         trials = [replace(one, person=replace(one.person, unsorted=())) for one in trials]
         lost = replace(lost, mass_kg=None, height_m=None, subject=None, unsorted=tuple(moving), hosts=hosts)
-        trials += [
-            Trial(lost, path, forces, folder_name(path.stem), stated.trial(path.stem).events)
-            for path, forces in moving
-        ]
+        trials += [_trial(lost, one, stated) for one in moving]
     return trials
+
+
+def _trial(person: Person, files: Files, stated: SessionNotes) -> Trial:
+    """A trial with what the session file states about it."""
+    own, name = stated.trial(files.path.stem), folder_name(files.path.stem)
+    condition = own.condition or stated.visit.condition
+    return Trial(person, files.path, files.forces, name, own.events, condition=condition)
 
 
 def _persons_in(captures: Sequence[Path], stated: SessionNotes) -> FolderPersons:
@@ -375,6 +376,8 @@ def stated_of(root: Path, place: Path) -> SessionNotes:
             )
         elif folder == place:
             found = replace(found, trials={})
+        if found.visit.fault:
+            raise FileFormatError(file, found.visit.fault)
     return found
 
 

@@ -94,6 +94,7 @@ class Trial:
         name: Its folder's name among the person's trials.
         events: Strikes and toe-offs set by a person; None: those that are found.
         fault: Reason for which it cannot be done, such as a damaged row; empty without.
+        condition: Condition of walking, as stated; empty without.
     """
 
     person: Person
@@ -102,6 +103,7 @@ class Trial:
     name: str = ""
     events: tuple[FootEvent, ...] | None = None
     fault: str = ""
+    condition: str = ""
 
     @property
     def place(self) -> Path:

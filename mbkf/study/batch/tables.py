@@ -37,12 +37,13 @@ OWN = pa.schema(
         ("peak_memory_mb", pa.float64()),
         ("folder", pa.string()),
         ("person_doubts", pa.string()),
+        ("condition", pa.string()),
     ]
 )
 """Columns of every trial. status: done, unchanged (done before, from the same) or failed, and then why. seconds,
 peak_memory_mb: of the worker. folder: of the results, in the batch's folder. person_doubts: about the scaled person,
-empty without any. The other columns are those of summary.json, with a dot between the keys of its tables; lists stand
-as JSON."""
+empty without any. condition: of walking, as session.toml states it. The other columns are those of summary.json, with
+a dot between the keys of its tables; lists stand as JSON."""
 
 TABLES = ("summary.parquet", "summary.csv", "curves.parquet", "curves.csv")
 """Files in the batch's folder."""
@@ -108,6 +109,7 @@ def _rows(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> list[Row]:
             "peak_memory_mb": outcome.peak_memory_mb,
             "folder": trial.place.as_posix(),
             "person_doubts": outcome.doubts,
+            "condition": trial.condition,
         }
         rows.append({**dict(_flat(_summary(trial, outcome, out))), **row})
     return rows

@@ -268,3 +268,20 @@ def test_the_person_of_one_session_is_found_without_moving_trials_and_not_taken_
     (tmp_path / "empty").mkdir()
     with pytest.raises(InvalidInput, match="name a session's folder"):
         person_of_folder(tmp_path / "empty")
+
+
+def test_conditions_are_those_of_the_trial_else_of_the_visit(tmp_path):
+    made(tmp_path, "P1/w1.c3d", "P1/w2.c3d")
+    text = '[visit]\ncondition = "barefoot"\n[trial.w2]\ncondition = "orthosis"\n'
+    (tmp_path / "P1" / "session.toml").write_text(text, encoding="utf-8")
+    assert [one.condition for one in plan_of_folder(tmp_path).trials] == ["barefoot", "orthosis"]
+
+
+@pytest.mark.parametrize(("born", "faulty"), [("2025-04-01", True), ("2025-03-31", False)])
+def test_a_birth_after_the_visit_is_refused_though_two_files_state_them(tmp_path, born, faulty):
+    made(tmp_path, "P1/monday/walk.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(f"[visit]\nbirth_date = {born}\n", encoding="utf-8")
+    file = tmp_path / "P1" / "monday" / "session.toml"
+    file.write_text("[visit]\ndate = 2025-03-31\n", encoding="utf-8")
+    (trial,) = plan_of_folder(tmp_path).trials
+    assert trial.fault == (f"{file}: birth_date {born} lies after date 2025-03-31" if faulty else "")

@@ -29,7 +29,7 @@ SUMMARIES = (
 @pytest.fixture
 def made(tmp_path):
     """Three trials done and one that failed, each with two rows of curves."""
-    trials = [Trial(Person(f"P{k}"), tmp_path / f"walk{k}.c3d") for k in range(4)]
+    trials = [Trial(Person(f"P{k}"), tmp_path / f"walk{k}.c3d", condition="aid" * k) for k in range(4)]
     for trial, summary in zip(trials, SUMMARIES, strict=False):
         folder = tmp_path / trial.place
         folder.mkdir(parents=True)
@@ -52,6 +52,7 @@ def test_a_row_has_all_of_its_summary(made, rows, monkeypatch):
     assert (second["lag"], second["mixed"], third["mixed"]) == ("none", "3", "three")
     assert third["seconds"] == 1.5, "a summary does not change what is told of the worker"
     assert (last["reason"], last["mass_kg"], last["folder"]) == ("cut short", None, "P3/walk3")
+    assert [row["condition"] for row in found[:2]] == ["", "aid"]
     assert "x" not in first and "truth" not in first and "nis.law" not in first
 
 
