@@ -104,7 +104,13 @@ def _imported(out: Path, name: str, text: str | None) -> Norms:
 
 
 def wide_table(title: str, mean: Array, sd: Array) -> str:
-    """A wide table with semicolons and decimal commas, every 2 % of the cycle."""
+    """A wide table of norms with semicolons and decimal commas, every 2 % of the cycle.
+
+    Args:
+        title: Of the curve, with its unit.
+        mean: (101,) its mean.
+        sd: (101,) its standard deviation.
+    """
     percent = np.arange(0, 101, 2)
     rows = [
         ";".join(f"{one:.6f}" for one in row).replace(".", ",")

@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from mbkf.app.failures import CONFLICT, Refused
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
+from mbkf.io.atomic import replacing
 from mbkf.io.norm_files.raw import RawNorms
 from mbkf.io.norm_files.read import SUFFIXES, read_foreign_norms
 from mbkf.io.norms import Span, write_norms
@@ -85,7 +86,8 @@ def _read(name: str, content: bytes) -> RawNorms:
         )
     with TemporaryDirectory() as folder:
         path = Path(folder, plain)
-        path.write_bytes(content)
+        with replacing(path) as partial:
+            partial.write_bytes(content)
         return read_foreign_norms(path)
 
 
