@@ -21,7 +21,7 @@ from benchmarks.live import lost
 from benchmarks.live.runs import COMPARED, Run, apart, difference, play
 from benchmarks.parts import part_rows
 from benchmarks.robustness import stream_faults
-from benchmarks.streams.clients import client_rows
+from benchmarks.streams.clients import ROWS, client_rows
 from benchmarks.streams.faults import FAULTS
 from benchmarks.streams.scenes import MANY, belt_walk
 from mbkf.io.capture import read_capture
@@ -66,8 +66,8 @@ def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
             yield Check(f"{trial.name}: difference from the recorded C3D file", apart, SINGLE, "<=")
         yield from latency(trial.name, found)
     yield from fault_rows(context, protocol)
-    if protocol == "qualisys":
-        yield from client_rows(context)
+    if protocol in ROWS:
+        yield from client_rows(context, protocol)
 
 
 def recorded_difference(found: Run, file: Path) -> float:

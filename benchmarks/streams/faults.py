@@ -116,5 +116,55 @@ QUALISYS: dict[str, Fault] = {
     "bytes that are no packet": _unreadable,
 }
 
-FAULTS: dict[str, dict[str, Fault]] = {"udp": SHARED | UDP, "qualisys": SHARED | QUALISYS}
+
+def _half_object(rng: np.random.Generator) -> bytes:
+    """Objects the last of which ends too early."""
+    head = struct.pack("<III", 5, 4, int(rng.integers(0, 10**6)))
+    cut = struct.pack("<II", int(rng.choice([2, 6, 7, 10, 20])), 500)
+    return head + cut + rng.bytes(int(rng.integers(0, 400)))
+
+
+def _claiming_object(rng: np.random.Generator) -> bytes:
+    """Objects whose counts are those of a million things, without a frame."""
+    claims = struct.pack("<8I", *[10**6] * 8)
+    return struct.pack("<II", int(rng.choice([2, 4, 6, 7, 10, 11, 12, 100004])), len(claims)) + claims
+
+
+def _garbage_object(rng: np.random.Generator) -> bytes:
+    data = rng.bytes(int(rng.integers(0, 900)))
+    return struct.pack("<II", int(rng.choice([3, 6, 7, 10, 11, 12])), len(data)) + data
+
+
+def _foreign_object(rng: np.random.Generator) -> bytes:
+    data = rng.bytes(int(rng.integers(0, 200)))
+    return struct.pack("<II", int(rng.choice([14, 16, 22, 26, 42, 100003, 99999])), len(data)) + data
+
+
+def _acts(first: str, back: str) -> Fault:
+    """Two acts of the wire, at the fault's begin and end."""
+
+    def fault(s: Schedule) -> None:
+        s.act(s.begin, first)
+        s.act(s.end, back)
+        s.whole = False
+
+    return fault
+
+
+VICON: dict[str, Fault] = {
+    "half packets": _packets(_half_object),
+    "objects that claim a million things": _packets(_claiming_object),
+    "objects of garbage": _packets(_garbage_object),
+    "objects of other types": _packets(_foreign_object),
+    "markers renamed for a while": _acts("rename", "rename_back"),
+    "axis that points up changes for a while": _acts("turn_world", "turn_back"),
+    "rate stated otherwise for a while": _acts("halve_rate", "rate_back"),
+    "bytes that are no packet": _unreadable,
+}
+
+FAULTS: dict[str, dict[str, Fault]] = {
+    "udp": SHARED | UDP,
+    "qualisys": SHARED | QUALISYS,
+    "vicon": SHARED | VICON,
+}
 """Faults by protocol and name."""

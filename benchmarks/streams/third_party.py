@@ -2,8 +2,11 @@
 
     PYTHON third_party.py qtm-rt PORT FRAMES
     PYTHON third_party.py motioncapture ADDRESS FRAMES
+    PYTHON third_party.py motioncapture-vicon ADDRESS FRAMES
+    PYTHON third_party.py pyvicon ADDRESS FRAMES
 
-It needs neither mbkf nor this package, and prints one line of JSON. Clients: qtm-rt 3 (MIT), motioncapture 1.1 (MIT).
+It needs neither mbkf nor this package, and prints one line of JSON. Clients: qtm-rt 3 (MIT), motioncapture 1.1 (MIT),
+pyvicon-datastream 0.2.4 (MIT), the DataStream SDK's own client.
 """
 
 from __future__ import annotations
@@ -14,6 +17,8 @@ import sys
 import threading
 import time
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 PATIENCE_S = 20.0
@@ -56,11 +61,17 @@ def qtm_rt(port: str, frames: int) -> dict[str, object]:
     return asyncio.run(follow())
 
 
-def motioncapture(address: str, frames: int) -> dict[str, object]:
-    """Rigid bodies as motioncapture's back end for Qualisys reads them."""
+def motioncapture(address: str, frames: int, back_end: str = "qualisys") -> dict[str, object]:
+    """Rigid bodies as one of motioncapture's back ends reads them.
+
+    Args:
+        address: Address of the server.
+        frames: How many frames are read.
+        back_end: Its name.
+    """
     import motioncapture as library  # type: ignore[import-not-found, unused-ignore]
 
-    client = library.connect("qualisys", {"hostname": address})
+    client = library.connect(back_end, {"hostname": address})
     seen = []
     for _ in range(frames):
         client.waitForNextFrame()
@@ -69,13 +80,43 @@ def motioncapture(address: str, frames: int) -> dict[str, object]:
     return {"frames": seen}
 
 
+def pyvicon(address: str, frames: int) -> dict[str, object]:
+    """Markers as the DataStream SDK's client reads them; it counts frames from 1."""
+    import pyvicon_datastream as library  # type: ignore[import-not-found, unused-ignore]
+
+    client = library.PyViconDatastream()
+    client.connect(address)
+    client.enable_marker_data()
+    client.set_stream_mode(library.StreamMode.ServerPush)
+    seen: list[dict[str, object]] = []
+    while len(seen) < frames:
+        if client.get_frame() != library.Result.Success or not client.get_subject_count():
+            continue
+        name = client.get_subject_name(0)
+        markers = [client.get_marker_name(name, k) for k in range(client.get_marker_count(name))]
+        places = {one: client.get_marker_global_translation(name, one) for one in markers}
+        plain = {one: None if at is None else [float(x) for x in at] for one, at in places.items()}
+        seen.append({"frame": client.get_frame_number() - 1, "markers": plain})
+    return {"frames": seen, "rate": client.get_frame_rate()}
+
+
+CLIENTS: dict[str, Callable[[str, int], dict[str, object]]] = {
+    "qtm-rt": qtm_rt,
+    "motioncapture": motioncapture,
+    "motioncapture-vicon": partial(motioncapture, back_end="vicon"),
+    "pyvicon": pyvicon,
+}
+
+
 def main(words: list[str]) -> None:
     """Reads so many frames and prints them."""
     client, place, frames = words
     threading.Thread(target=_give_up, daemon=True).start()
-    print(
-        json.dumps({"qtm-rt": qtm_rt, "motioncapture": motioncapture}[client](place, int(frames))), flush=True
-    )
+    try:
+        found = CLIENTS[client](place, int(frames))
+    except ImportError as error:
+        found = {"missing": str(error)}
+    print(json.dumps(found), flush=True)
 
 
 def _give_up() -> None:

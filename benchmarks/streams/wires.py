@@ -12,6 +12,7 @@ import numpy as np
 from benchmarks.robustness.stream_schedule import Sent
 from benchmarks.robustness.stream_wire import HERE, STRANGER, Wire, with_other_markers
 from benchmarks.streams.qualisys_server import CAMERAS_CHANGED, QtmServer
+from benchmarks.streams.vicon_wire import ViconWire
 from mbkf.stream.played import Played, PlayedFrame
 from mbkf.stream.qualisys.source import QualisysSource
 from mbkf.stream.source import FrameSource, PlateSamples
@@ -191,5 +192,5 @@ class QualisysWire:
         return server.data(shown, components, number)
 
 
-WIRES: dict[str, Callable[[Played], Wire]] = {"udp": UdpWire, "qualisys": QualisysWire}
+WIRES: dict[str, Callable[[Played], Wire]] = {"udp": UdpWire, "qualisys": QualisysWire, "vicon": ViconWire}
 """Players by protocol."""

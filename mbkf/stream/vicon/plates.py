@@ -3,7 +3,7 @@
 DataStream's headers state forces in N and axes of the plate. Whether they are those on the body or on the plate, in
 which unit moments are, and about which point, follows from the first load: the floor presses upwards, and the moment
 gives the centre of pressure that is stated beside it, from the plate's origin, in metres (the SDK's own client) or
-millimetres (its headers).
+millimetres (its headers). Until then plates count as unloaded.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ ORIGIN, SENSOR = "the plate's origin", "the transducers' middle"
 class Convention(NamedTuple):
     """Sign of the force, unit of moments, and the point that they are about."""
 
-    sign: float = 1.0
-    unit: str = "N m"
-    about: str = ORIGIN
+    sign: float
+    unit: str
+    about: str
 
     @property
     def sentence(self) -> str:
@@ -70,7 +70,7 @@ class PlateForceReader:
         """
         whole = {(one.device, one.frame): one for one in moments}
         beside = {(one.device, one.frame): one for one in centres}
-        found: list[tuple[int, int, Array]] = []
+        known: list[tuple[int, int, Array]] = []
         for one in forces:
             k = next((k for k, plate in enumerate(self._plates) if plate.device == one.device), None)
             moment = whole.get((one.device, one.frame))
@@ -82,10 +82,8 @@ class PlateForceReader:
             centre = beside.get((one.device, one.frame))
             if centre is not None and len(centre.values) == len(own):
                 self._decide(own, centre.values.astype(float), self._plates[k])
-            found.append(
-                (k, one.frame * len(own), self._wrench(own, self._plates[k], self.convention or Convention()))
-            )
-        return self._together(found)
+            known.append((k, one.frame * len(own), own))
+        return self._together([(k, at, self._decided(own, self._plates[k])) for k, at, own in known])
 
     def _together(self, found: Sequence[tuple[int, int, Array]]) -> PlateSamples:
         if not found:
@@ -98,6 +96,13 @@ class PlateForceReader:
         for k, at, rows in found:
             wrench[at - first : at - first + len(rows), k] = rows
         return PlateSamples(np.arange(first, last, dtype=np.int64), wrench)
+
+    def _decided(self, own: Array, plate: ViconPlate) -> Array:
+        """(S, 6) wrench by the decided convention; before the first load a plate is unloaded, or not known."""
+        if self.convention is not None:
+            return self._wrench(own, plate, self.convention)
+        unloaded = np.abs(own[:, :3] @ plate.rotation[2]) < LOADED_N
+        return np.where(unloaded[:, None], 0.0, np.full((len(own), 6), np.nan))
 
     def _wrench(self, own: Array, plate: ViconPlate, convention: Convention) -> Array:
         """(S, 6) force of the plate on the body and moment about the plate's origin, world axes."""

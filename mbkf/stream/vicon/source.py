@@ -82,6 +82,8 @@ class ViconSource:
                 described = self._describable()
                 if described is not None:
                     self._begin(described)
+                    self._frame(found)  # the person may stand on a plate, which decides its convention
+                    self._before = None
                     return described.stream
             elif left <= 0.0:
                 return None
@@ -186,8 +188,10 @@ class ViconSource:
         found = {kind: one.blocks[kind] for kind in objects.STATIC if kind in one.blocks}
         changed = {kind: data for kind, data in found.items() if self._objects.get(kind) != data}
         self._objects |= changed
+        self._frames += objects.FRAME_INFO in one.blocks
+        if self._described is not None and not changed:
+            return False
         try:
-            self._frames += objects.FRAME_INFO in one.blocks
             for data in one.blocks.get(objects.FORCE, ()):
                 samples = objects.read_samples(data)
                 self._forces.setdefault(samples.device, len(samples.values))

@@ -7,7 +7,7 @@ from benchmarks import streams
 from benchmarks.checks import Context
 from benchmarks.live.runs import Run, wire_of
 from benchmarks.robustness.stream_schedule import Schedule
-from benchmarks.streams.clients import VARIABLE, client_rows
+from benchmarks.streams.clients import ROWS, VARIABLE, client_rows
 from benchmarks.streams.faults import FAULTS
 from benchmarks.streams.wires import WIRES
 from mbkf.stream.played import played
@@ -54,10 +54,11 @@ def test_a_wire_and_its_source_know_each_other(protocol):
     source.close()
 
 
-def test_clients_that_are_not_installed_leave_their_rows_out(tmp_path, monkeypatch):
+@pytest.mark.parametrize("protocol", ROWS)
+def test_clients_that_are_not_installed_leave_their_rows_out(protocol, tmp_path, monkeypatch):
     monkeypatch.delenv(VARIABLE, raising=False)
-    rows = list(client_rows(Context(None, tmp_path, True, None, None, 0, ())))
-    assert len(rows) == 3 and all(row.left_out for row in rows)
+    rows = list(client_rows(Context(None, tmp_path, True, None, None, 0, ()), protocol))
+    assert [row.name for row in rows] == list(ROWS[protocol]) and all(row.left_out for row in rows)
 
 
 def test_an_idle_process_is_subtracted(tmp_path):

@@ -41,10 +41,21 @@ def test_every_convention_is_found_by_the_first_load(sign, newton_metres, metres
 
 def test_an_unloaded_plate_decides_nothing():
     reader = PlateForceReader([PLATE])
-    reader.samples(*sent(0.05 * WRENCH, -1.0))
-    assert reader.convention is None
+    quiet = reader.samples(*sent(0.05 * WRENCH, -1.0))
+    assert reader.convention is None and not quiet.wrench.any()
+    forces, moments, _ = sent(WRENCH, -1.0)
+    assert np.isnan(reader.samples(forces, moments, []).wrench).all()
     reader.samples(*sent(WRENCH, -1.0))
     assert reader.convention.sign == -1.0
+
+
+def test_the_first_load_counts_for_all_plates_of_its_packet():
+    other = ViconPlate(8, TURN, ORIGIN_M, SENSOR_M, 1_350_000, 2)
+    reader = PlateForceReader([PLATE, other])
+    quiet, loaded = sent(0.05 * WRENCH, -1.0, 1e-3), sent(WRENCH, -1.0, 1e-3)
+    both = [[one[0], DeviceSamples(3, 8, two[0].values)] for one, two in zip(quiet, loaded, strict=True)]
+    found = reader.samples(*both)
+    np.testing.assert_allclose(found.wrench, np.tile([0.05 * WRENCH, WRENCH], (2, 1, 1)), rtol=1e-9)
 
 
 def test_samples_without_their_moments_or_of_other_devices_are_left_out():
@@ -63,5 +74,5 @@ def test_plates_whose_counts_have_nothing_in_common():
     one, far = sent(), sent(frame=5000)
     forces = [*one[0], DeviceSamples(5000, 8, far[0][0].values)]
     moments = [*one[1], DeviceSamples(5000, 8, far[1][0].values)]
-    found = reader.samples(forces, moments, [])
+    found = reader.samples(forces, moments, one[2])
     assert found.index.tolist() == [6, 7] and np.isnan(found.wrench[:, 1]).all()

@@ -150,7 +150,7 @@ def test_bytes_that_are_no_packet_end_the_connection(laboratory, monkeypatch):
 
     def told():
         one.source.read(0.01)
-        news.extend(sentence for _, sentence in one.source.news())
+        news.extend(sentence for kind, sentence in one.source.news() if kind == "connection")
         return len(news) == 2
 
     until(told)
