@@ -29,6 +29,9 @@ ENDED = ".running span:has-text('Ended'), .running span:has-text('Done in')"
 
 BROKEN = "broken"
 
+REHEARSED, REHEARSED_S = "rehearsed", 40.0
+"""A capture that is replayed live; it is added after the calculation."""
+
 
 def page_rows(out: Path, seed: int = 0) -> Iterator[Check]:
     """Rows of all.
@@ -46,6 +49,8 @@ def page_rows(out: Path, seed: int = 0) -> Iterator[Check]:
         user.choose_folder(source)
         user.wait("tbody tr")
         user.click("button.main")
+        user.wait(".under-way progress")
+        yield _serious(user, "session that is calculated")
         shares = _shares(user)
         yield Check("a share of frames is seen inside a trial; different shares", len(shares), 2, ">=")
         yield Check("failed trial: the session looks green", user.page.locator(GREEN).count(), 0, "<=")
@@ -54,6 +59,7 @@ def page_rows(out: Path, seed: int = 0) -> Iterator[Check]:
         yield Check("new user, one session: clicks from folder to report", user.clicks, CLICKS, "<=")
         user.page.keyboard.press("Escape")
         user.page.locator("dialog").wait_for(state="detached")
+        yield from _live(user, lab / "Ana", seed)
         yield from _undone(user, lab)
         yield from _pages(user)
         yield Check("errors in the page", len(user.troubles), 0, "<=")
@@ -88,12 +94,35 @@ def _accessible(user: Visit, name: str) -> Iterator[Check]:
         user.page.wait_for_timeout(300.0)
         frames = user.page.frames
         if not size:
-            serious = sum(len(findings(frame)) for frame in frames)
-            yield Check(f"axe-core, {name}: serious or critical findings", serious, 0, "<=")
+            yield _serious(user, name)
             continue
         wide = max(frame.evaluate("document.documentElement.scrollWidth - innerWidth") for frame in frames)
         yield Check(f"{size}, {name}: width beyond the window, px", wide, 0, "<=")
     user.page.set_viewport_size(SIZE)
+
+
+def _serious(user: Visit, name: str) -> Check:
+    serious = sum(len(findings(frame)) for frame in user.page.frames)
+    return Check(f"axe-core, {name}: serious or critical findings", serious, 0, "<=")
+
+
+def _live(user: Visit, session: Path, seed: int) -> Iterator[Check]:
+    """A live run that replays a capture, while its page is connected."""
+    _, lasting = synthesise("squat", seconds=REHEARSED_S, rate_hz=50.0, seed=seed)
+    write_c3d(lasting.trial, session / f"{REHEARSED}.c3d")
+    user.page.reload()
+    user.wait("tbody tr")
+    user.page.locator("button.live").click()
+    user.page.select_option("select[name=source]", "file")
+    user.page.select_option("select[name=trial]", REHEARSED)
+    user.page.locator("dialog button.main").click()
+    live = user.page.frame_locator("dialog iframe").frame_locator("iframe")
+    live.locator("#state", has_text="live").wait_for()
+    yield _serious(user, "live page that is connected")
+    user.page.locator("dialog .stop").click()
+    user.page.locator("dialog .told", has_text="Recorded as").wait_for()
+    user.page.keyboard.press("Escape")
+    user.page.locator("dialog").wait_for(state="detached")
 
 
 def _pages(user: Visit) -> Iterator[Check]:
