@@ -75,7 +75,12 @@ class FootLoads:
 
 
 def assign_feet(
-    model: Body, q: Array, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
+    model: Body,
+    q: Array,
+    times_s: Array,
+    rate_hz: float,
+    plates: tuple[PlateReadings, ...],
+    wrench: Array | None = None,
 ) -> FootLoads:
     """Assigns plate readings to feet by the distance of the centre of pressure from each sole.
 
@@ -85,9 +90,10 @@ def assign_feet(
         times_s: (T,) times of the frames.
         rate_hz: Frame rate.
         plates: The plates of the trial.
+        wrench: (T, P, 6) their wrenches (:func:`mbkf.sensors.contact.plates.plate_wrenches`), where they are known.
     """
     soles, areas = sole_points(model, q), PlateAreas(plates)
-    wrench = plate_wrenches(plates, times_s, rate_hz)
+    wrench = plate_wrenches(plates, times_s, rate_hz) if wrench is None else wrench.copy()
     recorded = np.asarray(~np.isnan(wrench).any(axis=2))
     wrench[~recorded] = 0.0
     pressure = np.full((len(q), len(plates), 3), np.nan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -23,6 +24,9 @@ WINDOW_S = 0.1
 BRIDGE_S = 0.1
 """A shorter stretch of frames in which a foot seems to stand beside the plates is one of landing or leaving. It counts,
 since unequal clocks show nowhere else."""
+
+MATCHES = 0.25
+"""Frames count in which the plates' vertical force is that of the motion to this share, up to one gain."""
 
 
 @dataclass(frozen=True)
@@ -74,9 +78,9 @@ class Evidence:
             plates: The plates.
         """
         body = WholeBody.of(model, motion.q, motion.v)
-        loads = assign_feet(model, motion.q, times_s, rate_hz, tuple(plates))
-        asked = body.missing_wrench(np.zeros_like(body.momentum), rate_hz, WINDOW_S)
         raw = plate_wrenches(tuple(plates), times_s, rate_hz)
+        loads = assign_feet(model, motion.q, times_s, rate_hz, tuple(plates), raw)
+        asked = body.missing_wrench(np.zeros_like(body.momentum), rate_hz, WINDOW_S)
         known = ~np.isnan(body.momentum).any(axis=1) & ~np.isnan(raw).any(axis=(1, 2)) & (len(plates) > 0)
         return cls(
             times_s,
@@ -97,7 +101,7 @@ class Evidence:
         """Weight of the mass that the body was given."""
         return self.mass_kg * GRAVITY_M_S2
 
-    @property
+    @cached_property
     def total(self) -> Array:
         """(T, 6) wrench of all plates together."""
         return np.asarray(self.given.sum(axis=1))
@@ -107,10 +111,20 @@ class Evidence:
         """(T,) accounted frames whose averaging window holds accounted frames only."""
         return self.known & self.accounted & ~dilated(~self.accounted, round(0.5 * WINDOW_S * self.rate_hz))
 
-    @property
+    @cached_property
     def known(self) -> BoolArray:
         """(T,) frames in which both sides are known."""
         return np.asarray(~np.isnan(self.asked[:, 0]) & ~np.isnan(self.given).any(axis=(1, 2)))
+
+    @cached_property
+    def carried(self) -> BoolArray:
+        """(T,) frames in which plates carry the force that the motion requires, up to one gain."""
+        asked, total = self.asked[:, 2], self.total[:, 2]
+        bears = self.known & (asked > 0.3 * self.weight_n) & (total > 0.3 * asked)
+        if not bears.any():
+            return bears
+        share = np.where(bears, total / np.where(bears, asked, 1.0), np.nan)
+        return np.asarray(bears & (np.abs(share / np.nanmedian(share) - 1.0) < MATCHES))
 
     def gives(self, plates: Sequence[PlateReadings]) -> Array:
         """(T, P, 6) :attr:`given` of other readings of the plates."""

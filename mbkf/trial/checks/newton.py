@@ -7,7 +7,6 @@ import numpy as np
 from mbkf.conventions import BoolArray
 from mbkf.io.findings import Finding, judged, not_judged
 from mbkf.trial.checks.evidence import Evidence
-from mbkf.trial.checks.orientation import carried
 
 FORCE, MOMENT = "force that plates lack", "moment that plates lack"
 
@@ -29,7 +28,7 @@ def newton_findings(evidence: Evidence) -> tuple[Finding, Finding]:
     """Root mean square of the missing force, % of body weight, and moment about the centre of mass, % of it times m."""
     clear, weight_n = evidence.clear, evidence.weight_n
     if not clear.any():
-        clear = carried(evidence)
+        clear = evidence.carried
     if clear.sum() < LEAST_S * evidence.rate_hz:
         why = "needs frames in which only feet on plates carry load"
         return (

@@ -13,7 +13,7 @@ from itertools import combinations
 from mbkf.io.findings import Finding
 from mbkf.io.records import PlateReadings
 from mbkf.trial.checks.evidence import Evidence
-from mbkf.trial.checks.orientation import TIMES_SD, better_fit, carried
+from mbkf.trial.checks.orientation import TIMES_SD, better_fit
 
 BOUND = 2.0
 """Misfit over that of exchanged plates from which these are right."""
@@ -29,7 +29,7 @@ def order_finding(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadin
     Args:
         evidence: Motion and plates.
     """
-    frames = carried(evidence)
+    frames = evidence.carried
     if not frames.any():
         return None, evidence.plates
     bears = evidence.given[frames, :, 2].mean(axis=0) / evidence.weight_n

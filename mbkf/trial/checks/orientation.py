@@ -44,9 +44,6 @@ NOISE_S = 0.1
 ALONE, BESIDE = 0.7, 0.25
 """A plate is judged while it carries the first share of the load; its axes, if it never does, the second share."""
 
-MATCHES = 0.25
-"""Frames count in which the plates' vertical force is that of the motion to this share, up to one gain."""
-
 LEAST_S = 0.2
 """Least duration of such frames."""
 
@@ -99,7 +96,7 @@ def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
 
 def _place_of_all(evidence: Evidence) -> Finding | None:
     """A finding on the place of all plates, if it is too far off."""
-    frames = carried(evidence)
+    frames = evidence.carried
     if len(evidence.plates) < 2 or frames.sum() < LEAST_S * evidence.rate_hz:
         return None
     total = evidence.total[frames]
@@ -195,21 +192,11 @@ def _ways() -> Iterator[Way]:
                 yield quarters, mirrored, " and ".join(words)
 
 
-def carried(evidence: Evidence) -> BoolArray:
-    """(T,) frames in which plates carry the force that the motion requires, up to one gain."""
-    asked, total = evidence.asked[:, 2], evidence.total[:, 2]
-    bears = evidence.known & (asked > 0.3 * evidence.weight_n) & (total > 0.3 * asked)
-    if not bears.any():
-        return bears
-    share = np.where(bears, total / np.where(bears, asked, 1.0), np.nan)
-    return bears & (np.abs(share / np.nanmedian(share) - 1.0) < MATCHES)
-
-
 def _bearing(evidence: Evidence, p: int, *shares: float) -> BoolArray | None:
     """(T,) frames in which plate ``p`` carries the first of the shares (both by default) that lasts; None else."""
     share = evidence.given[:, p, 2] / np.maximum(evidence.total[:, 2], 1.0)
     for least in shares or (ALONE, BESIDE):
-        frames = carried(evidence) & (share > least)
+        frames = evidence.carried & (share > least)
         if frames.sum() >= LEAST_S * evidence.rate_hz:
             return frames
     return None
@@ -217,7 +204,7 @@ def _bearing(evidence: Evidence, p: int, *shares: float) -> BoolArray | None:
 
 def _gain(evidence: Evidence) -> float:
     """Force of the plates over that of the motion, so that a wrong mass is not blamed on a plate."""
-    frames = carried(evidence)
+    frames = evidence.carried
     if not frames.any():
         return 1.0
     return float(evidence.total[frames, 2].sum() / evidence.asked[frames, 2].sum())
@@ -289,7 +276,7 @@ def _sums(evidence: Evidence, maps: Array) -> list[Array]:
 
 def _displaced_fit(evidence: Evidence) -> float:
     """Misfit of the plates over that of the best displacement of all of them together."""
-    frames, gain = carried(evidence), _gain(evidence)
+    frames, gain = evidence.carried, _gain(evidence)
     missing = (gain * evidence.asked - evidence.total)[frames]
     force, left, weight_n = evidence.total[frames, 2], missing.copy(), gain * evidence.weight_n
     left[:, 3:5] -= np.outer(force, force @ missing[:, 3:5]) / (force @ force)
@@ -303,7 +290,7 @@ def better_fit(evidence: Evidence, tried: Sequence[Array]) -> tuple[float, int |
         evidence: Motion and plates.
         tried: (T, 6) wrench of all plates together by each of the other readings.
     """
-    frames, gain = carried(evidence), _gain(evidence)
+    frames, gain = evidence.carried, _gain(evidence)
     if frames.sum() < LEAST_S * evidence.rate_hz:
         return 0.0, None
     asked, weight_n = gain * evidence.asked[frames], gain * evidence.weight_n

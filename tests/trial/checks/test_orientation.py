@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.trial.checks.orientation import axes_findings, carried, laid, place_findings, turned_with_room
+from mbkf.trial.checks.orientation import axes_findings, laid, place_findings, turned_with_room
 from tests.checked import evidence, plates
 
 
@@ -89,8 +89,8 @@ def test_frames_count_in_which_plates_carry_all():
     half = replace(
         given, given=np.where((np.arange(len(given.times_s)) < 50)[:, None, None], 0.4, 1.0) * given.given
     )
-    assert carried(given)[10:40].all()
-    assert not carried(half)[:40].any()
+    assert given.carried[10:40].all()
+    assert not half.carried[:40].any()
 
 
 @pytest.mark.parametrize("quarters", [1, 3])
