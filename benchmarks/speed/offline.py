@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.checks import Check, information
+from benchmarks.speed.commands import as_installed
 from benchmarks.speed.products import product_seconds
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
@@ -138,13 +139,14 @@ def _reconstructed(trial: Path, option: str) -> Taken:
     Raises:
         InvalidInput: It fails.
     """
-    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     out = trial.with_name(option.strip("-"))
     subject = trial.with_name("subject.toml")
     words = ("reconstruct", trial, "--subject", subject, option, "--out", out, "--overwrite")
     messages = out.with_suffix(".txt")
     with messages.open("w") as said:
-        child = subprocess.Popen([sys.executable, "-m", "mbkf", *words], stdout=said, stderr=said, env=kept)
+        child = subprocess.Popen(
+            [sys.executable, "-m", "mbkf", *words], stdout=said, stderr=said, env=as_installed()
+        )
         _, status, used = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
     if child.returncode:

@@ -54,12 +54,13 @@ def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> ND
     return np.asarray(dataset[()], dtype=dtype)
 
 
-def sealed(made: BytesIO, run_id: str = "") -> bytes:
-    """A file, made with ``userblock_size=USER_BLOCK``, with its seal and the run that it belongs to."""
-    content = made.getvalue()
+def sealed(made: BytesIO, run_id: str = "") -> memoryview:
+    """A file, made with ``userblock_size=USER_BLOCK``, with its seal and the run that it belongs to, in the same memory."""
+    content = made.getbuffer()
     body = content[USER_BLOCK:]
     run = RUN + run_id.encode() + b"\n" if run_id else b""
-    return (SEAL % (len(body), zlib.crc32(body)) + run).ljust(USER_BLOCK, b"\0") + body
+    content[:USER_BLOCK] = (SEAL % (len(body), zlib.crc32(body)) + run).ljust(USER_BLOCK, b"\0")
+    return content
 
 
 def run_of(path: Path) -> str:

@@ -129,8 +129,8 @@ def write_storage(table: Table, path: str | Path) -> None:
     with replacing_text(path) as file:
         file.write("\n".join(lines) + "\n")
         line = "\t".join(["%.10g", *["%.12g"] * len(table.names)]) + "\n"
-        for time_s, row in zip(table.times_s.tolist(), table.columns.tolist(), strict=True):
-            file.write(line % (time_s, *row))
+        for time_s, row in zip(table.times_s.tolist(), table.columns, strict=True):
+            file.write(line % (time_s, *row.tolist()))
 
 
 def _is_end(line: str) -> bool:

@@ -140,8 +140,8 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
         file.write("Frame#\tTime\t" + "\t\t\t".join(markers.names) + "\t\t\n")
         file.write("\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(count) for axis in "XYZ") + "\n\n")
         line = "\t".join(["%.6f"] * (3 * count)) + "\n"
-        for number, (time_s, row) in enumerate(zip(markers.times_s, table.tolist(), strict=True), start=1):
-            file.write(f"{number}\t{time_s:.8f}\t" + (line % tuple(row)).replace("nan", "NaN"))
+        for number, (time_s, row) in enumerate(zip(markers.times_s, table, strict=True), start=1):
+            file.write(f"{number}\t{time_s:.8f}\t" + (line % tuple(row.tolist())).replace("nan", "NaN"))
 
 
 def _file(path: Path) -> TextFile:
