@@ -55,7 +55,7 @@ def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> ND
 
 
 def sealed(made: BytesIO, run_id: str = "") -> memoryview:
-    """A file, made with ``userblock_size=USER_BLOCK``, with its seal and the run that it belongs to, in the same memory."""
+    """A file, made with ``userblock_size=USER_BLOCK``, with its seal and the run that it belongs to; in place."""
     content = made.getbuffer()
     body = content[USER_BLOCK:]
     run = RUN + run_id.encode() + b"\n" if run_id else b""
