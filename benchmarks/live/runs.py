@@ -93,7 +93,7 @@ class Wire(NamedTuple):
 
 def wire_of(protocol: str) -> Wire:
     """A stream of a protocol on this computer, with a name and a port of its own."""
-    port, replay = str(_free_port()), ("mbkf", "replay")
+    port, replay = str(free_port()), ("mbkf", "replay")
     if protocol == "lsl":
         name = f"mbkf-benchmark-{uuid.uuid4().hex[:8]}"
         return Wire(("--from", "lsl", "--stream", name), replay, ("--to", "lsl", "--name", name))
@@ -265,7 +265,8 @@ def follow_page(url: str) -> None:
         return
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """A port of this computer that nobody has."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
         one.bind(("127.0.0.1", 0))
         return int(one.getsockname()[1])

@@ -9,10 +9,17 @@ from benchmarks.live.runs import Run, wire_of
 from benchmarks.robustness.stream_schedule import Schedule
 from benchmarks.streams.clients import ROWS, VARIABLE, client_rows
 from benchmarks.streams.faults import FAULTS
+from benchmarks.streams.results_out import START_FRAMES, _of_json, _of_osc, latencies_ms
+from benchmarks.streams.scenes import MOTION, belt_walk
 from benchmarks.streams.wires import WIRES
+from mbkf.io.capture import read_capture
 from mbkf.stream.played import played
+from mbkf.stream.results.osc import OscBundles
+from mbkf.stream.results.values import ResultValues
+from mbkf.trial.synth import synthesise, write_folder
 from tests.captures import made_capture
 from tests.stream.reading import connected, read
+from tests.stream.results.test_websocket import MODEL, shown_frame
 from tests.waiting import until
 
 WALK = played(made_capture(140))
@@ -72,3 +79,23 @@ def test_each_protocol_has_a_receiver_and_a_sender():
     for protocol in ("lsl", "natnet", *FAULTS):
         wire = wire_of(protocol)
         assert wire.receive[1].startswith(protocol) and protocol in " ".join([*wire.send, *wire.send_options])
+
+
+def test_results_are_matched_with_the_frames_that_were_sent():
+    late = START_FRAMES
+    sent, found = {late - 1: 0.0, late: 1.0, late + 1: 2.0}, {late - 1: 5.0, late: 1.004, late + 2: 9.0}
+    np.testing.assert_allclose(latencies_ms(sent, found), [4.0])
+    frame = shown_frame(MODEL, 7)
+    values = ResultValues(MODEL)
+    assert _of_osc(OscBundles(values.names).bundle(frame, values.row(frame))) == 7
+    assert _of_osc(b"#bundle") is None and _of_json(b'{"names": []}') is None
+
+
+def test_more_markers_stand_beside_those_of_the_body(tmp_path):
+    subject, made = synthesise(MOTION, seconds=1.5, rate_hz=50.0)
+    write_folder(subject, made, tmp_path / "belt-1.5s-50Hz")
+    trial = belt_walk(tmp_path, 1.5, 50.0, markers=80)
+    found = read_capture(trial.path)
+    assert len(found.markers.names) == 80 and len(found.plates) == 2
+    assert found.markers.names[:36] == made.trial.markers.names
+    assert trial.seconds == pytest.approx(74 / 50) and not trial.unlabelled
