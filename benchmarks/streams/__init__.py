@@ -73,7 +73,7 @@ def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
 
 
 def recorded_difference(found: Run, file: Path) -> float:
-    """Largest difference of a run from the causal results of its recording, from a second on, but for the last frame.
+    """Largest difference of a run from the causal results of its recording, from two seconds on, but for the last frame.
 
     The file's plates begin with its first frame, half of whose samples the run has from before, and pelvis angles and
     moments depend on the direction of all frames; both are left out. Relative to the value where that is larger than
@@ -83,7 +83,7 @@ def recorded_difference(found: Run, file: Path) -> float:
     settings = ReconstructSettings(smooth=False, correct_markers=False)
     capture = read_capture(file, tare=False)
     again, run = reconstruct(capture, subject, settings=settings), read_reconstruction(found.folder)
-    part = slice(round(capture.markers.rate_hz), min(run.frames, again.frames) - 1)
+    part = slice(round(2.0 * capture.markers.rate_hz), min(run.frames, again.frames) - 1)
     names = [name for name in COMPARED if name not in ("angles", "moments")]
     return max(apart(getattr(run, name)[part], getattr(again, name)[part]) for name in names)
 
