@@ -73,7 +73,7 @@ def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
 
 
 def recorded_difference(found: Run, file: Path) -> float:
-    """Largest difference of a run from the causal results of its recording, from two seconds on, but for the last frame.
+    """Largest difference of a run from the causal results of its recording, from 2 s on, but for the last frame.
 
     The file's plates begin with its first frame, half of whose samples the run has from before, and pelvis angles and
     moments depend on the direction of all frames; both are left out. Relative to the value where that is larger than
