@@ -70,6 +70,7 @@ ELSEWHERE = {
     "numerics.later_frames.LinearStep.transition": "numerics/test_later_frames.py",
     "numerics.smoothing.BackwardPass.through_parts": "numerics/test_smoothing.py through_parts",
     "numerics.transition.DenseTransition.phi": "numerics/test_transition.py",
+    "numerics.rotations.exponential_and_left_jacobian": "numerics/test_rotations.py",
     "numerics.rotations.travel_by_turn": "numerics/test_rotations.py",
     "filters.record.Track.nis_by_kind": "trial/results/test_innovations.py nis_by_kind",
     "filters.record.Track.nis_readings_by_kind": "trial/results/test_innovations.py nis_readings_by_kind",

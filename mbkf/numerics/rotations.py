@@ -27,8 +27,8 @@ def skew(vectors: Array) -> Array:
 def exponential_and_left_jacobian(vectors: Array) -> tuple[Array, Array]:
     """Exp(θ) (N, 3, 3) and its left Jacobian J(θ) (N, 3, 3), for many rotation vectors θ (N, 3), rad.
 
-    Exp(θ) = I + [θ]ₓ J(θ) and J(θ) = I + a [θ]ₓ + b [θ]ₓ² (Barfoot 2017, eq. 7.77), a = (1 − cos θ)/θ²,
-    b = (θ − sin θ)/θ³.
+    Exp(θ) = I + [θ]ₓ J(θ), J(θ) = I + a [θ]ₓ + b [θ]ₓ², a = (1 − cos θ)/θ² and b = (θ − sin θ)/θ³ (T. Barfoot, State
+    Estimation for Robotics (2017), eq. 7.77).
     """
     square = (vectors**2).sum(axis=-1)
     angle = np.sqrt(square)
