@@ -30,6 +30,9 @@ SIZE = {"width": 1280, "height": 760}
 LIVE_S = 8.0
 """Length of the stream, whose last frame the picture shows."""
 
+FOLLOWS_MS = 1000.0
+"""Time in which the view comes to rest beside the body; after 2 s the page says that no frames come."""
+
 
 def live_pictures(scratch: Path) -> Taking:
     """Takes them.
@@ -59,6 +62,7 @@ def _live(made: Any, r: Reconstruction) -> bytes:
     for k in range(round(LIVE_S * r.rate_hz)):
         live.take(_frame(r, k))
         time.sleep(1.0 / r.rate_hz)
+    page.wait_for_timeout(FOLLOWS_MS)
     png: bytes = page.screenshot()
     page.close()
     live.close()
