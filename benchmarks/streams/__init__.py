@@ -25,6 +25,7 @@ from benchmarks.streams.clients import ROWS, client_rows
 from benchmarks.streams.faults import FAULTS
 from benchmarks.streams.results_out import out_rows
 from benchmarks.streams.scenes import MANY, belt_walk
+from benchmarks.streams.xsens import xsens_rows
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
@@ -46,7 +47,7 @@ MEDIAN_MS, P99_MS = 1.0, 3.0
 def run(context: Context) -> list[Check]:
     """Rows of all protocols and of results out, or of those of ``--only``."""
     protocols = {name: partial(stream_rows, protocol=name) for name in FAULTS}
-    return part_rows(context, {**protocols, "out": out_rows})
+    return part_rows(context, {**protocols, "out": out_rows, "xsens": xsens_rows})
 
 
 def stream_rows(context: Context, protocol: str) -> Iterator[Check]:

@@ -7,6 +7,7 @@ from benchmarks import streams
 from benchmarks.checks import Context
 from benchmarks.live.runs import Run, wire_of
 from benchmarks.robustness.stream_schedule import Schedule
+from benchmarks.streams import xsens
 from benchmarks.streams.clients import ROWS, VARIABLE, client_rows
 from benchmarks.streams.faults import FAULTS
 from benchmarks.streams.results_out import START_FRAMES, _of_json, _of_osc, latencies_ms
@@ -99,3 +100,12 @@ def test_more_markers_stand_beside_those_of_the_body(tmp_path):
     assert len(found.markers.names) == 80 and len(found.plates) == 2
     assert found.markers.names[:36] == made.trial.markers.names
     assert trial.seconds == pytest.approx(74 / 50) and not trial.unlabelled
+
+
+def test_a_suit_followed_through_a_fault_of_its_datagrams(tmp_path):
+    subject = xsens.synthesise_subject(xsens.SEED)
+    model = xsens.body_of(subject)
+    q = xsens.turning(model, 100.0)[:270]
+    found = xsens.follow(subject, model, q, 100.0, tmp_path, xsens.FAULTS["lost samples"])
+    assert not found.failure and found.report["frames_lost"] == 1 and found.tracked[-5:].all()
+    assert xsens.worst_deg(model, found.q, q) < xsens.ANGLE_DEG
