@@ -100,4 +100,5 @@ def read_items(one: MvnDatagram) -> tuple[NDArray[np.int64], Array]:
         raise InvalidPacket(f"MVN: {one.items} items of type {one.kind:02d} in {len(one.payload)} bytes")
     layout = np.dtype([("id", ">u4"), ("values", ">f4", (fitting[0] // 4 - 1,))])
     rows = np.frombuffer(one.payload, layout, one.items)
-    return rows["id"].astype(np.int64), rows["values"].astype(float)
+    with np.errstate(invalid="ignore"):  # NaN of any kind
+        return rows["id"].astype(np.int64), rows["values"].astype(float)
