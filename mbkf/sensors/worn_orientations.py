@@ -20,7 +20,7 @@ from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.inertial import observed_dofs
 from mbkf.sensors.inertial_sensor import InertialSensor
 
-ORIENTATIONS = "orientations of sensors"
+ORIENTATIONS = "sensor orientations"
 """Name of the readings (S, 4) of a frame: unit quaternions sensor → world, NaN where missing."""
 
 FEWEST = 0.5

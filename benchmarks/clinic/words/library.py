@@ -81,6 +81,7 @@ ELSEWHERE = {
     "study/batch/cluster.py": "options of a command",
     "study/batch/worker_process.py": "programming",
     "stream/libraries.py": "settings of a library",
+    "stream/found.py": "a list of a command",
     "stream/played.py": "replay to other programs",
     "stream/natnet/player.py": "replay to other programs",
     "stream/natnet/packets.py": "replay to other programs",

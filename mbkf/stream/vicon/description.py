@@ -145,19 +145,21 @@ def _plates(
                 continue
             samples = forces.get(plate.device, 0)
             if not samples:
-                left_out.append(f"plate {plate.device} sends no forces")
+                left_out.append(f"plate {plate.device} sends no forces and is left out")
                 continue
             one = _placed(plate, rotation, periods[plate.device], samples)
             corners = _corners(plate, rotation)
         except InvalidPacket as error:
-            left_out.append(f"a plate cannot be read ({error})")
+            left_out.append(f"a plate cannot be read and is left out ({error})")
             continue
         start_s = starts.get(plate.device, 0) / TICKS_PER_S
         rate_hz = TICKS_PER_S * samples / periods[plate.device]
         if not RATES_HZ[0] <= rate_hz <= RATES_HZ[1] or corners is None:
-            left_out.append(f"plate {plate.device} has no possible place, size or rate")
+            left_out.append(f"plate {plate.device} has no possible place, size or rate and is left out")
         elif readings and (rate_hz, start_s) != (readings[0].rate_hz, readings[0].start_time_s):
-            left_out.append(f"plate {plate.device} has another rate or start than the first plate")
+            left_out.append(
+                f"plate {plate.device} has another rate or start than the first plate and is left out"
+            )
         else:
             found.append(one)
             name = str(len(readings) + 1)

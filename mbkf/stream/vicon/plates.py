@@ -39,8 +39,8 @@ class Convention(NamedTuple):
     @property
     def sentence(self) -> str:
         """The convention as a sentence."""
-        on = "body" if self.sign > 0.0 else "plate"
-        return f"Vicon states forces on the {on}, moments in {self.unit} about {self.about}"
+        forces = "forces on the body" if self.sign > 0.0 else "forces on the plate"
+        return f"Vicon states {forces}, moments in {self.unit} about {self.about}"
 
 
 class PlateForceReader:
