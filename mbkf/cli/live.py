@@ -140,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
     )
     settings = with_chosen(settings, args)
     source, name = source_of(args), args.source.partition(":")[0]
-    record = None if args.record is None else Path(args.record)
+    record = _recording(args.record)
 
     def begin(stop: threading.Event, patience_s: float | None) -> LiveSession:
         if isinstance(person, Subject):
@@ -160,6 +160,24 @@ def run(args: argparse.Namespace) -> int:
         outcome = follow(args, source, begin, waiting)
     told = None if outcome.summary is None else outcome.summary["verdict"]
     return report_outcome(outcome, folder) or strict_exit(args, told)
+
+
+def _recording(name: str | None) -> Path | None:
+    """The file to record to.
+
+    Raises:
+        InvalidInput: Its name does not end in ``.c3d``.
+        ProtectedFile: It exists.
+    """
+    from mbkf.errors import InvalidInput
+    from mbkf.io.written import check_absent
+
+    if name is None:
+        return None
+    if Path(name).suffix.lower() != ".c3d":
+        raise InvalidInput(f"--record {name}: a C3D file is named .c3d; change the name")
+    check_absent(name)
+    return Path(name)
 
 
 def _follow_sensors(args: argparse.Namespace) -> int:
@@ -248,6 +266,11 @@ def _standing(
 
 
 def _recover(folder: Path) -> int:
+    """Makes recording and results of a log; returns 1 where the recording alone could not be written.
+
+    Raises:
+        InvalidInput: There are no results.
+    """
     from mbkf.errors import InvalidInput
     from mbkf.stream.run.folder import write_results
     from mbkf.stream.run.recording import write_recording
@@ -263,4 +286,4 @@ def _recover(folder: Path) -> int:
     if written.summary is None:
         raise InvalidInput(f"no frame can be recovered: {written.problem}")
     print(f"{folder}: {written.summary['frames']} frames recovered")
-    return 0
+    return 0 if recording.problem is None else 1

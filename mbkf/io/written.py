@@ -159,6 +159,16 @@ def check_replaceable(path: str | Path, *, edits: bool = False, form: str | None
         raise ProtectedFile(target, f"holds {was} that mbkf wrote, not {form}; {_OTHER_PLACE}")
 
 
+def check_absent(path: str | Path) -> None:
+    """Makes sure that a measurement, which cannot be made again, takes the place of no file, not even one of mbkf.
+
+    Raises:
+        ProtectedFile: The file exists, and :func:`overwriting` is off.
+    """
+    if os.path.lexists(path) and not overwrite_permitted():
+        raise ProtectedFile(path, f"exists, and a recording replaces no other one; {_OTHER_PLACE}")
+
+
 def overwrite_permitted() -> bool:
     """True while files of other programs may be replaced."""
     return bool(os.environ.get(OVERWRITE_VARIABLE))

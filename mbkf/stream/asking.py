@@ -9,15 +9,14 @@ from contextlib import ExitStack, suppress
 from select import select
 from typing import NamedTuple
 
+from mbkf.stream.datagrams import LARGEST
 from mbkf.stream.loopback import LOOPBACK, is_loopback
 
 EVERYBODY = "255.255.255.255"
 """Every computer of the network of the card that sends."""
 
-LARGEST = 65536
-
 MOST_ANSWERS = 64
-"""Answers that are taken at most."""
+"""Answers that are taken, at most."""
 
 
 class Answer(NamedTuple):
@@ -62,8 +61,9 @@ def asked(question: Callable[[int], bytes], port: int, local: str, wait_s: float
 def own_addresses(local: str) -> list[str]:
     """Addresses of this computer: its own network, those of its name, and the given one (0.0.0.0 for no other)."""
     found = {LOOPBACK}
-    with suppress(OSError, UnicodeError):
+    with suppress(OSError, UnicodeError):  # many computers cannot resolve their own name
         found |= {str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)}
-        if local != "0.0.0.0":
+    if local != "0.0.0.0":
+        with suppress(OSError, UnicodeError):
             found.add(socket.gethostbyname(local))
     return sorted(found)

@@ -18,6 +18,7 @@ ROOM_BYTES = 4 * 1024 * 1024
 """Size of the socket's receive buffer, as far as the system allows."""
 
 LARGEST = 65536
+"""Bytes of a datagram, at most."""
 
 SILENT_S = 1.0
 """After so long without a message of its sender, a stream is taken from another sender."""

@@ -133,6 +133,12 @@ def test_a_damaged_log_is_recovered_as_far_as_it_is_whole(person, tmp_path, caps
     assert run([*words, "--keep-log", "--record", file, "--out", out]) == 0
     assert f"{file}: 60 frames recorded" in capsys.readouterr().out
     before = file.read_bytes()
+    for name, why in (
+        (file, "replaces no other one"),
+        (tmp_path / "recorded.trc", "a C3D file is named .c3d"),
+    ):
+        assert run([*words, "--record", name, "--out", tmp_path / "again"]) == 2
+        assert why in capsys.readouterr().err and not (tmp_path / "again").exists()
     file.unlink()
     path = out / LOG_FOLDER / FRAMES_FILE
     path.write_bytes(path.read_bytes()[:-10] + bytes(10))

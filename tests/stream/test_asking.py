@@ -76,3 +76,11 @@ def test_a_given_network_is_asked_beside_the_own_one():
     assert {HERE, "192.0.2.7"} <= set(own_addresses("192.0.2.7"))
     assert "0.0.0.0" not in own_addresses("0.0.0.0")
     assert HERE in own_addresses("nowhere.invalid")
+
+
+def test_a_computer_that_does_not_know_its_own_name_asks_the_given_network(monkeypatch):
+    def unknown(*_):
+        raise socket.gaierror("name or service not known")
+
+    monkeypatch.setattr(socket, "getaddrinfo", unknown)
+    assert own_addresses("192.0.2.7") == [HERE, "192.0.2.7"]

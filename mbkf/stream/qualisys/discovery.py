@@ -18,6 +18,8 @@ from mbkf.stream.qualisys.source import QualisysSource
 DISCOVER_PORT = BASE_PORT + 4
 """Port that QTM listens at for clients that look for it, whatever its base port is."""
 
+LAST_PORT = 65535
+
 _PORT = struct.Struct(">H")
 
 
@@ -40,6 +42,8 @@ def _found(answer: Answer) -> FoundStream | None:
         return None
     name = text_of(data[HEADER.size : -_PORT.size])
     base: int = _PORT.unpack(data[-_PORT.size :])[0]
+    if not 0 < base < LAST_PORT:  # clients connect to the port after it
+        return None
     source, stream = QualisysSource(answer.address, base), None
     with suppress(MbkfError):  # it does not measure
         stream = source.connect(0.0)

@@ -33,8 +33,8 @@ MOST_HELD_BYTES = 256 * 1024 * 1024
 
 
 def arrived(rows: NDArray) -> int:
-    """Number of rows of frames that arrived: those have a latency, lost ones between them have none."""
-    return int(np.isfinite(rows["latency_s"]).sum()) if "latency_s" in (rows.dtype.names or ()) else 0
+    """Number of rows but those of lost frames, which have no latency."""
+    return int(np.isfinite(rows["latency_s"]).sum()) if "latency_s" in (rows.dtype.names or ()) else len(rows)
 
 
 @dataclass
@@ -46,6 +46,11 @@ class _Log:
     waiting: int = 0
     dropped: int = 0
     written: int = 0
+
+    @property
+    def unwritten(self) -> int:
+        """Number of rows that are not in the file."""
+        return self.dropped + sum(map(arrived, self.rows))
 
     def put(self, rows: NDArray) -> None:
         self.rows.append(rows)
@@ -64,6 +69,7 @@ class LogWriter:
 
     Attributes:
         record: Takes each frame as it came; None where the run is not recorded.
+        unrecorded: Number of frames that are missing in the recording, once the log is closed.
     """
 
     def __init__(
@@ -85,6 +91,7 @@ class LogWriter:
         self._logs = [_Log(one) for one in (log.frames, log.plates, log.limbs, *log.recording)]
         self._recorded = dict(zip(log.recording, self._logs[3:], strict=True))
         self.record: Record | None = None
+        self.unrecorded = 0
         if log.recording:
             self.record = Recorder(RecordingFiles(*log.recording), self._put_recorded).take
         self._changed = threading.Condition()
@@ -126,8 +133,9 @@ class LogWriter:
             with suppress(Exception):
                 self._flush(log)
         self._log.close()
-        frames = self._logs[0]
-        return frames.written, frames.dropped + sum(arrived(rows) for rows in frames.rows)
+        frames, *recorded = self._logs[0], *self._logs[3:4]
+        self.unrecorded = sum(log.unwritten for log in recorded)
+        return frames.written, frames.unwritten
 
     def _run(self) -> None:
         try:

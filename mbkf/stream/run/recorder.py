@@ -7,10 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array
 from mbkf.io.frame_log import FrameLogWriter
 from mbkf.stream.source import PlateSamples, SourceFrame, plausible
-from mbkf.trial.live.recording import POINT_DTYPE, RecordingFiles
+from mbkf.trial.live.recording import MOST_POINTS, POINT_DTYPE, RecordingFiles
 
 Put = Callable[[FrameLogWriter, NDArray], None]
 """Takes rows for a file; returns at once."""
@@ -35,11 +34,11 @@ class Recorder:
         files = self._files
         if number is not None:
             row = np.zeros(1, dtype=files.markers.dtype)
-            row["number"], row["markers"] = number, _possible(frame.markers_m)
+            row["number"], row["markers"] = number, plausible(frame.markers_m)[0]
             self._put(files.markers, row)
         if number is not None and len(frame.unlabelled_m):
-            seen = _possible(frame.unlabelled_m)
-            seen = seen[~np.isnan(seen).any(axis=1)]
+            seen = plausible(frame.unlabelled_m)[0]
+            seen = seen[~np.isnan(seen).any(axis=1)][:MOST_POINTS]
             points = np.zeros(len(seen), dtype=POINT_DTYPE)
             points["number"], points["point"] = number, seen
             self._put(files.points, points)
@@ -49,7 +48,3 @@ class Recorder:
             rows["index"], rows["wrench"] = fresh, samples.wrench[-len(fresh) :]
             self._put(files.samples, rows)
             self._newest = int(fresh[-1])
-
-
-def _possible(points_m: Array) -> Array:
-    return plausible(points_m)[0]

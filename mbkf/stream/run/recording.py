@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from mbkf.errors import MbkfError
 from mbkf.io.c3d_write import write_c3d
+from mbkf.io.written import check_absent
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.trial.live.recording import read_recording
 
@@ -34,7 +35,7 @@ class WrittenRecording(NamedTuple):
         return (f"the recording could not be written: {self.problem}",)
 
     def plain(self) -> dict[str, object]:
-        """Entries of live.json; none without a recording."""
+        """Entries of live.json; empty without a recording."""
         if self.file is None and self.problem is None:
             return {}
         file = None if self.file is None else str(self.file)
@@ -49,6 +50,7 @@ def write_recording(folder: Path) -> WrittenRecording:
         if found is None:
             return WrittenRecording()
         file = found.to
+        check_absent(file)
         write_c3d(found.capture, file)
     except (MbkfError, OSError) as error:
         return WrittenRecording(file, 0, str(error))

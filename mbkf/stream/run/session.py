@@ -179,7 +179,7 @@ class LiveSession:
         verdict.end()
         output.close()
         logged, unlogged = writer.close()
-        self._note_end(failure, logged, unlogged)
+        self._note_end(failure, logged, unlogged, writer.unrecorded)
         recording, written = self._write_recording(), self._write_results()
         final = None if written.summary is None else written.summary["verdict"]
         needed = keep_log or written.problem is not None or unlogged or written.left_out
@@ -229,8 +229,8 @@ class LiveSession:
         except Exception as error:  # the results are still to be written
             self._events.note("source", f"the source failed at the end ({type(error).__name__}: {error})")
 
-    def _note_end(self, failure: Failure, logged: int, unlogged: int) -> None:
-        """Events of the end: a failure, and frames that are not in the log."""
+    def _note_end(self, failure: Failure, logged: int, unlogged: int, unrecorded: int) -> None:
+        """Events of the end: a failure, and frames that are not in the log or the recording."""
         note = self._events.note
         if failure.cause is not None:
             note("failed", failure.cause)
@@ -238,6 +238,10 @@ class LiveSession:
             note(
                 "disk",
                 f"{unlogged} of {logged + unlogged} answered frames are not in the log, nor in the results",
+            )
+        if unrecorded:
+            note(
+                "recording", f"recording: {unrecorded} frames could not be written, and are gaps of the file"
             )
 
     def _write_recording(self) -> WrittenRecording:

@@ -116,14 +116,15 @@ def _markers(
         if person not in [one.name for one in subjects]:
             raise UnknownName("subject", person, [one.name for one in subjects], "--person")
         subjects = [one for one in subjects if one.name == person]
+    count = sum(len(one.markers) for one in subjects)
+    if count > MOST_MARKERS:
+        raise InvalidInput(f"Vicon: {count} markers are named, more than {MOST_MARKERS}")
     names: list[str] = []
     places: dict[tuple[int, int], int] = {}
     for subject in subjects:
         for marker, name in subject.markers.items():
             places[subject.number, marker] = len(names)
             names.append(f"{subject.name}:{name}" if name in names else name)
-    if len(names) > MOST_MARKERS:
-        raise InvalidInput(f"Vicon: {len(names)} markers are named, more than {MOST_MARKERS}")
     return tuple(names), places
 
 

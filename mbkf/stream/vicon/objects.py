@@ -42,7 +42,10 @@ HEADER = struct.Struct("<II")
 LARGEST = 16 * 1024 * 1024
 """A packet that claims more bytes is not one."""
 
-_U32, _U64, _PAIR = struct.Struct("<I"), struct.Struct("<Q"), struct.Struct("<II")
+MOST_SAMPLES = 20_000
+"""Samples of a plate in one packet, at most: a fifth of a second at the highest rate of plates that is read."""
+
+_U32, _U64 = struct.Struct("<I"), struct.Struct("<Q")
 _POINT = np.dtype([("radius", "<f8"), ("place", "<f8", (3,)), ("covariance", "<f8", (9,)), ("track", "<u4")])
 _MARKER = np.dtype([("subject", "<u4"), ("marker", "<u4"), *_POINT.descr])
 
@@ -237,11 +240,13 @@ def read_samples(data: bytes) -> DeviceSamples:
     """Samples of a channel of three components, which follow one after the other.
 
     Raises:
-        InvalidPacket: Their number is not one of triples.
+        InvalidPacket: Their number is not one of triples, or too large.
     """
     fields = Fields(data)
     frame, device, _ = fields.u32(), fields.u32(), fields.u32()
     values = fields.rows(np.dtype("<f4"), fields.count(4))
-    if len(values) % 3:
-        raise InvalidPacket(f"Vicon: {len(values)} numbers are no samples of three components")
+    if len(values) % 3 or len(values) > 3 * MOST_SAMPLES:
+        raise InvalidPacket(
+            f"Vicon: {len(values)} numbers are no samples of three components, or more than {MOST_SAMPLES}"
+        )
     return DeviceSamples(frame, device, values.reshape(3, -1).T)

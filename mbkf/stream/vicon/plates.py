@@ -17,7 +17,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.stream.source import LARGEST_COUNT, PlateSamples
 from mbkf.stream.vicon.description import MM, ViconPlate
-from mbkf.stream.vicon.objects import DeviceSamples
+from mbkf.stream.vicon.objects import MOST_SAMPLES, DeviceSamples
 
 LOADED_N = 50.0
 """From this vertical force on, conventions are decided."""
@@ -90,7 +90,8 @@ class PlateForceReader:
             return PlateSamples.none(len(self._plates))
         first = min(at for _, at, _ in found)
         last = max(at + len(rows) for _, at, rows in found)
-        if last - first > 4 * sum(len(rows) for _, _, rows in found):  # counts that have nothing in common
+        together = min(MOST_SAMPLES, 4 * sum(len(rows) for _, _, rows in found))
+        if last - first > together:  # counts that have nothing in common
             found, first, last = found[:1], found[0][1], found[0][1] + len(found[0][2])
         wrench = np.full((last - first, len(self._plates), 6), np.nan)
         for k, at, rows in found:

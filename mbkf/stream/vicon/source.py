@@ -85,7 +85,7 @@ class ViconSource:
                     self._frame(found)  # the person may stand on a plate, which decides its convention
                     self._before = None
                     return described.stream
-            elif left <= 0.0:
+            if left <= 0.0:
                 return None
 
     def _describable(self) -> ViconDescription | None:
@@ -194,7 +194,8 @@ class ViconSource:
         try:
             for data in one.blocks.get(objects.FORCE, ()):
                 samples = objects.read_samples(data)
-                self._forces.setdefault(samples.device, len(samples.values))
+                count = self._forces.get(samples.device, 0)
+                self._forces[samples.device] = max(count, len(samples.values))
         except InvalidPacket:
             pass  # reported with its frame
         return bool(changed)

@@ -108,11 +108,11 @@ def _rate(samples: Sequence[MvnSample]) -> tuple[int, float]:
         times_s = np.array(times) - times[0]
         if not np.ptp(frames) or not np.ptp(times_s):
             continue
-        rate_hz = 1.0 / float(np.polyfit(frames, times_s, 1)[0])
-        whole = round(rate_hz)
-        rate_hz = float(whole) if abs(rate_hz - whole) < ODD_HZ else rate_hz
-        if RATES_HZ[0] <= rate_hz <= RATES_HZ[1]:
-            return step, rate_hz
+        slope_s = float(np.polyfit(frames, times_s, 1)[0])
+        if not 1.0 / RATES_HZ[1] <= slope_s <= 1.0 / RATES_HZ[0]:
+            continue
+        rate_hz, whole = 1.0 / slope_s, round(1.0 / slope_s)
+        return step, float(whole) if abs(rate_hz - whole) < ODD_HZ else rate_hz
     raise InvalidInput(
         "Xsens: MVN's clock shows no possible frame rate; start the live view or the playback in MVN"
     )

@@ -122,7 +122,7 @@ class XsensSource:
             if found is not None and found[0] == self._described.kind:
                 frame = self._oriented(found[1], self._described)
                 self._ready.extend(map(self._frame, self._differences.put(frame)))
-            else:
+            if not self._ready:  # also where a count stands still and each frame comes late
                 self._ready.extend(map(self._frame, self._differences.due(time.perf_counter())))
             if not self._ready and (one is None or time.perf_counter() > until):
                 return None

@@ -28,7 +28,7 @@ POINT_DTYPE = np.dtype([("number", "<i8"), ("point", "<f8", (3,))])
 """Type of a point without a name: its frame and place, m."""
 
 MOST_POINTS = 1000
-"""Points without names of a frame that a C3D file gets at most."""
+"""Points without names that are recorded of a frame, at most."""
 
 
 class RecordingFiles(NamedTuple):
@@ -104,7 +104,7 @@ def read_recording(folder: Path) -> Recorded | None:
     place = rows["number"] - first
     positions = np.full((count, len(header["markers"]), 3), np.nan)
     positions[place] = rows["markers"]
-    bare = _points(folder / POINTS_FILE, first, count)
+    bare, crowded = _points(folder / POINTS_FILE, first, count)
     names = [*header["markers"], *(f"*{k + 1}" for k in range(bare.shape[1]))]
     markers = MarkerTrajectories(
         tuple(names), np.concatenate([positions, bare], axis=1), header["rate_hz"], 0.0
@@ -113,23 +113,25 @@ def read_recording(folder: Path) -> Recorded | None:
     plates, filled = _plates(folder / SAMPLES_FILE, header, begin_s)
     missing = len(log.rows) - len(rows) + log.left_out
     lost = f"recording: {missing} frames are left out: {MARKERS_FILE} is damaged from there on"
-    sentences = ([lost] if missing else []) + filled
+    full = (
+        f"recording: {crowded} frames hold {MOST_POINTS} points without names; any further ones are left out"
+    )
+    sentences = ([lost] if missing else []) + ([full] if crowded else []) + filled
     return Recorded(Path(header["to"]), Capture(header["trial"], markers, plates), tuple(sentences))
 
 
-def _points(path: Path, first: int, count: int) -> Array:
-    """(T, N, 3) points without names, NaN after a frame's last one."""
+def _points(path: Path, first: int, count: int) -> tuple[Array, int]:
+    """(T, N, 3) points without names, NaN after a frame's last one, and the number of frames with all that fit."""
     rows = read_frame_log(path).rows
     frame = rows["number"] - first
     rows, frame = rows[(frame >= 0) & (frame < count)], frame[(frame >= 0) & (frame < count)]
     if not len(rows):
-        return np.zeros((count, 0, 3))
+        return np.zeros((count, 0, 3)), 0
     starts = np.flatnonzero(np.diff(frame, prepend=-1))
     column = np.arange(len(frame)) - np.repeat(starts, np.diff(starts, append=len(frame)))
-    kept = column < MOST_POINTS
-    points = np.full((count, int(column[kept].max()) + 1, 3), np.nan)
-    points[frame[kept], column[kept]] = rows["point"][kept]
-    return points
+    points = np.full((count, int(column.max()) + 1, 3), np.nan)
+    points[frame, column] = rows["point"]
+    return points, int((column == MOST_POINTS - 1).sum())
 
 
 def _plates(

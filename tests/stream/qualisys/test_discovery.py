@@ -9,6 +9,7 @@ from benchmarks.streams.qualisys_server import QtmServer
 from mbkf.stream.asking import Answer
 from mbkf.stream.played import played
 from mbkf.stream.qualisys import discovery
+from mbkf.stream.qualisys.packets import COMMAND, packet
 from tests.captures import made_capture
 from tests.stream.discovering import HERE, first_answer
 
@@ -23,7 +24,14 @@ def test_a_qtm_is_found_with_its_base_port_and_streams_nothing(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "data", [b"", b"x" * 9, struct.pack("<II", 99, 1) + b"QTM\0ab", struct.pack("<II", 12, 6) + b"ab\x01\x02"]
+    "data",
+    [
+        b"",
+        b"x" * 9,
+        struct.pack("<II", 99, 1) + b"QTM\0ab",
+        struct.pack("<II", 12, 6) + b"ab\x01\x02",
+        packet(COMMAND, b"QTM\0\xff\xff"),  # there is no port after 65535
+    ],
 )
 def test_another_answer_is_no_server(monkeypatch, data):
     monkeypatch.setattr(discovery, "asked", lambda *_: [Answer(HERE, HERE, data)])

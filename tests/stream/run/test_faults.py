@@ -17,8 +17,9 @@ from mbkf.io.subject import write_subject
 from mbkf.stream.run import log_writer
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.log_writer import LogWriter
-from mbkf.stream.source import FARTHEST_M, PlateSamples
+from mbkf.stream.source import FARTHEST_M, PlateSamples, SourceFrame
 from mbkf.trial.live.log import FRAMES_FILE, LiveLog, LiveStream, blank
+from mbkf.trial.live.recording import open_recording
 from tests.stream.scripted import (
     Collected,
     assert_same,
@@ -194,10 +195,12 @@ def rows_of(log):
     return read_frame_log(log.folder / FRAMES_FILE)[1]["number"].tolist()
 
 
+ROWS = np.dtype([("number", "<i8"), ("latency_s", "<f8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,))])
+
+
 @pytest.fixture
 def log(tmp_path):
-    dtype = np.dtype([("number", "<i8"), ("latency_s", "<f8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,))])
-    return LiveLog(tmp_path / "log", LiveStream("x", 100.0, 0.0, ()), dtype, {}, [])
+    return LiveLog(tmp_path / "log", LiveStream("x", 100.0, 0.0, ()), ROWS, {}, [])
 
 
 def row(log, number):
@@ -243,6 +246,24 @@ def test_rows_written_before_the_disk_is_full_stay(log, monkeypatch):
     assert writer.close() == (0, 7)
     assert failures
     assert rows_of(log) == list(range(5))
+
+
+def test_frames_that_are_missing_in_the_recording_are_counted(tmp_path, monkeypatch):
+    files = open_recording(tmp_path, LiveStream("x", 100.0, 0.0, ()), tmp_path / "x.c3d")
+    log = LiveLog(tmp_path / "log", LiveStream("x", 100.0, 0.0, ()), ROWS, {}, [], files)
+
+    def full(data):
+        raise OSError(errno.ENOSPC, "no space left on device")
+
+    monkeypatch.setattr(files.markers, "_write", full)
+    writer = LogWriter(log, [].append)
+    none = np.zeros((0, 3))
+    for number in range(3):
+        writer.record(
+            number, SourceFrame(number, 0.0, none, none, PlateSamples.none(0)), PlateSamples.none(0)
+        )
+    assert writer.close() == (0, 0)
+    assert writer.unrecorded == 3
 
 
 def test_a_full_disk_ends_in_one_line_and_the_log_is_recovered(tmp_path, capture, subject):

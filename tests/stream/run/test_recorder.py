@@ -7,6 +7,7 @@ import numpy as np
 from mbkf.stream.run.recorder import Recorder
 from mbkf.stream.source import PlateSamples, SourceFrame
 from mbkf.trial.live.log import plates_dtype
+from mbkf.trial.live.recording import MOST_POINTS
 
 FILES = SimpleNamespace(
     markers=SimpleNamespace(dtype=np.dtype([("number", "<i8"), ("markers", "<f8", (2, 3))])),
@@ -39,6 +40,10 @@ def test_markers_that_are_too_far_away_are_missing():
 def test_points_are_those_that_are_there():
     rows = taken((5, [HERE, HERE], [HERE, GONE, FAR, HERE], []))["points"]
     assert [(row["number"], list(row["point"])) for row in rows] == [(5, HERE), (5, HERE)]
+
+
+def test_the_number_of_points_of_a_frame_is_bounded():
+    assert len(taken((5, [HERE, HERE], [HERE] * (MOST_POINTS + 1), []))["points"]) == MOST_POINTS
 
 
 def test_samples_come_once_also_with_a_frame_that_is_too_late():

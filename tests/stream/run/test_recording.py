@@ -9,6 +9,7 @@ import pytest
 
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.written import overwriting
 from mbkf.stream.run import recording
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.recording import WrittenRecording, write_recording
@@ -88,6 +89,11 @@ def test_a_file_that_cannot_be_written_leaves_the_log_which_makes_it_later(
     written = write_recording(tmp_path)
     assert (written.file, written.frames, written.problem) == (tmp_path / "walk.c3d", 5, None)
     assert read_capture(tmp_path / "walk.c3d").markers.frames == 5
+    before = (tmp_path / "walk.c3d").stat().st_mtime_ns
+    assert "replaces no other one" in str(write_recording(tmp_path).problem)
+    assert (tmp_path / "walk.c3d").stat().st_mtime_ns == before
+    with overwriting():
+        assert write_recording(tmp_path).problem is None
 
 
 def test_a_damaged_recording_is_a_problem_and_no_recording_is_none(tmp_path):

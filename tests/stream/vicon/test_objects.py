@@ -61,6 +61,9 @@ def test_samples_follow_component_by_component():
     assert found.values.tolist() == [[0.0, 2.0, 4.0], [1.0, 3.0, 5.0]]
     with pytest.raises(InvalidPacket, match="4 numbers are no samples"):
         objects.read_samples(struct.pack("<4I4f", 12, 3, 1, 4, *range(4)))
+    count = 3 * objects.MOST_SAMPLES + 3
+    with pytest.raises(InvalidPacket, match="more than 20000"):
+        objects.read_samples(struct.pack("<4I", 12, 3, 1, count) + bytes(4 * count))
 
 
 def test_a_plate():

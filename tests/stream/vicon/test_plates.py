@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.stream.vicon.description import ViconPlate
-from mbkf.stream.vicon.objects import DeviceSamples
+from mbkf.stream.vicon.objects import MOST_SAMPLES, DeviceSamples
 from mbkf.stream.vicon.plates import ORIGIN, SENSOR, PlateForceReader
 
 TURN = Rotation.from_euler("zx", [30.0, 180.0], degrees=True).as_matrix()
@@ -76,3 +76,11 @@ def test_plates_whose_counts_have_nothing_in_common():
     moments = [*one[1], DeviceSamples(5000, 8, far[1][0].values)]
     found = reader.samples(forces, moments, one[2])
     assert found.index.tolist() == [6, 7] and np.isnan(found.wrench[:, 1]).all()
+
+
+def test_a_packet_never_spans_more_samples_than_it_may_hold():
+    apart = MOST_SAMPLES // 2 - 10
+    values = [np.tile(FORCE, (apart, 1)), np.zeros((apart, 3))]
+    forces, moments = ([DeviceSamples(k, 7, one) for k in (1, 3)] for one in values)
+    found = PlateForceReader([PLATE]).samples(forces, moments, [])
+    assert found.index.tolist() == list(range(apart, 2 * apart))

@@ -11,9 +11,11 @@ from benchmarks.streams.vicon_server import PlateConvention, ViconServer, block
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.stream.played import played
 from mbkf.stream.vicon import source as source_module
+from mbkf.stream.vicon.client import Packet
 from mbkf.stream.vicon.source import ViconSource
 from tests.captures import made_capture
 from tests.stream.reading import connected, read
+from tests.stream.vicon.test_description import known as described
 from tests.stream.vicon_reading import HERE, Laboratory
 from tests.waiting import until
 
@@ -156,6 +158,24 @@ def test_bytes_that_are_no_packet_end_the_connection(laboratory, monkeypatch):
     until(told)
     assert "broke off" in news[0] and "is back" in news[1]
     assert [frame.number for frame in one.frames(4)] == [4]
+
+
+def test_plates_that_begin_to_send_with_the_second_frame_are_described(monkeypatch):
+    forces = [struct.pack("<4I", 1, 7, 1, 0), struct.pack("<4I30f", 2, 7, 1, 30, *range(30))]
+    waiting = [
+        Packet(0.0, described(FRAME_INFO=[struct.pack("<I", k)], FORCE=[one])) for k, one in enumerate(forces)
+    ]
+    source = ViconSource(HERE, 801)
+    monkeypatch.setattr(source, "_take", lambda _: waiting.pop(0))
+    (plate,) = connected(source).plates
+    assert plate.rate_hz == 1000.0
+
+
+def test_packets_without_end_that_describe_nothing_end_no_later_than_asked(monkeypatch):
+    waiting = [Packet(0.0, {})] * 5
+    source = ViconSource(HERE, 801)
+    monkeypatch.setattr(source, "_take", lambda _: waiting.pop())
+    assert source.connect(0.0) is None and len(waiting) == 4
 
 
 def test_another_server_is_refused():

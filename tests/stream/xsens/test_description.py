@@ -1,5 +1,7 @@
 """A stream of MVN described by its first samples: rate, steps, unit, axes, segments."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,6 +41,9 @@ def test_a_clock_that_stands_still_leaves_the_times_of_arrival():
 def test_samples_of_one_moment_have_no_rate():
     with pytest.raises(InvalidInput, match="no possible frame rate"):
         describe(samples(rate_hz=1e9, clock=False), POSES, None)
+    there, back = samples(count=2, rate_hz=1e9)[0], samples(count=2, rate_hz=20.0)[1]
+    with pytest.raises(InvalidInput, match="no possible frame rate"):
+        describe([there, back, replace(there, number=902)], POSES, None)
 
 
 def test_centimetres_are_seen_by_the_trunk():

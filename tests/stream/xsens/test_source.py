@@ -195,3 +195,11 @@ def test_the_last_frame_comes_when_nothing_follows(sending, monkeypatch):
     monkeypatch.setattr("mbkf.stream.xsens.readings.HELD_S", -1.0)
     assert [frame.number for frame in one.frames(50)] == [50]
     assert HELD_S > 0.0
+
+
+def test_a_count_that_stands_still_still_gives_frames(sending, monkeypatch):
+    one = sending()
+    monkeypatch.setattr("mbkf.stream.xsens.readings.HELD_S", -1.0)
+    for _ in range(3):
+        one.server.play(50)
+    assert one.source.read(0.0).number == 50

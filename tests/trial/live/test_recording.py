@@ -54,9 +54,11 @@ def test_points_without_names_stand_in_columns_in_their_order(tmp_path):
     np.testing.assert_array_equal(bare, [[1, 2], [np.nan, np.nan], [3, np.nan]])
 
 
-def test_the_number_of_columns_is_bounded(tmp_path):
-    found = recorded(tmp_path / "log", [0], [0] * (MOST_POINTS + 5))
+def test_frames_with_all_points_that_fit_are_stated(tmp_path):
+    found = recorded(tmp_path / "log", [0, 1], [0] * MOST_POINTS + [1] * 5)
     assert len(found.capture.markers.names) == 2 + MOST_POINTS
+    (sentence,) = found.left_out
+    assert sentence.startswith("recording: 1 frames hold 1000 points without names")
 
 
 def test_short_gaps_of_plates_are_bridged_and_long_ones_are_zero_and_stated(tmp_path):
