@@ -1,6 +1,7 @@
 """Every example of the documentation runs, and what it asserts holds."""
 
 import io
+import platform
 import runpy
 import subprocess
 import sys
@@ -27,6 +28,7 @@ def command(words, *, capture_output=False, text=False, check):
 @pytest.fixture
 def here(monkeypatch):
     """No example starts a process: other tests prove that commands and workers do; bodies are those of the static."""
+    platform.processor()  # libraries ask for it as they are loaded, which takes a process once
     monkeypatch.setattr(subprocess, "run", command)
     monkeypatch.setattr("mbkf.study.batch.run.LocalWorkers", ThisProcess)
     monkeypatch.setattr("mbkf.study.batch.person.scale_from_session", from_standing)
