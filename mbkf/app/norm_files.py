@@ -94,7 +94,7 @@ def _read(name: str, content: bytes) -> RawNorms:
 def _stated(said: Mapping[str, str]) -> Statements:
     persons = said["persons"].strip()
     if persons and not (persons.isascii() and persons.isdecimal() and len(persons) < 7 and int(persons)):
-        raise InvalidInput(f"'{persons[:80]}' is no number of persons; write one such as 30")
+        raise InvalidInput(f"'{persons[:80]}' is not a number of persons; write one such as 30")
     return Statements(
         name=said["name"],
         source=said["source"],

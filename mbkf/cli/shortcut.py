@@ -132,4 +132,7 @@ def _batch_word(word: str) -> str:
         raise InvalidInput(
             f"a shortcut of Windows cannot hold the name {word!r}; rename the folder without quotes"
         )
-    return word if PLAIN.fullmatch(word) else '"' + word.replace("%", "%%") + '"'
+    if PLAIN.fullmatch(word):
+        return word
+    last = word[len(word.rstrip("\\")) :]  # a backslash before the closing quote would escape it
+    return '"' + word.replace("%", "%%") + last + '"'

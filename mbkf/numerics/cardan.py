@@ -17,7 +17,17 @@ SINGULAR_MARGIN_RAD = np.deg2rad(10.0)
 UPRIGHT_COSINE = 0.5
 """The principal angles hold where the third axis leans less than 60° from its own rest direction."""
 
+SHORTEST = 0.5
+"""A quaternion shorter than this, or longer than 1 / this, is not a rotation that was rounded."""
+
 _LEAST_COSINE = 1e-9
+
+
+def unit_quaternions(quaternions: Array) -> Array:
+    """Quaternions (…, 4) of length 1; NaN for those that are not rotations (:data:`SHORTEST`)."""
+    size = np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    valid = (size > SHORTEST) & (size < 1.0 / SHORTEST)
+    return np.divide(quaternions, size, out=np.full(np.shape(quaternions), np.nan), where=valid)
 
 
 def quaternion_matrices(quaternions: Array) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.cardan import quaternion_matrices, unit_quaternions
 from mbkf.numerics.kalman import Information, information
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
@@ -22,9 +22,6 @@ from mbkf.sensors.inertial_sensor import InertialSensor
 
 ORIENTATIONS = "sensor orientations"
 """Name of the readings (S, 4) of a frame: unit quaternions sensor → world, NaN where missing."""
-
-FEWEST = 0.5
-"""A quaternion shorter than this, or longer than 1 / this, is no rotation."""
 
 
 @dataclass(frozen=True)
@@ -61,12 +58,9 @@ class WornOrientations(Block[State, None, Array | None, None]):
         found = frame.readings.get(ORIENTATIONS)
         if found is None:
             return None
-        size = np.linalg.norm(found, axis=1)
-        there = np.isfinite(size) & (size > FEWEST) & (size < 1.0 / FEWEST)
-        if not there.any():
+        turns = quaternion_matrices(unit_quaternions(found))
+        if np.isnan(turns).all():
             return None
-        turns = np.full((len(found), 3, 3), np.nan)
-        turns[there] = quaternion_matrices(found[there] / size[there, None])
         notes.observed = True
         notes.unobserved = notes.unmarked[~self._observed[notes.unmarked]]
         return turns

@@ -79,8 +79,8 @@ def test_a_file_with_groups_asks_for_one(workspace):
     ("change", "reason"),
     [
         ({"file": "norms.docx"}, "ends in .csv"),
-        ({"persons": "many"}, "no number of persons"),
-        ({"persons": "0"}, "no number of persons"),
+        ({"persons": "many"}, "not a number of persons"),
+        ({"persons": "0"}, "not a number of persons"),
         ({"ages": "old"}, "'old' is no range"),
         ({"group": "fast"}, "no group 'fast'"),
     ],

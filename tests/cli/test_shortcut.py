@@ -44,6 +44,7 @@ def test_the_batch_file_starts_the_words_in_the_distribution():
     assert '\r\n"C:\\a b\\python.exe" -m mbkf\r\n' in windows_text(
         ("C:\\a b\\python.exe", "-m", "mbkf"), None
     )
+    assert ' app "D:\\\\"\r\n' in windows_text(("python.exe", "app", "D:\\"), None)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the menu of Linux")

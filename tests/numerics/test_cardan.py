@@ -13,6 +13,7 @@ from mbkf.numerics.cardan import (
     quaternion_matrices,
     rate_map,
     rotation_matrix,
+    unit_quaternions,
     velocity_map,
 )
 
@@ -107,3 +108,12 @@ def test_one_bad_frame_at_the_singularity_does_no_lasting_harm():
     followed = follow(series("YXZ", angles), np.array([False]))[:, 0]
     np.testing.assert_allclose(followed[5:], 0.0, atol=1e-12)
     assert follow(np.empty((0, 1, 3)), np.array([False])).shape == (0, 1, 3)
+
+
+def test_quaternions_get_length_one_and_those_that_are_not_rotations_are_missing():
+    one = np.array([0.5, -0.5, 0.5, 0.5])
+    lengths = np.array([0.51, 1.0, 1.99, 0.49, 2.01, 0.0, np.inf, np.nan])
+    with np.errstate(invalid="ignore"):
+        given = lengths[:, None] * one
+    np.testing.assert_allclose(unit_quaternions(given)[:3], [one] * 3, rtol=1e-15)
+    assert np.isnan(unit_quaternions(given)[3:]).all()

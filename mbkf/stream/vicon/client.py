@@ -65,7 +65,7 @@ class ViconClient:
             self._send(objects.packet(objects.enums((*wanted, objects.CONTENTS))))
         except InvalidPacket as error:
             self.close()
-            raise InvalidInput(f"Vicon: {host}, port {port} is no DataStream server ({error})") from error
+            raise InvalidInput(f"Vicon: {host}, port {port} is not a DataStream server ({error})") from error
         except BaseException:
             self.close()
             raise

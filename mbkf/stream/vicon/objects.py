@@ -247,6 +247,6 @@ def read_samples(data: bytes) -> DeviceSamples:
     values = fields.rows(np.dtype("<f4"), fields.count(4))
     if len(values) % 3 or len(values) > 3 * MOST_SAMPLES:
         raise InvalidPacket(
-            f"Vicon: {len(values)} numbers are no samples of three components, or more than {MOST_SAMPLES}"
+            f"Vicon: {len(values)} numbers are not samples of three components, or more than {MOST_SAMPLES}"
         )
     return DeviceSamples(frame, device, values.reshape(3, -1).T)

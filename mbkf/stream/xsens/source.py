@@ -7,10 +7,10 @@ from collections import deque
 
 import numpy as np
 
-from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.imu.frames import multiply
 from mbkf.io.axes import rotation_to_world
+from mbkf.numerics.cardan import unit_quaternions
 from mbkf.stream.datagrams import Datagram, Datagrams
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 from mbkf.stream.xsens.description import MvnDescription, describe
@@ -28,8 +28,6 @@ MOST_KEPT = 2000
 """Samples kept for the description, at most."""
 
 NO_POINTS = np.zeros((0, 3))
-FEWEST = 0.5
-"""A quaternion shorter than this, or longer than 1 / this, is no rotation."""
 
 
 class XsensSource:
@@ -174,7 +172,7 @@ class XsensSource:
         poses = known.kind == POSES
         wxyz = values[:, 3:7] if poses else values[:, :4]
         with np.errstate(all="ignore"):
-            turns = multiply(known.turn, _unit(wxyz[:, [1, 2, 3, 0]]))
+            turns = multiply(known.turn, unit_quaternions(wxyz[:, [1, 2, 3, 0]]))
             turns = multiply(turns, known.laid) if poses else turns
             vectors = (values[:, :3] * known.metres if poses else values[:, 4:7]) @ known.rotation.T
         places, accelerations = (vectors, None) if poses else (None, vectors)
@@ -189,10 +187,3 @@ class XsensSource:
         return SourceFrame(
             one.number, one.arrival_s, NO_POINTS, NO_POINTS, PlateSamples.none(0), one.imus, turns
         )
-
-
-def _unit(quaternions: Array) -> Array:
-    """(S, 4) of length 1; NaN for those that are no rotations."""
-    size = np.linalg.norm(quaternions, axis=1, keepdims=True)
-    there = (size > FEWEST) & (size < 1.0 / FEWEST)
-    return np.asarray(np.where(there, quaternions / size, np.nan))

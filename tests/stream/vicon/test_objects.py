@@ -59,7 +59,7 @@ def test_samples_follow_component_by_component():
     found = objects.read_samples(struct.pack("<4I6f", 12, 3, 1, 6, *range(6)))
     assert (found.frame, found.device) == (12, 3)
     assert found.values.tolist() == [[0.0, 2.0, 4.0], [1.0, 3.0, 5.0]]
-    with pytest.raises(InvalidPacket, match="4 numbers are no samples"):
+    with pytest.raises(InvalidPacket, match="4 numbers are not samples"):
         objects.read_samples(struct.pack("<4I4f", 12, 3, 1, 4, *range(4)))
     count = 3 * objects.MOST_SAMPLES + 3
     with pytest.raises(InvalidPacket, match="more than 20000"):

@@ -190,7 +190,7 @@ def test_another_server_is_refused():
         thread = threading.Thread(target=answer)
         thread.start()
         source = ViconSource(HERE, server.getsockname()[1])
-        with pytest.raises(InvalidInput, match="no DataStream server"):
+        with pytest.raises(InvalidInput, match="not a DataStream server"):
             until(lambda: source.connect(0.2))
         source.close()
         thread.join()
