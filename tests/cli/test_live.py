@@ -346,7 +346,7 @@ def test_bad_input_is_refused(person, tmp_path, refused):
     refused(["live", *trial, *out, "--view", "--view-port", "70000"], "--view-port: '70000' is not a port")
     refused(["live", *trial, *out, "--protocol", "none"], "unknown protocol 'none'")
     refused(["live", *trial, *subject], "--out is missing")
-    refused(["live", "--from", "vicon", *subject, *out], "unknown source 'vicon'")
+    refused(["live", "--from", "kinect", *subject, *out], "unknown source 'kinect'")
     refused(["live", "--from", "file:", *subject, *out], "file:TRIAL")
     refused(["live", "--from", "file:none.c3d", *subject, *out], "none.c3d")
     refused(["live", *trial, *subject, *out, "--seconds", "0"], "--seconds: '0' is not a positive number")
