@@ -89,7 +89,7 @@ def describe(
     """
     if objects.STREAM_INFO not in known:
         return None
-    period = objects.Fields(known[objects.STREAM_INFO][0]).u64()
+    period = objects.Fields(known[objects.STREAM_INFO][0]).long_integer()
     if not period:
         return None  # no cameras run
     rate_hz = TICKS_PER_S / period

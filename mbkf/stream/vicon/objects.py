@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidPacket
+from mbkf.stream.cursor import PacketCursor
 
 PACKET = 0x1A2B0001
 """Type of the block that holds all others."""
@@ -87,52 +89,30 @@ class DeviceSamples:
     values: NDArray[np.float32]
 
 
-class Fields:
-    """Reads a block from front to back."""
+class Fields(PacketCursor):
+    """Reads a block without its header from front to back."""
+
+    __slots__ = ()
+
+    protocol: ClassVar[str] = "Vicon"
 
     def __init__(self, data: bytes) -> None:
         """Args: the block without its header."""
-        self._data, self._at = data, 0
+        super().__init__(data, 0, len(data))
 
-    def u32(self) -> int:
-        """A whole number of four bytes."""
-        return int(_U32.unpack_from(self._data, self._take(4))[0])
-
-    def u64(self) -> int:
-        """A whole number of eight bytes."""
-        return int(_U64.unpack_from(self._data, self._take(8))[0])
+    def long_integer(self) -> int:
+        """An unsigned integer of eight bytes."""
+        return int(self.fields(_U64)[0])
 
     def text(self) -> str:
-        """Text behind its length."""
-        size = self.u32()
-        at = self._take(size)
-        return self._data[at : at + size].decode("utf-8", "replace")
-
-    def count(self, least: int) -> int:
-        """Number of things that follow, of which each takes at least so many bytes.
-
-        Raises:
-            InvalidPacket: So many do not fit.
-        """
-        count = self.u32()
-        if count * least > len(self._data) - self._at:
-            raise InvalidPacket(f"Vicon: {count} things cannot stand in {len(self._data) - self._at} bytes")
-        return count
-
-    def rows(self, layout: np.dtype, count: int) -> NDArray:
-        """(count,) elements of a fixed layout."""
-        return np.frombuffer(self._data, layout, count, self._take(count * layout.itemsize))
+        """Text behind its length; bytes that are not UTF-8 are replaced."""
+        size = self.integer()
+        at = self.take(size)
+        return self.data[at : at + size].decode("utf-8", "replace")
 
     def floats(self, count: int) -> Array:
         """(count,) numbers of four bytes."""
         return self.rows(np.dtype("<f4"), count).astype(float)
-
-    def _take(self, size: int) -> int:
-        at = self._at
-        if size > len(self._data) - at:
-            raise InvalidPacket(f"Vicon: {size} bytes are wanted where {len(self._data) - at} are left")
-        self._at = at + size
-        return at
 
 
 def block(kind: int, data: bytes) -> bytes:
@@ -191,13 +171,13 @@ def read_unchanged(data: bytes) -> tuple[int, ...]:
 def read_subject(data: bytes) -> Subject:
     """A subject; its segments are left out."""
     fields = Fields(data)
-    number, name = fields.u32(), fields.text()
+    number, name = fields.integer(), fields.text()
     for _ in range(fields.count(36)):
         fields.rows(np.dtype("V32"), 1)
         fields.text()
     markers = {}
     for _ in range(fields.count(8)):
-        marker = fields.u32()
+        marker = fields.integer()
         markers[marker] = fields.text()
     return Subject(number, name, markers)
 
@@ -205,13 +185,13 @@ def read_subject(data: bytes) -> Subject:
 def read_device(data: bytes) -> tuple[int, int]:
     """ID of a device, and the ticks of one of its frames, or that of its first frame."""
     fields = Fields(data)
-    return fields.u32(), fields.u64()
+    return fields.integer(), fields.long_integer()
 
 
 def read_channel(data: bytes) -> tuple[int, int, tuple[str, ...]]:
     """IDs of a device and a channel, and the names of the channel's components."""
     fields = Fields(data)
-    device, channel = fields.u32(), fields.u32()
+    device, channel = fields.integer(), fields.integer()
     fields.text()
     return device, channel, tuple(fields.text() for _ in range(fields.count(4)))
 
@@ -219,7 +199,7 @@ def read_channel(data: bytes) -> tuple[int, int, tuple[str, ...]]:
 def read_plate(data: bytes) -> Plate:
     """Where a plate lies."""
     fields = Fields(data)
-    device, translation, rotation = fields.u32(), fields.floats(3), fields.floats(9).reshape(3, 3)
+    device, translation, rotation = fields.integer(), fields.floats(3), fields.floats(9).reshape(3, 3)
     return Plate(device, translation, rotation, fields.floats(6).reshape(2, 3), fields.floats(3))
 
 
@@ -243,7 +223,7 @@ def read_samples(data: bytes) -> DeviceSamples:
         InvalidPacket: Their number is not one of triples, or too large.
     """
     fields = Fields(data)
-    frame, device, _ = fields.u32(), fields.u32(), fields.u32()
+    frame, device, _ = fields.integer(), fields.integer(), fields.integer()
     values = fields.rows(np.dtype("<f4"), fields.count(4))
     if len(values) % 3 or len(values) > 3 * MOST_SAMPLES:
         raise InvalidPacket(

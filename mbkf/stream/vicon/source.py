@@ -210,7 +210,7 @@ class ViconSource:
         if self._known.refused or objects.FRAME_INFO not in one.blocks:
             return None
         try:
-            self._before = self._read(one, objects.Fields(one.blocks[objects.FRAME_INFO][0]).u32())
+            self._before = self._read(one, objects.Fields(one.blocks[objects.FRAME_INFO][0]).integer())
         except (InvalidPacket, ValueError, ArithmeticError) as error:
             self._report("packets", f"objects that cannot be read are left out ({error})")
             return None
