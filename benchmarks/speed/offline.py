@@ -7,9 +7,6 @@ well. What an hour would take is extrapolated from two lengths; ``--minutes M`` 
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -17,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.checks import Check, information
-from benchmarks.speed.commands import as_installed
+from benchmarks.speed.consumed import consumed
 from benchmarks.speed.products import product_seconds
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
@@ -141,18 +138,8 @@ def _reconstructed(trial: Path, option: str) -> Taken:
     """
     out = trial.with_name(option.strip("-"))
     subject = trial.with_name("subject.toml")
-    words = ("reconstruct", trial, "--subject", subject, option, "--out", out, "--overwrite")
-    messages = out.with_suffix(".txt")
-    with messages.open("w") as said:
-        child = subprocess.Popen(
-            [sys.executable, "-m", "mbkf", *words], stdout=said, stderr=said, env=as_installed()
-        )
-        _, status, used = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode:
-        raise InvalidInput(messages.read_text().strip().splitlines()[-1])
-    unit = 1.0 if sys.platform == "darwin" else 1024.0  # the system counts bytes or kilobytes
-    return Taken(used.ru_utime + used.ru_stime, used.ru_maxrss * unit / 1e6, _frames(trial))
+    used = consumed("reconstruct", trial, "--subject", subject, option, "--out", out, "--overwrite")
+    return Taken(used.seconds, used.peak_mb, _frames(trial))
 
 
 def _frames(trial: Path) -> int:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.checks import Check, Context
-from benchmarks.speed.commands import as_installed
+from benchmarks.speed.consumed import consumed
 from mbkf.conventions import Array
-from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.trc import write_trc
 from mbkf.synthesis.person import body_of
@@ -38,7 +34,7 @@ def rows(context: Context) -> Iterator[Check]:
     _, stood = synthesise("stand", seconds=STANDING_S, subject=person)
     for name, capture in (("walked", walked), ("stood", stood)):
         write_folder(person, capture, out / name)
-        _seconds("imu", "synth", out / name / "truth.h5", "--out", out / f"{name}.csv")
+        consumed("imu", "synth", out / name / "truth.h5", "--out", out / f"{name}.csv")
     known = ("--standing", out / "stood.csv", "--subject", out / "walked" / "subject.toml")
     words = ("imu", "motion", out / "walked.csv", *known, "--out", out / "motion")
     yield _row(f"imu motion of {MOTION_S:g} s", MOTION_BOUND_S, *words)
@@ -52,7 +48,7 @@ def rows(context: Context) -> Iterator[Check]:
 
 
 def _row(name: str, bound_s: float, *words: str | Path) -> Check:
-    return Check(f"{name}, processor time", _seconds(*words), bound_s, "<=", "s")
+    return Check(f"{name}, processor time", consumed(*words).seconds, bound_s, "<=", "s")
 
 
 def _unknown(count: int) -> MarkerTrajectories:
@@ -69,25 +65,3 @@ def _unknown(count: int) -> MarkerTrajectories:
         positions_m[t] = places_m[joints] + np.einsum("mij,mj->mi", rotations[joints], local_m)
     names = tuple(f"P{k:03d}" for k in range(1, count + 1))
     return MarkerTrajectories(names, positions_m, recorded.trial.markers.rate_hz)
-
-
-def _seconds(*words: str | Path) -> float:
-    """Processor time of a command, with that of its own children.
-
-    Raises:
-        InvalidInput: It fails.
-    """
-    with subprocess.Popen(
-        [sys.executable, "-m", "mbkf", *map(str, words)],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=as_installed(),
-    ) as child:
-        assert child.stderr is not None
-        said = child.stderr.read()
-        _, status, used = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode:
-        raise InvalidInput(said.strip().splitlines()[-1])
-    return used.ru_utime + used.ru_stime

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
-from mbkf.cli.windows import windows_desktop
+from mbkf.cli.windows import NATIVE, windows_desktop
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import write_text
 from mbkf.io.written import MARK
@@ -39,7 +39,7 @@ def write_shortcut(words: Sequence[str]) -> Path:
     """
     command = [sys.executable, "-m", "mbkf", *words]
     distribution = os.environ.get("WSL_DISTRO_NAME")
-    if distribution or os.name == "nt":
+    if distribution or NATIVE:
         file, text = _desktop() / f"{NAME}.cmd", windows_text(command, distribution)
     elif sys.platform == "darwin":
         file, text = Path.home() / "Desktop" / f"{NAME}.command", macos_text(command)
@@ -93,9 +93,11 @@ def _desktop() -> Path:
     """The desktop of Windows.
 
     Raises:
-        InvalidInput: Windows does not say where it is.
+        InvalidInput: Windows does not answer under WSL.
     """
-    found = windows_desktop() if os.name != "nt" else Path.home() / "Desktop"
+    found = windows_desktop()
+    if found is None and NATIVE:
+        return Path.home() / "Desktop"
     if found is None:
         raise InvalidInput(
             "the desktop of Windows is not found: WSL starts no powershell.exe; permit programs of Windows in "

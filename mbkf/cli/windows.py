@@ -1,14 +1,18 @@
-"""Windows around WSL: paths and programs of the system that shows the browser and the desktop.
+"""Windows, itself or around WSL: paths and programs of the system that shows the browser and the desktop.
 
 WSL carries ``wslpath`` and starts programs of Windows by their names (Microsoft, "Working across Windows and Linux file
-systems"). On other systems there is no ``wslpath``, and every function gives None or False.
+systems"). On systems without ``wslpath`` and PowerShell every function gives None or False.
 """
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
+
+NATIVE = os.name == "nt"
+"""True on Windows itself, False under WSL."""
 
 PATIENCE_S = 20.0
 """Longest wait for a program of Windows."""
@@ -43,8 +47,10 @@ def opened_by_windows(path: Path) -> bool:
 
 
 def windows_desktop() -> Path | None:
-    """The folder of the Windows desktop as WSL names it; None outside WSL, or where Windows does not answer."""
+    """The folder of the Windows desktop, under WSL as WSL names it; None where Windows does not answer."""
     desktop = _said("powershell.exe", "-NoProfile", "-Command", _DESKTOP)
+    if NATIVE and desktop is not None:
+        return Path(desktop)
     named = None if desktop is None else _said("wslpath", "-u", desktop)
     return None if named is None else Path(named)
 

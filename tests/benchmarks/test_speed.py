@@ -6,6 +6,7 @@ import pytest
 from benchmarks import speed
 from benchmarks.checks import Context
 from benchmarks.speed import offline
+from benchmarks.speed.consumed import consumed
 from benchmarks.speed.offline import Taken, repeated
 from benchmarks.speed.products import Times, joined
 from benchmarks.speed.steps import (
@@ -104,3 +105,14 @@ def test_memory_of_an_hour_is_that_of_its_frames(tmp_path, monkeypatch):
     assert hour.value == pytest.approx(340.0 + 0.01 * (720_000 - 36_000)) and not hour.passed
     with pytest.raises(InvalidInput, match="more than 1"):
         offline.rows(tmp_path, 1.0)
+
+
+def test_peak_memory_of_a_command_leaves_out_that_of_the_benchmark():
+    held = np.ones(40_000_000)
+    used = consumed("--version")
+    assert 0.0 < used.peak_mb < held.nbytes / 1e6 and used.seconds > 0.0
+
+
+def test_a_command_that_fails_is_named_with_its_message():
+    with pytest.raises(InvalidInput, match="missing.c3d: no such file"):
+        consumed("info", "missing.c3d")

@@ -32,3 +32,8 @@ def test_where_windows_opens_nothing_the_system_s_browser_does(wsl, no_browser, 
 def test_without_wsl_nothing_is_asked(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     assert windows_path(tmp_path) is None and windows_desktop() is None
+
+
+def test_windows_itself_names_its_desktop_without_wsl(wsl, monkeypatch):
+    monkeypatch.setattr("mbkf.cli.windows.NATIVE", True)
+    assert str(windows_desktop()) == "C:\\Users\\Ána\\OneDrive\\Desktop"
