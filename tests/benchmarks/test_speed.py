@@ -114,5 +114,5 @@ def test_peak_memory_of_a_command_leaves_out_that_of_the_benchmark():
 
 
 def test_a_command_that_fails_is_named_with_its_message():
-    with pytest.raises(InvalidInput, match="missing.c3d: no such file"):
+    with pytest.raises(InvalidInput, match=r"missing\.c3d: no such file"):
         consumed("info", "missing.c3d")
