@@ -15,8 +15,8 @@ from mbkf.stream.loopback import LOOPBACK, is_loopback
 EVERYBODY = "255.255.255.255"
 """Every computer of the network of the card that sends."""
 
-MOST_ANSWERS = 64
-"""Answers that are taken, at most."""
+MOST_ANSWERS = 16
+"""Answers that are taken, at most: a laboratory has a few servers, and each is asked for its contents afterwards."""
 
 
 class Answer(NamedTuple):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.errors import MbkfError
+from mbkf.io.frame_log import FrameLogWriter
 from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import Subject, read_subject, write_subject
 from mbkf.stream.source import StreamDescription
@@ -57,11 +58,14 @@ def open_log(
         stream.sensors,
         stream.marker_names,
     )
+    recording: Sequence[FrameLogWriter] = ()
     try:
         write_subject(subject, place / SUBJECT_FILE)
         recording = () if record is None else open_recording(place, kept, record)
         return LiveLog(place, kept, rows, dict(settings), list(names), recording)
     except BaseException:
+        for one in recording:
+            one.close()
         drop_log(folder)  # a log without a run
         raise
 

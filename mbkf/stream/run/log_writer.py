@@ -133,8 +133,8 @@ class LogWriter:
             with suppress(Exception):
                 self._flush(log)
         self._log.close()
-        frames, *recorded = self._logs[0], *self._logs[3:4]
-        self.unrecorded = sum(log.unwritten for log in recorded)
+        frames = self._logs[0]
+        self.unrecorded = sum(self._recorded[one].unwritten for one in self._log.recording[:1])
         return frames.written, frames.unwritten
 
     def _run(self) -> None:

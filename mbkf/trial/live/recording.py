@@ -7,6 +7,7 @@ plates: short gaps are bridged with straight lines, as in every trial, and longe
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -65,11 +66,18 @@ def open_recording(folder: Path, stream: LiveStream, to: Path) -> RecordingFiles
         "plates": [described_plate(plate) for plate in stream.plates],
     }
     rows = np.dtype([("number", "<i8"), ("markers", "<f8", (len(stream.marker_names), 3))])
-    markers = FrameLogWriter(folder / MARKERS_FILE, rows, header)
-    points = FrameLogWriter(folder / POINTS_FILE, POINT_DTYPE, {})
-    return RecordingFiles(
-        markers, points, FrameLogWriter(folder / SAMPLES_FILE, plates_dtype(len(stream.plates)), {})
-    )
+    with ExitStack() as opened:
+
+        def opens(name: str, dtype: np.dtype, described: dict[str, object]) -> FrameLogWriter:
+            return opened.enter_context(FrameLogWriter(folder / name, dtype, described))
+
+        files = RecordingFiles(
+            opens(MARKERS_FILE, rows, header),
+            opens(POINTS_FILE, POINT_DTYPE, {}),
+            opens(SAMPLES_FILE, plates_dtype(len(stream.plates)), {}),
+        )
+        opened.pop_all()
+    return files
 
 
 @dataclass(frozen=True)
