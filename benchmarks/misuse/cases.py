@@ -21,9 +21,9 @@ from mbkf.model.body_file import load_body
 OUT = "OUT"
 NO_FILES = {
     "acc=g,gyr=deg/s", "ADDRESS", "[ADDRESS:]PORT", "AXIS", "A,B", "A,B,C", "A,B@T0:T1", "CODE", "E",
-    "FIRST:LAST:COUNT", "FRACTION", "FROM-TO", "HZ", "ID", "I/N", "IP", "KG", "KG|auto", "LABEL", "LIST", "M", "MS", "N",
-    "NAME", "NAME=VALUE", "NAME[=FROM-TO]", "NAME|N", "PASSWORD", "PERSON", "S", "SD", "TEXT", "T0:T1", "UNIT", "WORD",
-    "W,X,Y,Z|compared", "X", "X,Y,Z",
+    "FIRST:LAST:COUNT", "FRACTION", "FROM-TO", "HZ", "ID", "I/N", "IP", "KG", "KG|auto", "LABEL", "LIST", "M", "MS",
+    "N", "NAME", "NAME=VALUE", "NAME[=FROM-TO]", "NAME|N", "PASSWORD", "PERSON", "S", "SD", "TEXT", "T0:T1", "UNIT",
+    "WORD", "W,X,Y,Z|compared", "X", "X,Y,Z",
 }  # fmt: skip
 """Values in help texts that name no file."""
 
