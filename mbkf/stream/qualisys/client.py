@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import select
 import socket
 import time
 from collections import deque
-from contextlib import suppress
 from typing import NamedTuple
 
 from mbkf.errors import InvalidInput, InvalidPacket
+from mbkf.stream.packet_connection import ANSWER_S, PacketConnection
 from mbkf.stream.qualisys import packets
 
 BASE_PORT = 22222
@@ -18,10 +17,8 @@ BASE_PORT = 22222
 VERSIONS = ("1.25", "1.20", "1.13", "1.8", "1.1")
 """Versions of the protocol, asked for one after another until QTM knows one."""
 
-CONNECT_S, ANSWER_S = 0.5, 3.0
-"""Longest wait for a connection, and for the answer to a command."""
-
-CHUNK = 65536
+DATAGRAM = 65536
+"""Most bytes of a datagram."""
 
 PARAMETERS = "GetParameters General 3D Force"
 
@@ -59,12 +56,9 @@ class QtmClient:
         """
         self.version, self.parameters = "", ""
         self._waiting: deque[Packet] = deque()
-        self._received = bytearray()
         self._datagrams: socket.socket | None = None
-        self._socket = socket.create_connection((host, port + 1), CONNECT_S)
+        self._connection = PacketConnection(host, port + 1, "QTM ended the connection")
         try:
-            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._socket.setblocking(False)
             welcome = self._answer()
             if "QTM RT Interface connected" not in welcome:
                 raise InvalidInput(f"Qualisys: {host}, port {port + 1} is not QTM ({welcome[:60]!r})")
@@ -72,7 +66,7 @@ class QtmClient:
             self.parameters = self.command(PARAMETERS)
             if over_udp:
                 self._datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-                self._datagrams.bind((self._socket.getsockname()[0], 0))
+                self._datagrams.bind((self._connection.socket.getsockname()[0], 0))
                 self._datagrams.setblocking(False)
         except InvalidPacket as error:
             self.close()
@@ -98,11 +92,7 @@ class QtmClient:
         Raises:
             OSError: The connection broke off.
         """
-        self._socket.settimeout(ANSWER_S)
-        try:
-            self._socket.sendall(packets.packet(packets.COMMAND, text.encode() + b"\0"))
-        finally:
-            self._socket.setblocking(False)
+        self._connection.send(packets.packet(packets.COMMAND, text.encode() + b"\0"))
 
     def stream(self, components: str) -> None:
         """Asks for all frames from here on.
@@ -130,8 +120,7 @@ class QtmClient:
 
     def close(self) -> None:
         """Ends the connection."""
-        with suppress(OSError):
-            self._socket.close()
+        self._connection.close()
         if self._datagrams is not None:
             self._datagrams.close()
 
@@ -166,24 +155,20 @@ class QtmClient:
             self._waiting.extendleft(reversed(kept))
 
     def _receive(self, timeout_s: float) -> None:
-        sockets = [self._socket] if self._datagrams is None else [self._socket, self._datagrams]
-        ready, _, _ = select.select(sockets, [], [], timeout_s)
-        if self._socket in ready:
-            data = self._socket.recv(CHUNK)
-            if not data:
-                raise ConnectionResetError("QTM ended the connection")
-            self._received += data
+        ready = self._connection.wait(timeout_s, self._datagrams)
+        if self._connection.socket in ready:
+            self._connection.receive()
             self._split(time.perf_counter())
         if self._datagrams is not None and self._datagrams in ready:
-            data, (sender, _) = self._datagrams.recvfrom(CHUNK)
-            if sender == self._socket.getpeername()[0] and len(data) >= packets.HEADER.size:
+            data, (sender, _) = self._datagrams.recvfrom(DATAGRAM)
+            if sender == self._connection.socket.getpeername()[0] and len(data) >= packets.HEADER.size:
                 size, kind = packets.HEADER.unpack_from(data)
                 if size == len(data):
                     self._waiting.append(Packet(time.perf_counter(), kind, data[packets.HEADER.size :]))
 
     def _split(self, arrival_s: float) -> None:
         """Packets that are whole by now."""
-        at, received = 0, self._received
+        at, received = 0, self._connection.received
         while len(received) - at >= packets.HEADER.size:
             size, kind = packets.HEADER.unpack_from(received, at)
             if not packets.HEADER.size <= size <= packets.LARGEST:

@@ -6,23 +6,16 @@ frames from there on (server push), or for one after the other (client pull).
 
 from __future__ import annotations
 
-import select
-import socket
 import time
 from collections import deque
-from contextlib import suppress
 from typing import NamedTuple
 
 from mbkf.errors import InvalidInput, InvalidPacket
+from mbkf.stream.packet_connection import ANSWER_S, PacketConnection
 from mbkf.stream.vicon import objects
 
 PORT = 801
 """Port at which Vicon's programs serve."""
-
-CONNECT_S, ANSWER_S = 0.5, 3.0
-"""Longest wait for a connection, and for the server's list of types."""
-
-CHUNK = 262_144
 
 AGAIN_S = 1.0
 """A frame that was asked for and has not come for so long is asked for again."""
@@ -54,15 +47,12 @@ class ViconClient:
             InvalidInput: Another server answers.
         """
         self._waiting: deque[Packet] = deque()
-        self._received = bytearray()
         self._asked_s: float | None = None
-        self._socket = socket.create_connection((host, port), CONNECT_S)
+        self._connection = PacketConnection(host, port, "Vicon's program ended the connection")
         try:
-            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._socket.setblocking(False)
             self.supported = self._greeting()
             wanted = tuple(one for one in objects.WANTED if one in self.supported)
-            self._send(objects.packet(objects.enums((*wanted, objects.CONTENTS))))
+            self._connection.send(objects.packet(objects.enums((*wanted, objects.CONTENTS))))
         except InvalidPacket as error:
             self.close()
             raise InvalidInput(f"Vicon: {host}, port {port} is not a DataStream server ({error})") from error
@@ -99,7 +89,7 @@ class ViconClient:
             OSError: The connection broke off.
         """
         self._asked_s = time.perf_counter()
-        self._send(objects.request(streaming=False))
+        self._connection.send(objects.request(streaming=False))
 
     @property
     def asked(self) -> bool:
@@ -113,12 +103,11 @@ class ViconClient:
             OSError: The connection broke off.
         """
         self._asked_s = None
-        self._send(objects.request(streaming=True))
+        self._connection.send(objects.request(streaming=True))
 
     def close(self) -> None:
         """Ends the connection."""
-        with suppress(OSError):
-            self._socket.close()
+        self._connection.close()
 
     def _greeting(self) -> tuple[int, ...]:
         until = time.perf_counter() + ANSWER_S
@@ -131,26 +120,14 @@ class ViconClient:
                 return objects.read_numbers(found[0])
         raise TimeoutError("Vicon's program does not answer")
 
-    def _send(self, data: bytes) -> None:
-        self._socket.settimeout(ANSWER_S)
-        try:
-            self._socket.sendall(data)
-        finally:
-            self._socket.setblocking(False)
-
     def _receive(self, timeout_s: float) -> None:
-        ready, _, _ = select.select([self._socket], [], [], timeout_s)
-        if not ready:
-            return
-        data = self._socket.recv(CHUNK)
-        if not data:
-            raise ConnectionResetError("Vicon's program ended the connection")
-        self._received += data
-        self._split(time.perf_counter())
+        if self._connection.wait(timeout_s):
+            self._connection.receive()
+            self._split(time.perf_counter())
 
     def _split(self, arrival_s: float) -> None:
         """Packets that are whole by now; a whole one that cannot be read holds no blocks."""
-        at, received, head = 0, self._received, objects.HEADER.size
+        at, received, head = 0, self._connection.received, objects.HEADER.size
         while len(received) - at >= head:
             kind, size = objects.HEADER.unpack_from(received, at)
             if kind != objects.PACKET or size > objects.LARGEST:
