@@ -96,10 +96,15 @@ def _any_type(rng: np.random.Generator) -> bytes:
     return bytes([int(rng.choice([0, 1, 2, 4, 5, 6, 8, 99]))]) + rng.bytes(int(rng.integers(0, 200)))
 
 
-def _renamed(s: Schedule) -> None:
-    s.act(s.begin, "rename")
-    s.act(s.end, "rename_back")
-    s.whole = False
+def _acts(first: str, back: str) -> Fault:
+    """Two acts of the wire, at the fault's begin and end."""
+
+    def fault(s: Schedule) -> None:
+        s.act(s.begin, first)
+        s.act(s.end, back)
+        s.whole = False
+
+    return fault
 
 
 def _unreadable(s: Schedule) -> None:
@@ -112,7 +117,7 @@ QUALISYS: dict[str, Fault] = {
     "packets that claim a million things": _packets(_claims),
     "packets of garbage": _packets(_garbage_data),
     "packets of any type": _packets(_any_type),
-    "labels renamed for a while": _renamed,
+    "labels renamed for a while": _acts("rename", "rename_back"),
     "bytes that are no packet": _unreadable,
 }
 
@@ -138,17 +143,6 @@ def _garbage_object(rng: np.random.Generator) -> bytes:
 def _foreign_object(rng: np.random.Generator) -> bytes:
     data = rng.bytes(int(rng.integers(0, 200)))
     return struct.pack("<II", int(rng.choice([14, 16, 22, 26, 42, 100003, 99999])), len(data)) + data
-
-
-def _acts(first: str, back: str) -> Fault:
-    """Two acts of the wire, at the fault's begin and end."""
-
-    def fault(s: Schedule) -> None:
-        s.act(s.begin, first)
-        s.act(s.end, back)
-        s.whole = False
-
-    return fault
 
 
 VICON: dict[str, Fault] = {

@@ -1,4 +1,4 @@
-"""What is played: a person who walks on a belt over two plates, with more markers, or with points without names.
+"""Captures that the simulators play: a walk on a belt over two plates, with 36 or 80 markers, or without names.
 
 Plates of a capture that was written as a file hold their last samples until its last frame's end, which a whole trial
 shows, and a stream does not yet; so a run ends two frames before the capture.

@@ -12,6 +12,7 @@ import numpy as np
 from benchmarks.robustness.stream_schedule import Sent
 from benchmarks.robustness.stream_wire import HERE, STRANGER, Wire, with_other_markers
 from benchmarks.streams.qualisys_server import CAMERAS_CHANGED, QtmServer
+from benchmarks.streams.server_wire import ServerWire, frame_number
 from benchmarks.streams.vicon_wire import ViconWire
 from mbkf.stream.played import Played, PlayedFrame
 from mbkf.stream.qualisys.source import QualisysSource
@@ -114,37 +115,17 @@ class UdpWire:
         return line(fields)
 
 
-class QualisysWire:
+class QualisysWire(ServerWire[QtmServer]):
     """A simulated QTM. Methods beyond those of a wire are acts of a schedule."""
 
     def __init__(self, played: Played) -> None:
         """Args: the capture."""
-        self._played = played
+        super().__init__(played, QtmServer)
         self._samples = [frame.plates for frame in played.frames()]
-        self._server: QtmServer | None = QtmServer(played)
-        self._port = self._server.port
 
     def source(self) -> FrameSource:
         """A source of this server."""
         return QualisysSource(HERE, self._port)
-
-    def listening(self) -> bool:
-        """True once the source asked for frames."""
-        return self._server is not None and self._server.listening()
-
-    def open(self) -> None:
-        """Serves again."""
-        self._server = QtmServer(self._played, port=self._port)
-
-    def open_other(self) -> None:
-        """Serves fewer markers."""
-        self._server = QtmServer(with_other_markers(self._played), port=self._port)
-
-    def close(self) -> None:
-        """Serves no more."""
-        if self._server is not None:
-            self._server.close()
-            self._server = None
 
     def half(self) -> None:
         """Sends half of a frame."""
@@ -170,26 +151,22 @@ class QualisysWire:
             self._server.to_all(data[0], data[1:])
 
     def rename(self) -> None:
-        """QTM has other labels."""
-        if self._server is not None:
-            self._server.names = [f"other_{name}" for name in self._server.names]
-            self._server.to_all(6, bytes([CAMERAS_CHANGED]))
+        """QTM has other labels, and says so."""
+        super().rename()
+        self._say_changed()
 
     def rename_back(self) -> None:
-        """QTM has the known labels in another order."""
-        if self._server is not None:
-            self._server.names = list(self._played.stream.marker_names)
-            self._server.to_all(6, bytes([CAMERAS_CHANGED]))
+        """QTM has the known labels again, and says so."""
+        super().rename_back()
+        self._say_changed()
 
-    def forget_size(self) -> None:
-        """Bytes that are no packet, after which a connection cannot be read any more."""
+    def _say_changed(self) -> None:
         if self._server is not None:
-            self._server.raw_to_all(b"\xff" * 64)
+            self._server.to_all(6, bytes([CAMERAS_CHANGED]))
 
     def _payload(self, server: QtmServer, one: Sent, components: tuple[int, ...]) -> bytes:
         shown = disturbed(self._played, one, self._samples[one.frame])
-        number = int(one.number) if abs(one.number) < 2.0**62 else 2**31
-        return server.data(shown, components, number)
+        return server.data(shown, components, frame_number(one))
 
 
 WIRES: dict[str, Callable[[Played], Wire]] = {"udp": UdpWire, "qualisys": QualisysWire, "vicon": ViconWire}
