@@ -1,4 +1,4 @@
-"""A video beside the 3-D view in a browser: picture shown against the trial's time, ranges, a file that is no video."""
+"""A video beside the 3-D view: its picture against the trial's time, byte ranges, refusal of a text file."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _ranges(page: Any, folder: Path) -> Iterator[Check]:
 
 
 def _spanish(user: Visit, address: str, picture: Path) -> Iterator[Check]:
-    """Words of the view with a video, before its begin and with a file that is no video."""
+    """Reads the texts of the Spanish view beside a video and beside a text file."""
     known = {*BEGINS_S, NO_VIDEO, TRIAL, SESSION, "mbkf"}
     texts: set[str] = set()
     for name in ("m11_2.webm", NO_VIDEO):

@@ -184,7 +184,7 @@ def _follow_sensors(args: argparse.Namespace) -> int:
     """Follows a suit of inertial sensors as ``mbkf imu live`` does.
 
     Raises:
-        InvalidInput: An option is for markers, or no person is named.
+        InvalidInput: An option is for markers, or ``--subject`` is missing.
     """
     from mbkf.cli.imu_live import follow_sensors
     from mbkf.errors import InvalidInput

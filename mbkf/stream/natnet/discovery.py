@@ -43,7 +43,7 @@ def natnet_streams(local: str, timeout_s: float, port: int = COMMAND_PORT) -> li
 
 
 def _found(answer: Answer, port: int) -> FoundStream | None:
-    """The server of an answer; None where it is no answer, or its protocol is not read."""
+    """The server that answered; None where the packet is of another kind or of a version that we do not read."""
     options = {"server": answer.address, "local": answer.local}
     if port != COMMAND_PORT:
         options["port"] = str(port)

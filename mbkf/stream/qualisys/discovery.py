@@ -36,7 +36,7 @@ def qualisys_streams(local: str, timeout_s: float, port: int = DISCOVER_PORT) ->
 
 
 def _found(answer: Answer) -> FoundStream | None:
-    """The server of an answer; None for one that is no answer of QTM."""
+    """The server that answered; None where the packet is not from QTM."""
     data = answer.data
     if len(data) < HEADER.size + _PORT.size or HEADER.unpack_from(data) != (len(data), COMMAND):
         return None
