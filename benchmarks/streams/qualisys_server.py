@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import socket
 import struct
-import threading
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
 import numpy as np
 
+from benchmarks.streams.tcp_server import HEAD, Connected, TcpServer
 from mbkf.conventions import Array
 from mbkf.io.plate_corners import plate_axes
 from mbkf.stream.played import Played, PlayedFrame
@@ -29,23 +29,20 @@ BODY = "torso"
 """A rigid body for clients of bodies: it stands in the middle of the markers and does not turn."""
 
 
-@dataclass
-class Client:
-    """A connected client.
+@dataclass(eq=False)
+class Client(Connected):
+    """A client.
 
     Attributes:
-        connection: Its socket.
         components: Types that it wants streamed; none before it asked.
         udp: Where it wants them; None for its connection.
     """
 
-    connection: socket.socket
     components: tuple[int, ...] = ()
     udp: tuple[str, int] | None = None
-    lock: threading.Lock = field(default_factory=threading.Lock)
 
 
-class QtmServer:
+class QtmServer(TcpServer[Client]):
     """A :class:`mbkf.stream.replay.Player`.
 
     Attributes:
@@ -72,6 +69,7 @@ class QtmServer:
             most_version: The newest version of the protocol that it knows.
             discover_port: Port at which it answers clients that look for it, 0 for any; None for none.
         """
+        super().__init__("qtm", address, port + 1 if port else 0, Client)
         self.played = played
         self.names = list(played.stream.marker_names)
         self.password = ""
@@ -79,26 +77,19 @@ class QtmServer:
         self.measuring = False
         self._known = KNOWN_VERSIONS[: KNOWN_VERSIONS.index(most_version) + 1]
         self._corners = [p.corners_m for p in played.stream.plates if p.corners_m is not None]
-        self._listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-        self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        self._listener.bind((address, port + 1 if port else 0))
-        self._listener.listen()
-        self.port = self._listener.getsockname()[1] - 1
+        self.port = self.tcp_port - 1
         self._datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._clients: list[Client] = []
-        self._closing = False
-        self._threads = [threading.Thread(target=self._accept, name="qtm-accept", daemon=True)]
-        self._threads[0].start()
         self._finder = self._discoverable(address, discover_port)
+        self.start()
 
     def listening(self) -> bool:
         """True once a client asked for frames."""
-        return any(one.components for one in self._clients)
+        return any(one.components for one in self.clients())
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:
         """Sends a frame to all who asked for frames."""
         del age_s
-        for one in list(self._clients):
+        for one in self.clients():
             if one.components:
                 self.send_data(one, self.data(frame, one.components))
 
@@ -127,15 +118,9 @@ class QtmServer:
 
     def to_all(self, kind: int, payload: bytes) -> bool:
         """Sends a packet to every client; true where there is one."""
-        for one in list(self._clients):
+        for one in self.clients():
             self._send(one, kind, payload)
-        return bool(self._clients)
-
-    def raw_to_all(self, data: bytes) -> None:
-        """Sends bytes over every connection, whatever they are."""
-        for one in list(self._clients):
-            with suppress(OSError), one.lock:
-                one.connection.sendall(data)
+        return bool(self.clients())
 
     @property
     def discover_port(self) -> int | None:
@@ -144,23 +129,16 @@ class QtmServer:
 
     def streaming(self) -> list[Client]:
         """Clients that asked for frames."""
-        return [one for one in self._clients if one.components]
+        return [one for one in self.clients() if one.components]
 
     def close(self) -> None:
         """Ends all connections."""
-        self._closing = True
-        with suppress(OSError):
-            self._listener.shutdown(socket.SHUT_RDWR)
-        self._listener.close()
-        for one in list(self._clients):
-            with suppress(OSError):
-                one.connection.shutdown(socket.SHUT_RDWR)
+        self._closed.set()
         if self._finder is not None:
             with suppress(OSError):
                 self._finder.shutdown(socket.SHUT_RDWR)
             self._finder.close()
-        for thread in self._threads:
-            thread.join(5.0)
+        super().close()
         self._datagrams.close()
 
     def parameters(self, wanted: list[str]) -> str:
@@ -178,15 +156,13 @@ class QtmServer:
         finder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         finder.bind((address, port))
         finder.settimeout(0.1)
-        thread = threading.Thread(target=self._be_found, args=(finder,), name="qtm-discover", daemon=True)
-        self._threads.append(thread)
-        thread.start()
+        self._run(self._be_found, finder)
         return finder
 
     def _be_found(self, finder: socket.socket) -> None:
         """Answers a discover packet: ten bytes, the last two the port for the answer, in network byte order."""
         answer = b"simulator, QTM 2.17 (build 4000), 8 cameras\0"
-        while not self._closing:
+        while not self._closed.is_set():
             try:
                 data, (sender, *_) = finder.recvfrom(1024)
             except TimeoutError:
@@ -198,45 +174,18 @@ class QtmServer:
                 to = (sender, struct.unpack_from(">H", data, 8)[0])
                 finder.sendto(head + answer + struct.pack(">H", self.port), to)
 
-    def _accept(self) -> None:
-        while not self._closing:
-            try:
-                connection, _ = self._listener.accept()
-            except OSError:
-                return
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            client = Client(connection)
-            self._clients.append(client)
-            thread = threading.Thread(target=self._serve, args=(client,), name="qtm-client", daemon=True)
-            self._threads.append(thread)
-            thread.start()
-
-    def _serve(self, client: Client) -> None:
+    def greet(self, client: Client) -> None:
+        """States that it is QTM."""
         self._answer(client, "QTM RT Interface connected")
-        received = b""
-        try:
-            while True:
-                data = client.connection.recv(65536)
-                if not data:
-                    return
-                received += data
-                while len(received) >= 8:
-                    size, kind = struct.unpack_from("<II", received)
-                    if not 8 <= size <= 1 << 20:
-                        return
-                    if len(received) < size:
-                        break
-                    text, received = (
-                        received[8:size].rstrip(b"\0").decode("ascii", "replace"),
-                        received[size:],
-                    )
-                    if kind == 1:
-                        self._obey(client, text)
-        except OSError:
-            return
-        finally:
-            self._clients.remove(client)
-            client.connection.close()
+
+    def size(self, head: bytes) -> int:
+        """Bytes of the packet that begins with this head."""
+        return int(struct.unpack_from("<I", head)[0])
+
+    def obey(self, client: Client, packet: bytes) -> None:
+        """Does a command."""
+        if struct.unpack_from("<I", packet, 4)[0] == 1:
+            self._obey(client, packet[HEAD:].rstrip(b"\0").decode("ascii", "replace"))
 
     def _obey(self, client: Client, text: str) -> None:
         self.commands.append(text)

@@ -7,15 +7,13 @@ has; periods are ticks of 135 MHz; samples of a plate follow component by compon
 
 from __future__ import annotations
 
-import socket
 import struct
-import threading
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from benchmarks.streams.tcp_server import HEAD, Connected, TcpServer
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.plate_corners import plate_axes
@@ -56,20 +54,18 @@ class PlateConvention:
     at_sensor: bool = False
 
 
-@dataclass
-class Client:
-    """A connected client: its socket, types that it wants, its requests, and frames shown before anything is played."""
+@dataclass(eq=False)
+class Client(Connected):
+    """A client: types that it wants, its requests, and frames shown before anything is played."""
 
-    connection: socket.socket
     wanted: frozenset[int] = frozenset()
     streaming: bool = False
     asked: int = 0
     shown: int = 0
     told: dict[int, bytes] = field(default_factory=dict)
-    lock: threading.Lock = field(default_factory=threading.Lock)
 
 
-class ViconServer:
+class ViconServer(TcpServer[Client]):
     """A :class:`mbkf.stream.replay.Player`.
 
     Attributes:
@@ -105,15 +101,13 @@ class ViconServer:
             raise InvalidInput(
                 "the simulated server needs plates that start with the frames, at a multiple of their rate"
             )
+        super().__init__("vicon-server", address, port, Client)
         self.played, self.names, self.subject = played, list(stream.marker_names), BODY
         self.convention, self.y_up = convention or PlateConvention(), False
         self._ratio = round(ratio)
         self._corners = [_corners(plate.corners_m, plate.origin_m) for plate in stream.plates]
-        self._clients: list[Client] = []
-        self._lock, self._closed = threading.Lock(), threading.Event()
-        self._server = socket.create_server((address, port))
-        self.port = int(self._server.getsockname()[1])
-        threading.Thread(target=self._accept, name="vicon-server", daemon=True).start()
+        self.port = self.tcp_port
+        self.start()
 
     def listening(self) -> bool:
         """True once a client asks for frames and has been shown the first one :data:`SHOWN` times."""
@@ -121,8 +115,7 @@ class ViconServer:
 
     def ready(self) -> list[Client]:
         """Clients that ask for frames."""
-        with self._lock:
-            return [one for one in self._clients if one.streaming or one.asked]
+        return [one for one in self.clients() if one.streaming or one.asked]
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:
         """Sends a frame to all who ask for one."""
@@ -161,28 +154,6 @@ class ViconServer:
         )
         body += b"".join(block(kind, data) for kind, data in blocks if kind in client.wanted)
         self.raw(client, block(PACKET, body))
-
-    def raw(self, client: Client, data: bytes) -> None:
-        """Sends bytes; a client that is gone is forgotten."""
-        try:
-            with client.lock:
-                client.connection.sendall(data)
-        except OSError:
-            self._forget(client)
-
-    def raw_to_all(self, data: bytes) -> None:
-        """Sends bytes to all who ask for frames."""
-        for client in self.ready():
-            self.raw(client, data)
-
-    def close(self) -> None:
-        """Serves no more."""
-        self._closed.set()
-        with suppress(OSError):
-            self._server.shutdown(socket.SHUT_RDWR)
-        self._server.close()
-        for client in list(self._clients):
-            self._forget(client)
 
     def blocks(
         self, frame: PlayedFrame, number: int | None = None, wrench: Array | None = None
@@ -289,42 +260,22 @@ class ViconServer:
         """Vectors (…, 3) in its world's axes: of one with y up, (x, y, z) are (x, z, −y)."""
         return vectors[..., [0, 2, 1]] * [1.0, 1.0, -1.0] if self.y_up else vectors
 
-    def _accept(self) -> None:
-        while not self._closed.is_set():
-            try:
-                connection, _ = self._server.accept()
-            except OSError:
-                return
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            client = Client(connection)
-            with self._lock:
-                self._clients.append(client)
-            kinds = [kind for name, kind in TYPES.items() if name not in ("enums", "request")]
-            listed = struct.pack(f"<{1 + len(kinds)}I", len(kinds), *sorted(kinds))
-            self.raw(client, block(PACKET, block(TYPES["enums"], listed)))
-            threading.Thread(target=self._serve, args=(client,), daemon=True).start()
+    def greet(self, client: Client) -> None:
+        """Lists the types that it has."""
+        kinds = [kind for name, kind in TYPES.items() if name not in ("enums", "request")]
+        listed = struct.pack(f"<{1 + len(kinds)}I", len(kinds), *sorted(kinds))
+        self.raw(client, block(PACKET, block(TYPES["enums"], listed)))
 
-    def _serve(self, client: Client) -> None:
-        received = b""
-        while not self._closed.is_set():
-            try:
-                data = client.connection.recv(65536)
-            except OSError:
-                data = b""
-            if not data:
-                self._forget(client)
-                return
-            received += data
-            while len(received) >= 8 and len(received) >= 8 + struct.unpack_from("<I", received, 4)[0]:
-                size = struct.unpack_from("<I", received, 4)[0]
-                self._obey(client, received[8 : 8 + size])
-                received = received[8 + size :]
+    def size(self, head: bytes) -> int:
+        """Bytes of the packet that begins with this head."""
+        return len(head) + int(struct.unpack_from("<I", head, 4)[0])
 
-    def _obey(self, client: Client, blocks: bytes) -> None:
-        at = 0
-        while at + 8 <= len(blocks):
-            kind, size = struct.unpack_from("<2I", blocks, at)
-            data = blocks[at + 8 : at + 8 + size]
+    def obey(self, client: Client, packet: bytes) -> None:
+        """Takes the types that a client wants, or its request for frames."""
+        at = HEAD
+        while at + 8 <= len(packet):
+            kind, size = struct.unpack_from("<2I", packet, at)
+            data = packet[at + 8 : at + 8 + size]
             if kind == TYPES["enums"]:
                 client.wanted = frozenset(struct.unpack_from(f"<{len(data) // 4 - 1}I", data, 4))
                 client.told = {}
@@ -340,14 +291,6 @@ class ViconServer:
         with self._lock:
             client.streaming = streaming
             client.asked += not streaming
-
-    def _forget(self, client: Client) -> None:
-        with self._lock:
-            if client in self._clients:
-                self._clients.remove(client)
-        with suppress(OSError):
-            client.connection.shutdown(socket.SHUT_RDWR)
-        client.connection.close()
 
 
 def block(kind: int, data: bytes) -> bytes:

@@ -16,10 +16,8 @@ from mbkf.stream.qualisys.client import PARAMETERS, Packet, QtmClient
 from mbkf.stream.qualisys.parameters import MM, QtmDescription, read_parameters
 from mbkf.stream.qualisys.plates import PlateForceReader
 from mbkf.stream.qualisys.waiting import WaitingFrames
+from mbkf.stream.reconnecting import ReconnectingSource
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
-
-RECONNECT_AFTER_S, AGAIN_S = 3.0, 0.5
-"""After so long without a packet the connection is made anew; attempts are so far apart."""
 
 ASK_AGAIN_S = 0.25
 """Interval of questions for parameters while frames do not fit them."""
@@ -30,14 +28,8 @@ NEW_PARAMETERS = {1, 3, 7, 11}
 NO_POINTS = read_only(np.zeros((0, 3)))
 
 
-class QualisysSource:
-    """A :class:`mbkf.stream.source.FrameSource`.
-
-    Attributes:
-        receiving: True from the first read on, when frames are asked for.
-    """
-
-    patient = False
+class QualisysSource(ReconnectingSource[QtmClient, Packet]):
+    """A :class:`mbkf.stream.source.FrameSource`."""
 
     def __init__(
         self,
@@ -58,17 +50,12 @@ class QualisysSource:
             control: Password with which a measurement is started at the first frame asked for and stopped at the end,
                 "" without one; None to leave QTM alone.
         """
+        super().__init__("QTM")
         self._place, self._up, self._control = (host, port, over_udp), up, control
-        self._client: QtmClient | None = None
-        self._known: KnownStream | None = None
         self._described: QtmDescription | None = None
         self._plates: PlateForceReader | None = None
-        self.receiving = False
         self._waiting: WaitingFrames | None = None
-        self._heard_s = self._tried_s = self._asked_s = 0.0
-        self._lost = False
-        self._news: list[tuple[str, str]] = []
-        self._reported: set[str] = set()
+        self._asked_s = 0.0
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """QTM's description of the stream, None while QTM is not there; frames are asked for by the first read.
@@ -78,7 +65,7 @@ class QualisysSource:
         """
         begin = time.perf_counter()
         try:
-            self._client = QtmClient(*self._place)
+            self._client = self._open()
         except OSError:
             time.sleep(max(0.0, min(timeout_s, 0.1 - (time.perf_counter() - begin))))
             return None
@@ -102,16 +89,11 @@ class QualisysSource:
                 return ready
             now = time.perf_counter()
             wait_s = min(until - now, self._waiting.wait_s(now))
-            found = self._take(max(0.0, wait_s), now)
+            found = self._take(max(0.0, wait_s))
             if found is not None:
                 self._put(found)
             elif now >= until:
                 return None
-
-    def news(self) -> list[tuple[str, str]]:
-        """Events of the connection since the last call."""
-        news, self._news = self._news, []
-        return news
 
     def close(self) -> None:
         """Ends a measurement that this source started, and the connection."""
@@ -122,49 +104,14 @@ class QualisysSource:
             if self._control is not None and self.receiving:
                 self._client.send("Stop")
                 self._client.send("ReleaseControl")
-        self._client.close()
-        self._client = None
+        super().close()
 
-    def _take(self, timeout_s: float, now: float) -> Packet | None:
-        """The next packet; a connection that broke off is made anew."""
-        if self._client is None:
-            if now - self._tried_s < AGAIN_S:
-                time.sleep(min(timeout_s, AGAIN_S - (now - self._tried_s)))
-                return None
-            self._again(now)
-            return None
-        try:
-            found = self._client.take(timeout_s)
-        except (OSError, InvalidPacket) as error:
-            self._lose(str(error))
-            return None
-        if found is not None:
-            self._heard_s = found.arrival_s
-        elif now - self._heard_s > RECONNECT_AFTER_S:
-            self._lose("QTM is silent")
-        return found
+    def _open(self) -> QtmClient:
+        return QtmClient(*self._place)
 
-    def _lose(self, why: str) -> None:
-        if not self._lost:
-            self._news.append(("connection", f"the connection to QTM broke off and is made anew ({why})"))
-        self._lost = True
-        if self._client is not None:
-            self._client.close()
-            self._client = None
-
-    def _again(self, now: float) -> None:
-        self._tried_s = now
-        try:
-            self._client = QtmClient(*self._place)
-            self._heard_s = time.perf_counter()
-            self._describe(self._client.parameters)
-            self._ask_for_frames()
-        except (OSError, InvalidInput) as error:
-            self._report("refused", f"QTM cannot be connected to again ({error})")
-            return
-        if self._lost:
-            self._news.append(("connection", "the connection to QTM is back"))
-        self._lost = False
+    def _resume(self, client: QtmClient) -> None:
+        self._describe(client.parameters)
+        self._ask_for_frames()
 
     def _ask_for_frames(self) -> None:
         assert self._client is not None and self._known is not None
@@ -254,11 +201,6 @@ class QualisysSource:
         self._described, self._plates = found, PlateForceReader(found)
         self._plates.axes = axes
         self._news += self._known.describe(found.stream)
-
-    def _report(self, kind: str, sentence: str) -> None:
-        if kind not in self._reported:
-            self._reported.add(kind)
-            self._news.append((kind, sentence))
 
 
 def _same(one: QtmDescription, other: QtmDescription) -> bool:

@@ -8,17 +8,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.errors import InvalidInput, InvalidPacket, MbkfError
+from mbkf.errors import InvalidPacket, MbkfError
 from mbkf.io.axes import rotation_to_world
 from mbkf.stream.known import KnownStream
+from mbkf.stream.reconnecting import ReconnectingSource
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 from mbkf.stream.vicon import objects
 from mbkf.stream.vicon.client import Packet, ViconClient
 from mbkf.stream.vicon.description import MM, ViconDescription, describe
 from mbkf.stream.vicon.plates import PlateForceReader
-
-RECONNECT_AFTER_S, AGAIN_S = 3.0, 0.5
-"""After so long without a packet the connection is made anew; attempts are so far apart."""
 
 FRAMES_FIRST = 2
 """A stream is described by the objects of so many frames: plates show their samples then."""
@@ -26,14 +24,8 @@ FRAMES_FIRST = 2
 NO_POINTS = read_only(np.zeros((0, 3)))
 
 
-class ViconSource:
-    """A :class:`mbkf.stream.source.FrameSource`.
-
-    Attributes:
-        receiving: True from the first read on, when frames are asked for.
-    """
-
-    patient = False
+class ViconSource(ReconnectingSource[ViconClient, Packet]):
+    """A :class:`mbkf.stream.source.FrameSource`."""
 
     def __init__(
         self, host: str, port: int, *, up: str | None = None, person: str | None = None, pull: bool = False
@@ -50,21 +42,16 @@ class ViconSource:
         Raises:
             UnknownName: The axis does not exist.
         """
+        super().__init__("Vicon")
         rotation_to_world(up or "z")
         self._place, self._pull = (host, port), pull
         self._up, self._person = up, person
-        self._client: ViconClient | None = None
         self._objects: dict[int, list[bytes]] = {}
         self._forces: dict[int, int] = {}
         self._described: ViconDescription | None = None
-        self._known: KnownStream | None = None
         self._plates: PlateForceReader | None = None
         self._before: SourceFrame | None = None
         self._frames = 0
-        self._tried_s = self._heard_s = 0.0
-        self._lost = self.receiving = False
-        self._news: list[tuple[str, str]] = []
-        self._reported: set[str] = set()
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The stream, once two single frames have described it.
@@ -108,7 +95,8 @@ class ViconSource:
         until = time.perf_counter() + timeout_s
         if not self.receiving:
             self.receiving = True
-            self._ask()
+            if self._client is not None:
+                self._resume(self._client)
         while True:
             left = until - time.perf_counter()
             found = self._take(max(0.0, left))
@@ -118,70 +106,22 @@ class ViconSource:
             if left <= 0.0:
                 return None
 
-    def news(self) -> list[tuple[str, str]]:
-        """Events of the connection since the last call."""
-        news, self._news = self._news, []
-        return news
+    def _open(self) -> ViconClient:
+        return ViconClient(*self._place)
 
-    def close(self) -> None:
-        """Ends the connection."""
-        if self._client is not None:
-            self._client.close()
-            self._client = None
-
-    def _take(self, timeout_s: float) -> Packet | None:
-        """The next packet; a connection that broke off is made anew."""
-        now = time.perf_counter()
-        if self._client is None:
-            if now - self._tried_s < AGAIN_S:
-                time.sleep(min(timeout_s, AGAIN_S - (now - self._tried_s)))
-                return None
-            self._again(now)
-            return None
+    def _resume(self, client: ViconClient) -> None:
+        """Asks for all frames; where each one is asked for, that happens when it is waited for."""
+        if self._pull or not self.receiving:
+            return
         try:
-            if (self._pull or not self.receiving) and not self._client.asked:
-                self._client.ask()
-            found = self._client.take(timeout_s)
-        except (OSError, InvalidPacket) as error:
-            self._lose(str(error))
-            return None
-        if found is not None:
-            self._heard_s = found.arrival_s
-        elif now - self._heard_s > RECONNECT_AFTER_S:
-            self._lose("it is silent")
-        return found
-
-    def _ask(self) -> None:
-        """Asks for all frames; in the other way each one is asked for when it is waited for."""
-        try:
-            if self._client is not None and not self._pull:
-                self._client.stream()
+            client.stream()
         except OSError as error:
             self._lose(str(error))
 
-    def _again(self, now: float) -> None:
-        self._tried_s = now
-        try:
-            self._client = ViconClient(*self._place)
-        except OSError:
-            return
-        except InvalidInput as error:
-            if self._known is None:
-                raise
-            self._report("refused", f"Vicon's program cannot be connected to again ({error})")
-            return
-        self._heard_s = time.perf_counter()
-        if self._lost:
-            self._news.append(("connection", "the connection to Vicon's program is back"))
-        self._lost = False
-        if self.receiving:
-            self._ask()
-
-    def _lose(self, why: str) -> None:
-        if not self._lost and self._known is not None:
-            self._news.append(("connection", f"the connection to Vicon broke off and is made anew ({why})"))
-        self._lost = True
-        self.close()
+    def _next(self, client: ViconClient, timeout_s: float) -> Packet | None:
+        if (self._pull or not self.receiving) and not client.asked:
+            client.ask()
+        return super()._next(client, timeout_s)
 
     def _keep(self, one: Packet) -> bool:
         """Keeps the objects that describe the stream; true where one of them is new."""
@@ -271,8 +211,3 @@ class ViconSource:
         self._described, self._plates = found, PlateForceReader(found.plates)
         self._plates.convention = convention
         self._news += self._known.describe(found.stream)
-
-    def _report(self, kind: str, sentence: str) -> None:
-        if kind not in self._reported:
-            self._reported.add(kind)
-            self._news.append((kind, sentence))

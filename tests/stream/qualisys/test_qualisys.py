@@ -8,9 +8,9 @@ import pytest
 
 from benchmarks.streams.qualisys_server import CAMERAS_CHANGED, QtmServer
 from mbkf.errors import InvalidInput
+from mbkf.stream import reconnecting
 from mbkf.stream.played import played
 from mbkf.stream.qualisys import packets, waiting
-from mbkf.stream.qualisys import source as source_module
 from mbkf.stream.qualisys.client import Packet, QtmClient
 from mbkf.stream.qualisys.source import QualisysSource
 from tests.captures import made_capture
@@ -60,7 +60,7 @@ class Laboratory:
 @pytest.fixture(autouse=True)
 def patient(monkeypatch):
     """A busy computer is no silence of QTM."""
-    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", PATIENCE_S)
+    monkeypatch.setattr(reconnecting, "RECONNECT_AFTER_S", PATIENCE_S)
 
 
 @pytest.fixture
@@ -167,7 +167,7 @@ def test_a_server_that_dies_and_returns_is_taken_up_again(laboratory):
 
 def test_a_silent_connection_is_made_anew(laboratory, monkeypatch):
     one = laboratory()
-    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", 0.0)
+    monkeypatch.setattr(reconnecting, "RECONNECT_AFTER_S", 0.0)
     assert "silent" in one.event("connection")
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from benchmarks.streams.vicon_server import PlateConvention, ViconServer, block
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.stream import reconnecting
 from mbkf.stream.played import played
-from mbkf.stream.vicon import source as source_module
 from mbkf.stream.vicon.client import Packet
 from mbkf.stream.vicon.source import ViconSource
 from tests.captures import made_capture
@@ -118,7 +118,7 @@ def test_markers_renamed_and_back_are_followed_by_name(laboratory):
 
 
 def test_a_connection_that_breaks_off_is_made_anew(laboratory, monkeypatch):
-    monkeypatch.setattr(source_module, "AGAIN_S", 0.01)
+    monkeypatch.setattr(reconnecting, "AGAIN_S", 0.01)
     one = laboratory()
     port = one.server.port
     one.server.close()
@@ -131,7 +131,7 @@ def test_a_connection_that_breaks_off_is_made_anew(laboratory, monkeypatch):
 
 def test_silence_ends_a_connection(laboratory, monkeypatch):
     one = laboratory()
-    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", -1.0)
+    monkeypatch.setattr(reconnecting, "RECONNECT_AFTER_S", -1.0)
     assert "it is silent" in one.event("connection")
 
 
@@ -145,7 +145,7 @@ def test_packets_that_cannot_be_read_are_left_out(laboratory):
 
 
 def test_bytes_that_are_no_packet_end_the_connection(laboratory, monkeypatch):
-    monkeypatch.setattr(source_module, "AGAIN_S", 0.01)
+    monkeypatch.setattr(reconnecting, "AGAIN_S", 0.01)
     one = laboratory()
     one.server.raw_to_all(b"\xff" * 64)
     news = []
@@ -199,7 +199,7 @@ def test_another_server_is_refused():
 def test_a_server_that_is_not_there_is_waited_for(monkeypatch):
     with socket.create_server((HERE, 0)) as server:
         port = server.getsockname()[1]
-    monkeypatch.setattr(source_module, "AGAIN_S", 0.01)
+    monkeypatch.setattr(reconnecting, "AGAIN_S", 0.01)
     source = ViconSource(HERE, port)
     assert source.connect(0.0) is None and source.connect(0.0) is None
     server = ViconServer(played(CAPTURE), port=port)
