@@ -111,12 +111,7 @@ def run(args: argparse.Namespace) -> int:
         InvalidInput: An option is missing, or no stream appeared.
     """
     from mbkf.errors import InvalidInput
-    from mbkf.io.atomic import check_folder
-    from mbkf.io.results_folder import RESULT_FILES
     from mbkf.io.subject import Subject
-    from mbkf.stream.run.report import LIVE_FILE
-    from mbkf.stream.run.session import LiveSession
-    from mbkf.stream.run.standing import SUBJECT_FILE, StandingStart
     from mbkf.trial.preparation.settings import ReconstructSettings
 
     if args.recover is not None:
@@ -130,8 +125,7 @@ def run(args: argparse.Namespace) -> int:
             raise InvalidInput(f"{option} is missing; see mbkf live --help")
     if args.source.partition(":")[0] == "xsens":
         return _follow_sensors(args)
-    scaled = (SUBJECT_FILE,) if args.subject is None else ()
-    person, folder = _person(args), check_folder(args.out, (LIVE_FILE, *scaled, *RESULT_FILES))
+    person, folder = _person(args), _folder(args)
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
         lag_s=lag_seconds(args),
@@ -143,9 +137,13 @@ def run(args: argparse.Namespace) -> int:
     record = _recording(args.record)
 
     def begin(stop: threading.Event, patience_s: float | None) -> LiveSession:
+        from mbkf.stream.run.session import LiveSession  # loads slowly; by now the source is listened to
+
         if isinstance(person, Subject):
             session = LiveSession(source, person, settings, folder, name, record=record)
         else:
+            from mbkf.stream.run.standing import StandingStart
+
             shown = None if waiting is None else waiting.progress
             start = StandingStart(source, name, person, folder, _say_on_both(waiting), shown)
             found = _standing(start, waiting, stop, patience_s)
@@ -160,6 +158,23 @@ def run(args: argparse.Namespace) -> int:
         outcome = follow(args, source, begin, waiting)
     told = None if outcome.summary is None else outcome.summary["verdict"]
     return report_outcome(outcome, folder) or strict_exit(args, told)
+
+
+def _folder(args: argparse.Namespace) -> Path:
+    """The folder of the run, in which it may write its files.
+
+    Raises:
+        ProtectedFile: It holds such a file that mbkf did not write.
+    """
+    from mbkf.io.atomic import check_folder
+    from mbkf.io.results_folder import RESULT_FILES
+    from mbkf.stream.run.report import LIVE_FILE
+
+    if args.subject is not None:
+        return check_folder(args.out, (LIVE_FILE, *RESULT_FILES))
+    from mbkf.stream.run.standing import SUBJECT_FILE
+
+    return check_folder(args.out, (LIVE_FILE, SUBJECT_FILE, *RESULT_FILES))
 
 
 def _recording(name: str | None) -> Path | None:
@@ -206,10 +221,11 @@ def _person(args: argparse.Namespace) -> Subject | KnownPerson:
     """The subject of the file, or the known facts of a person to scale."""
     from mbkf.errors import InvalidInput
     from mbkf.io.subject import read_subject
-    from mbkf.model.protocol import load_protocol
-    from mbkf.stream.run.standing import KnownPerson
 
     if args.subject is None:
+        from mbkf.model.protocol import load_protocol
+        from mbkf.stream.run.standing import KnownPerson
+
         return KnownPerson(args.mass, None if args.protocol is None else load_protocol(args.protocol))
     for name in ("mass", "protocol"):
         if getattr(args, name) is not None:

@@ -11,7 +11,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.imu.frames import matrix_quaternion
@@ -116,7 +115,7 @@ def worn_mounts(
                 f"sensor {one.name} sits {abs(np.degrees(turn)):.0f} deg about the {segment}'s length from where it is "
                 "usually strapped on, as the segment's swinging shows; check which sensor is which"
             )
-        R = Rotation.from_rotvec((turn + np.pi * (segment in turned)) * up).as_matrix() @ R
+        R = _rotation((turn + np.pi * (segment in turned)) * up) @ R
         mounts.append(ImuMount(one.name, segment, usual_place(model, segment), matrix_quaternion(R)))
         spreads.append(np.sqrt((up * turn_sd) ** 2 + (1.0 - up**2) * tilt_sd**2))
         biases.append(bias)
@@ -138,9 +137,18 @@ def upright(R: Array, felt: Array, up: Array) -> Array:
     axis = np.cross(here, up)
     size = np.linalg.norm(axis)
     if size < 1e-12:
-        return R if here @ up > 0.0 else Rotation.from_rotvec(np.pi * _across(up)).as_matrix() @ R
+        return R if here @ up > 0.0 else _rotation(np.pi * _across(up)) @ R
     angle = np.arctan2(size, here @ up)
-    return np.asarray(Rotation.from_rotvec(axis / size * angle).as_matrix() @ R)
+    return np.asarray(_rotation(axis / size * angle) @ R)
+
+
+def _rotation(vector_rad: Array) -> Array:
+    """(3, 3) the turn about a vector by its length."""
+    from scipy.spatial.transform import (
+        Rotation,
+    )  # loads slowly; all trials import this file
+
+    return np.asarray(Rotation.from_rotvec(vector_rad).as_matrix())
 
 
 def _bias(still: ImuReadings, settings: MountSettings) -> tuple[Array, float]:

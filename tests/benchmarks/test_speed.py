@@ -9,6 +9,7 @@ from benchmarks.speed import offline
 from benchmarks.speed.consumed import consumed
 from benchmarks.speed.offline import Taken, repeated
 from benchmarks.speed.products import Times, joined
+from benchmarks.speed.start import started
 from benchmarks.speed.steps import (
     INVERSE_DYNAMICS,
     NIS,
@@ -116,3 +117,14 @@ def test_peak_memory_of_a_command_leaves_out_that_of_the_benchmark():
 def test_a_command_that_fails_is_named_with_its_message():
     with pytest.raises(InvalidInput, match=r"missing\.c3d: no such file"):
         consumed("info", "missing.c3d")
+
+
+def test_a_start_is_measured_until_the_line_that_is_waited_for():
+    sleeps = "import sys, time\nprint('waiting for it', file=sys.stderr, flush=True)\ntime.sleep(1000.0)"
+    taken = started(("-c", sleeps), "waiting for")
+    assert min(taken) > 0.0
+
+
+def test_a_command_that_ends_early_is_named_with_its_message():
+    with pytest.raises(InvalidInput, match="ended before 'waiting for': no port"):
+        started(("-c", "import sys\nsys.exit('no port')"), "waiting for")

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mbkf.io.results_folder import Summary
 from mbkf.io.subject import Subject
@@ -32,8 +33,10 @@ from mbkf.stream.run.verdict import VerdictWatch
 from mbkf.stream.source import FrameSource
 from mbkf.trial.live.filter import live_settings
 from mbkf.trial.live.log import LiveLog
-from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
+
+if TYPE_CHECKING:
+    from mbkf.trial.live.worn import LiveWorn
 
 NOTICES = ("person", "names", "chosen")
 """Kinds of events that stand beside the running verdict."""

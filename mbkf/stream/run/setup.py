@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,15 +21,16 @@ from mbkf.sensors.standing_feet import FOOT_REST
 from mbkf.sensors.worn_orientations import ORIENTATIONS
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 from mbkf.stream.run.frame_maker import FrameMaker
-from mbkf.stream.run.point_names import PointNames
 from mbkf.stream.source import StreamDescription
 from mbkf.trial.live.filter import LiveFilter, LiveInputs, live_inputs
-from mbkf.trial.live.labels import live_body
-from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.in_view import LEAST_MARKERS, plain_name
 from mbkf.trial.preparation.other_contacts import contact_opener
 from mbkf.trial.preparation.settings import ReconstructSettings
+
+if TYPE_CHECKING:
+    from mbkf.stream.run.point_names import PointNames
+    from mbkf.trial.live.worn import LiveWorn
 
 MOST_NAMED = 4
 """Names that a sentence lists at most."""
@@ -122,7 +124,7 @@ def prepare(
     Raises:
         NotObservable: Too few of the subject's markers are among the stream's.
     """
-    wanted = stream.marker_names or live_body(subject).names
+    wanted = stream.marker_names or _sought(subject)
     _note_named_twice(stream.marker_names, subject, note)
     with single_threaded():
         live = live_inputs(wanted, stream.rate_hz, stream.plates, subject, settings)
@@ -133,8 +135,23 @@ def prepare(
         LiveFilter(chosen, settings.lag_s, contact_opener(live.inputs, settings)),
         FrameMaker(live, stream.rate_hz),
         FrameRecorder(chosen, len(live.names), live.inputs.body, settings.spreads),
-        None if stream.marker_names else PointNames(subject, live.names, 1.0 / stream.rate_hz, patient, note),
+        None if stream.marker_names else _labels(subject, live.names, 1.0 / stream.rate_hz, patient, note),
     )
+
+
+def _sought(subject: Subject) -> tuple[str, ...]:
+    """Names of the markers that are looked for among points without names."""
+    from mbkf.trial.live.labels import (
+        live_body,
+    )  # labelling loads slowly, and streams with names do not need it
+
+    return live_body(subject).names
+
+
+def _labels(subject: Subject, names: tuple[str, ...], dt_s: float, patient: bool, note: Note) -> PointNames:
+    from mbkf.stream.run.point_names import PointNames
+
+    return PointNames(subject, names, dt_s, patient, note)
 
 
 def _note_named_twice(names: tuple[str, ...], subject: Subject, note: Note) -> None:

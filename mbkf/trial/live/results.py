@@ -21,7 +21,6 @@ from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.checks.in_view import unseen_finding
 from mbkf.trial.checks.trial import trial_checks
-from mbkf.trial.inertial.motion_result import Timeline, motion_result
 from mbkf.trial.live.filter import NUMERICAL, live_inputs
 from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
 from mbkf.trial.preparation.coverage import use_of_names
@@ -131,6 +130,11 @@ def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracke
         notes: Remarks for the reader.
         tracked: What the filter found.
     """
+    from mbkf.trial.inertial.motion_result import (
+        Timeline,
+        motion_result,
+    )  # loads slowly; few runs are of sensors
+
     stream, joints = logged.stream, HumanModel.of(subject).joints
     segments = [segment_of(name, joints) for name in stream.sensors]
     tracked = replace(
