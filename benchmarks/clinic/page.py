@@ -195,6 +195,7 @@ def _press(user: Visit, key: str, choose: Path | None = None) -> int:
         user.page.keyboard.press("Enter")
     else:
         with user.page.expect_file_chooser() as chooser:
+            user.page.evaluate("0")  # an answer means that the browser has heard to hand its dialog over
             user.page.keyboard.press("Enter")
         chooser.value.set_files(choose)
     return hidden

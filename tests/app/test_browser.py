@@ -107,6 +107,7 @@ def test_the_whole_job_by_keyboard(page, lab, tmp_path):
     until(page, "document.querySelector('[data-key^=\"choose true\"]') !== null")
     stops_at(page, "choose true")
     with page.expect_file_chooser() as chosen:
+        page.evaluate("0")  # an answer means that the browser has heard to hand its dialog over
         page.keyboard.press("Enter")
     chosen.value.set_files(source)
     page.wait_for_selector("tbody tr")

@@ -6,6 +6,7 @@ from mbkf.app.server import AppServer
 from mbkf.io.laboratory import LABORATORY_FILE, read_laboratory
 from mbkf.io.session import SESSION_FILE, read_session
 from tests.studies import runs_here, study
+from tests.viz.browsing import until
 
 
 @pytest.fixture
@@ -42,3 +43,27 @@ def test_visit_conditions_and_laboratory_are_kept(lab, opened):
     )
     assert [one.condition for one in found.trials.values()] == ["AFO"]
     assert read_laboratory(laboratory).name == "Gait laboratory"
+
+
+def test_click_focus_and_open_parts_outlast_the_page_being_drawn_anew(lab, opened):
+    with opened(lab.url) as page:
+
+        def drawn_anew(height_m):
+            page.evaluate(f"act.person(shown, {{ height_m: {height_m} }})")
+
+        summary = page.locator("#visit > details > summary")
+        summary.hover()
+        page.mouse.down()
+        drawn_anew(1.71)
+        page.mouse.up()
+        page.locator("#visit > details[open]").wait_for()
+        page.locator("form.visit [name=diagnosis]").fill("Hemiparesis")
+        page.keyboard.press("Tab")
+        until(page, "shown.notes.visit !== undefined")
+        assert page.evaluate("document.activeElement.name") == "notes"
+        summary.focus()
+        page.keyboard.down(" ")
+        drawn_anew(1.72)
+        page.keyboard.up(" ")
+        until(page, "waiting === null")
+        assert page.locator("#visit > details:not([open])").count() == 1

@@ -1,4 +1,4 @@
-// The focus stays where it is when parts of the page are drawn again: each control has a key, as has each menu.
+// Focus, open menus and clicks outlast a part of the page being drawn again: each control has a key, as has each menu.
 "use strict";
 
 const CONTROLS = "input, select, button, summary, textarea, a[href]";
@@ -23,11 +23,32 @@ function focusKey(key) {
   return Boolean(found);
 }
 
-// Draws, and gives focus and open menus back to the controls of the same keys.
+let waiting = null; // drawings while a pointer or a key is pressed; null while nothing is
+
+// A click needs the control that was pressed to be there at the release, so drawings wait for it.
+function hold() {
+  waiting = waiting || [];
+}
+
+function release() {
+  const drawings = waiting || [];
+  waiting = null;
+  drawings.forEach(keepingFocus);
+}
+
+const afterClick = () => { if (waiting) setTimeout(release); };
+addEventListener("pointerdown", hold, true);
+addEventListener("keydown", (event) => { if (event.key === " ") hold(); }, true);
+for (const end of ["pointerup", "pointercancel", "keyup", "blur"]) addEventListener(end, afterClick, true);
+addEventListener("pointermove", (event) => { if (!event.buttons) afterClick(); }, true); // released over an open list or another window
+
+// Draws, and gives focus, open and closed menus back to the controls of the same keys.
 function keepingFocus(drawAgain) {
+  if (waiting) return void waiting.push(drawAgain);
   const focused = document.activeElement, key = keyOf(focused);
-  const open = [...document.querySelectorAll("details[open] > summary")].map(keyOf);
+  const summaries = () => document.querySelectorAll("details > summary[data-key]");
+  const open = new Map([...summaries()].map((one) => [keyOf(one), one.parentElement.open]));
   drawAgain();
-  for (const one of document.querySelectorAll("details > summary")) if (open.includes(keyOf(one))) one.parentElement.open = true;
+  for (const one of summaries()) one.parentElement.open = open.get(keyOf(one)) ?? one.parentElement.open;
   if (key && !focused.isConnected) focusKey(key);
 }

@@ -27,7 +27,7 @@ function drawParts(main, data, act) {
   for (const [name, make, of] of PARTS) {
     const state = JSON.stringify(of(data)), known = parts.get(name);
     if (known && (known.state === state || isTyping(known.made))) continue;
-    const made = make(data, act) || element("div", { hidden: true });
+    const made = keyed(make(data, act) || element("div", { hidden: true }), name);
     if (known) known.made.replaceWith(made);
     else main.append(made);
     parts.set(name, { state, made });
@@ -80,7 +80,6 @@ function person(data, act) {
     act.person(data, { [name]: value === "" ? undefined : number ? numberIn(value) : value });
   };
   form.onsubmit = (event) => event.preventDefault();
-  keyed(form, "person");
   return element("section", {}, titled("person", "person", act), form);
 }
 
@@ -105,7 +104,7 @@ function run(data, act) {
     row.append(element("button", { id: "session-report", className: "main", type: "button", onclick: act.report }, word("session_report")));
   }
   const section = element("section", { className: "running" }, titled("calculation", "run", act), row);
-  if (!state) return keyed(section, "run");
+  if (!state) return section;
   if (busy) {
     const bar = progressBar(state, word("trials"));
     const left = state.remaining_s === null ? "" : " · " + word("remaining", duration(state.remaining_s));
@@ -115,7 +114,7 @@ function run(data, act) {
     if (state.persons.length) row.append(element("button", { type: "button", className: "separate", onclick: act.separate }, word("separate", state.persons.join(", "))));
   }
   if (!busy && data.scaled_from.length) row.append(element("span", { className: "scaled-from", title: data.scaled_why.join("\n") }, `${word("scaled_by")}: ${data.scaled_from.join(", ")}`));
-  return keyed(section, "run");
+  return section;
 }
 
 const isBusy = (state) => Boolean(state) && (state.state === "running" || state.state === "waiting");
