@@ -1,13 +1,15 @@
 """Smoother of the dynamic filter: later frames correct earlier ones, iterated until Newton's law holds.
 
-Each round is an exact linear smoother around the trajectory of the round before: the iterated Kalman smoother, a
-Gauss–Newton method (B. M. Bell, SIAM Journal on Optimization 4 (1994) 626–636). Long trials are smoothed in windows
-that look a little beyond their ends (:mod:`mbkf.filters.fixed_lag`).
+The first round takes the filter's own linearisation. Each further one is an exact linear smoother around the trajectory
+of the round before: the iterated Kalman smoother, a Gauss–Newton method (B. M. Bell, SIAM Journal on Optimization
+4 (1994) 626–636). Long trials are smoothed in windows that look a little beyond their ends
+(:mod:`mbkf.filters.fixed_lag`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -56,7 +58,7 @@ def smooth(
     Args:
         kalman: The filter that ran through it.
         run: Its steps; the first one's state is taken as it is.
-        rounds: Number of linearisations.
+        rounds: Number of linearisations, the filter's own among them.
         wanted: Only the first ``wanted`` frames are returned; the others are looked at.
         memory: Arrays (N, N) to work in, which may serve one window after another: fresh memory costs as much as the
             products that go there. It grows as it has to; what is returned does not lie in it.
@@ -65,14 +67,14 @@ def smooth(
     means = [step.state for step in run]
     memory = [] if memory is None else memory
     memory += [np.empty(begin.P.shape) for _ in range(len(memory), len(run))]
+    forward = _filtered(kalman, run)
     for _ in range(rounds - 1):
-        forward = _forward(kalman, begin, means, decided, memory)
         steps = [step for step, _ in _backward(forward)]
         share = _damping(steps, kalman.layout.nv)
         means = [
             kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
         ]
-    forward = _forward(kalman, begin, means, decided, memory)
+        forward = _forward(kalman, begin, means, decided, memory)
     steps_and_covariances = list(_backward(forward, len(run) if wanted is None else wanted))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:
@@ -83,6 +85,17 @@ def _damping(steps: Sequence[Array], nv: int) -> float:
     """Share of a round's steps to take, so that no joint turns further than a linearisation reaches."""
     furthest = max(float(np.abs(step[:nv]).max()) for step in steps)
     return min(1.0, FURTHEST_RAD / furthest) if furthest > 0.0 else 1.0
+
+
+def _filtered(kalman: DynamicFilter, run: Sequence[Step[DynamicState]]) -> list[_Frame]:
+    """The filter's own pass: its posteriors are the trajectory, so that it corrects nothing."""
+    nothing = np.zeros(kalman.layout.size)
+    passed = [_Frame(run[0].state.P, nothing, None, nothing, nothing, None)]
+    for last, step in pairwise(run):
+        P, vector = step.state.P, step.readings.whole_vector
+        transition = kalman.plant.step_transition(last.state, step.prior.state)
+        passed.append(_Frame(P, nothing, step.readings, vector, P @ vector, transition))
+    return passed
 
 
 def _forward(
