@@ -90,6 +90,18 @@ def test_a_file_that_cannot_be_kept_is_told_and_the_others_are_taken(page, opene
     opened.errors[:] = [one for one in opened.errors if "400 (Bad Request)" not in one]  # the refusal itself
 
 
+def test_a_message_stands_over_an_open_dialog(page):
+    page.locator("#help button").click()
+    page.locator("dialog[open]").wait_for()
+    page.evaluate("tell('Not saved', true)")
+    page.locator("#told .away").click()
+    assert page.locator("#told").inner_text() == ""
+    page.evaluate("tell('Not saved', true)")
+    page.keyboard.press("Escape")
+    page.locator("dialog").wait_for(state="detached")
+    page.locator("#told .away").click()
+
+
 def stops_at(page, key, most=80):
     """Presses Tab until a control has the focus, which is seen; returns the presses."""
     for presses in range(most):

@@ -3,6 +3,7 @@
 
 const AGAIN_MS = 1000;
 const place = (id) => document.getElementById(id);
+const told = place("told");
 let chosen = null, shown = null, timer = 0, turns = 0, drawn = 0;
 const written = new Map(); // the last change of each session, by its path
 
@@ -40,11 +41,17 @@ const troubleOf = (said) => (said.key && said.key in WORDS[language].words ? wor
 
 // A message stays until the next one where it is bad or offers something to click.
 function tell(text, bad = false, ...offers) {
-  const told = place("told");
+  placeMessages();
   told.replaceChildren(text, ...offers.flatMap((one) => [" ", one]));
   told.className = bad ? "bad" : "";
   if (bad || offers.length) told.append(" ", element("button", { type: "button", className: "away", ariaLabel: word("close"), onclick: () => tell("") }, "×"));
   else setTimeout(() => { if (told.textContent === text) told.textContent = ""; }, 2500);
+}
+
+// An open dialog covers the page and takes its clicks, so messages stand in the latest one.
+function placeMessages() {
+  const home = [...document.querySelectorAll("dialog[open]")].at(-1) || document.body;
+  if (told.parentElement !== home) home.append(told);
 }
 
 // For those who hear the page: changes of a run that eyes see in its bar.
@@ -114,12 +121,14 @@ const act = {
     dialog.append(element("div", { className: "bar" }, element("b", {}, title), ...tools, close), content);
     document.body.append(dialog);
     dialog.showModal();
+    placeMessages();
     return dialog;
   },
   // A dialog that the person closed leaves the address; one that the page closed has left it already.
   async leave(dialog) {
     if (!dialog.isConnected) return;
     dialog.remove();
+    placeMessages();
     if (document.querySelector("dialog[open]")) return void focusKey(dialog.opener); // it lay over another one
     history.replaceState(null, "", address({ session: chosen }));
     await refresh();
@@ -144,8 +153,9 @@ function enter(session) {
   visit++;
   clearTimeout(timer);
   for (const dialog of document.querySelectorAll("dialog")) dialog.remove();
+  placeMessages();
   [chosen, shown] = [session, null];
-  place("told").textContent = "";
+  told.textContent = "";
   document.title = "mbkf";
   forget();
 }
