@@ -10,7 +10,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.session import TrialKind
 from mbkf.study.survey.session import SurveyedSession
 
-LSL, NATNET, QUALISYS, UDP, FILE = "lsl", "natnet", "qualisys", "udp", "file"
+LSL, NATNET, QUALISYS, UDP, VICON, XSENS, FILE = "lsl", "natnet", "qualisys", "udp", "vicon", "xsens", "file"
 """Sources of the frames."""
 
 MOTIVE = ("server", "local", "port", "multicast")
@@ -25,9 +25,11 @@ MOST_LETTERS = 500
 MISSING = {
     "stream": "choose a stream",
     "trial": "choose a capture",
-    "place": "the address of QTM's computer is missing",
+    "host": "the address of the camera system's computer is missing",
 }
 """Messages for texts that are missing; others are addresses."""
+
+MOST_PORTS = 65536
 
 
 def live_offer(workspace: Workspace, session: str) -> dict[str, object]:
@@ -59,8 +61,9 @@ def live_options(workspace: Workspace, session: str, wanted: object) -> list[str
     Args:
         workspace: The sessions.
         session: Name of the session.
-        wanted: ``source`` with ``stream`` ("lsl"), :data:`MOTIVE` ("natnet"), ``place`` (what follows "qualisys:" or
-            "udp:") and ``local`` ("udp"), or ``trial`` ("file"); ``body`` ("subject" or "standing").
+        wanted: ``source`` with ``stream`` ("lsl"), :data:`MOTIVE` ("natnet"), ``host`` and ``port`` ("qualisys",
+            "vicon"), ``port`` and ``local`` ("udp", "xsens"), or ``trial`` ("file"); ``body`` ("subject" or
+            "standing").
 
     Raises:
         InvalidInput: The session does not exist, or an entry is missing or not possible.
@@ -78,11 +81,10 @@ def _source(session: SurveyedSession, wanted: Mapping[str, object]) -> list[str]
     if source == NATNET:
         needed = [f"--{key}={_needed(wanted, key)}" for key in MOTIVE[:2]]
         return ["--from=natnet", *needed, *_given(wanted, MOTIVE[2:])]
-    if source == QUALISYS:
-        return [f"--from=qualisys:{_needed(wanted, 'place')}"]
-    if source == UDP:
-        place = _text(wanted, "place")
-        return [f"--from=udp:{place}" if place else "--from=udp", *_given(wanted, ("local",))]
+    if source in (QUALISYS, VICON):
+        return [f"--from={source}:{_needed(wanted, 'host')}{_port(wanted)}"]
+    if source in (UDP, XSENS):
+        return [f"--from={source}{_port(wanted)}", *_given(wanted, ("local",))]
     if source != FILE:
         raise InvalidInput("choose a stream, a camera system or a capture")
     name = _needed(wanted, "trial")
@@ -100,6 +102,10 @@ def _body(workspace: Workspace, session: str, wanted: Mapping[str, object]) -> l
         if subject is None:
             raise InvalidInput("no body of this session is scaled yet; let the person stand still")
         return [f"--subject={subject}"]
+    if _text(wanted, "source") == XSENS:
+        raise InvalidInput(
+            "sensors need the session's scaled body; scale it first with a standing trial, or live before the cameras"
+        )
     if body != STANDING:
         raise InvalidInput("choose the scaled body, or standing still")
     notes = workspace.stated(session)
@@ -110,6 +116,18 @@ def _body(workspace: Workspace, session: str, wanted: Mapping[str, object]) -> l
 def _given(wanted: Mapping[str, object], keys: Sequence[str]) -> list[str]:
     """Options whose texts are not empty."""
     return [f"--{key}={text}" for key in keys if (text := _text(wanted, key))]
+
+
+def _port(wanted: Mapping[str, object]) -> str:
+    """A colon and the port; empty for the usual one.
+
+    Raises:
+        InvalidInput: It is not one.
+    """
+    text = _text(wanted, "port")
+    if text and not (text.isascii() and text.isdigit() and 0 < int(text) < MOST_PORTS):
+        raise InvalidInput(f"'{text}' is not a port; write a number from 1 to {MOST_PORTS - 1}")
+    return f":{text}" if text else ""
 
 
 def _needed(wanted: Mapping[str, object], key: str) -> str:
@@ -142,9 +160,35 @@ def recording_folder(workspace: Workspace, session: str, stamp: str) -> Path:
     Raises:
         InvalidInput: The session does not exist.
     """
-    place, captures = workspace.place(session), {one.name for one in workspace.survey(session).trials}
-    name, number = f"live-{stamp}", 1
-    while name in captures or (place / name).exists():
+    return workspace.place(session) / _free_name(workspace, session, f"live-{stamp}")
+
+
+def recording_options(workspace: Workspace, session: str, wanted: object, stamp: str) -> list[str]:
+    """Options that record the stream's markers and plates as a new capture of the session, if the page asks for it.
+
+    Args:
+        workspace: The sessions.
+        session: Name of the session.
+        wanted: As for :func:`live_options`; ``record`` is not empty where a capture is wanted.
+        stamp: The time, in letters that a file's name may hold.
+
+    Raises:
+        InvalidInput: The session does not exist, or the source has no markers.
+    """
+    if not isinstance(wanted, Mapping) or not _text(wanted, "record"):
+        return []
+    if _text(wanted, "source") == XSENS:
+        raise InvalidInput("sensors bring no markers and forces that a capture could hold")
+    name = _free_name(workspace, session, f"recorded-{stamp}")
+    return [f"--record={workspace.folder(session) / name}.c3d"]
+
+
+def _free_name(workspace: Workspace, session: str, wanted: str) -> str:
+    """The name, or it with a number, that neither a capture of the session nor a result has."""
+    place, folder = workspace.place(session), workspace.folder(session)
+    captures = {one.name for one in workspace.survey(session).trials}
+    name, number = wanted, 1
+    while name in captures or (place / name).exists() or (folder / f"{name}.c3d").exists():
         number += 1
-        name = f"live-{stamp}-{number}"
-    return place / name
+        name = f"{wanted}-{number}"
+    return name

@@ -17,7 +17,7 @@ from mbkf.app.exports import export, session_curves
 from mbkf.app.failures import failed, language_of
 from mbkf.app.foot_events import set_events
 from mbkf.app.laboratory import change_laboratory, plain_laboratory
-from mbkf.app.live_command import live_offer, live_options, recording_folder
+from mbkf.app.live_command import live_offer, live_options, recording_folder, recording_options
 from mbkf.app.live_run import LiveRun
 from mbkf.app.marker_sets import MarkerSets
 from mbkf.app.norm_files import import_norms
@@ -208,9 +208,10 @@ def _live_routes(workspace: Workspace, live: LiveRun) -> list[BaseRoute]:
         if query["do"] == "stop":
             live.stop()
         else:
-            options = live_options(workspace, query["session"], plain(body))
-            folder = recording_folder(workspace, query["session"], time.strftime("%Y-%m-%d-%H%M%S"))
-            live.start(query["session"], options, folder)
+            session, wanted, stamp = query["session"], plain(body), time.strftime("%Y-%m-%d-%H%M%S")
+            options = live_options(workspace, session, wanted)
+            options += recording_options(workspace, session, wanted, stamp)
+            live.start(session, options, recording_folder(workspace, session, stamp))
         return answers.live_state(live)
 
     def frame(query: Query) -> str:

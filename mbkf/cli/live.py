@@ -24,7 +24,8 @@ static trial, and tracked from then on; DIR/subject.toml keeps the person. Point
 Without --mass the plates weigh the person if both feet stand on them; set their amplifiers to zero first. With --view
 the page shows these prompts to the person, and then the measurement.
 
---list asks the network for two seconds which streams there are, and prints each with the words that follow it.
+--list asks the network for two seconds which streams there are, and prints each with the words that follow it. Vicon's
+program is looked for on this computer, or with --from vicon:HOST on that one.
 """
 
 from __future__ import annotations
@@ -98,7 +99,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--list",
         action="store_true",
-        help="print the streams of the network (with --from KIND those of one kind; see --local)",
+        help="print the streams of the network (with --from KIND[:PLACE] those of one kind; see --local)",
     )
     add_source_options(parser)
     add_following_options(parser)

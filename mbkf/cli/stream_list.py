@@ -21,16 +21,17 @@ def list_streams(source: str | None, local: str) -> int:
     """Searches the network and prints what was found.
 
     Args:
-        source: The only protocol to search; None for all.
+        source: The only protocol to search, with its place after a colon where it is not the usual one; None for all.
         local: An address of this computer whose network is searched, too.
 
     Raises:
         UnknownName: Streams of the source cannot be searched for.
     """
     from mbkf.errors import UnknownName
-    from mbkf.stream.discovery import SEARCHES, find_streams
+    from mbkf.stream.discovery import PLACED, SEARCHES, find_streams
 
-    if source is not None and source not in SEARCHES:
+    kind, colon, _ = (source or "").partition(":")
+    if source is not None and (kind not in SEARCHES or (colon and kind not in PLACED)):
         raise UnknownName("source", source, tuple(SEARCHES), "--from")
     say("searching the network …")
     found = find_streams(SEARCHES if source is None else [source], local)

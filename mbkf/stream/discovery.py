@@ -7,9 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 
-from mbkf.errors import MbkfError
+from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.found import FoundStream
 from mbkf.stream.loopback import LOOPBACK
+
+MOST_PORTS = 65536
 
 LOOK_S = 1.5
 """Streams of other computers answer within a second."""
@@ -28,37 +30,79 @@ class Found:
     not_searched: tuple[str, ...]
 
 
-def _lsl(_: str, timeout_s: float) -> list[FoundStream]:
+def _lsl(_: str, timeout_s: float, __: str) -> list[FoundStream]:
     from mbkf.stream.lsl.discovery import marker_streams
 
     return marker_streams(timeout_s)
 
 
-def _natnet(local: str, timeout_s: float) -> list[FoundStream]:
+def _natnet(local: str, timeout_s: float, _: str) -> list[FoundStream]:
     from mbkf.stream.natnet.discovery import natnet_streams
 
     return natnet_streams(local, timeout_s)
 
 
-def _qualisys(local: str, timeout_s: float) -> list[FoundStream]:
-    from mbkf.stream.qualisys.discovery import qualisys_streams
+def _qualisys(local: str, timeout_s: float, place: str) -> list[FoundStream]:
+    from mbkf.stream.qualisys.client import BASE_PORT
+    from mbkf.stream.qualisys.discovery import qualisys_at, qualisys_streams
 
+    if place:
+        return qualisys_at(*_host_port(place, BASE_PORT))
     return qualisys_streams(local, timeout_s)
 
 
-def _udp(local: str, timeout_s: float) -> list[FoundStream]:
+def _udp(local: str, timeout_s: float, place: str) -> list[FoundStream]:
     from mbkf.stream.udp.discovery import udp_streams
+    from mbkf.stream.udp.messages import DEFAULT_PORT
 
-    return udp_streams(local, timeout_s)
+    return udp_streams(local, timeout_s, _port(place, DEFAULT_PORT))
 
 
-SEARCHES: Mapping[str, Callable[[str, float], list[FoundStream]]] = {
+def _vicon(_: str, timeout_s: float, place: str) -> list[FoundStream]:
+    from mbkf.stream.vicon.client import PORT
+    from mbkf.stream.vicon.discovery import vicon_streams
+
+    return vicon_streams(timeout_s, *_host_port(place, PORT))
+
+
+def _xsens(local: str, timeout_s: float, place: str) -> list[FoundStream]:
+    from mbkf.stream.xsens.discovery import xsens_streams
+    from mbkf.stream.xsens.packets import DEFAULT_PORT
+
+    return xsens_streams(local, timeout_s, _port(place, DEFAULT_PORT))
+
+
+def _host_port(place: str, default: int) -> tuple[str, int]:
+    host, _, port = place.partition(":")
+    return host or LOOPBACK, _port(port, default)
+
+
+def _port(text: str, default: int) -> int:
+    """The port of a text, the default for an empty one.
+
+    Raises:
+        InvalidInput: It is not one.
+    """
+    if text and not (text.isascii() and text.isdigit() and 0 < int(text[:6]) < MOST_PORTS):
+        raise InvalidInput(f"port '{text}' is not a number from 1 to {MOST_PORTS - 1}")
+    return int(text or default)
+
+
+Search = Callable[[str, float, str], list[FoundStream]]
+
+SEARCHES: Mapping[str, Search] = {
     "lsl": _lsl,
     "natnet": _natnet,
     "qualisys": _qualisys,
     "udp": _udp,
+    "vicon": _vicon,
+    "xsens": _xsens,
 }
-"""Search of each protocol by its name in ``--from``: takes an address of this computer, and how long to look."""
+"""Search of each protocol by its name in ``--from``: takes an address of this computer, how long to look, and the place
+that follows the name and a colon, empty for the usual one."""
+
+PLACED = ("qualisys", "udp", "vicon", "xsens")
+"""Protocols whose name a place may follow."""
 
 
 def find_streams(
@@ -67,7 +111,7 @@ def find_streams(
     """Searches all protocols at once.
 
     Args:
-        kinds: Their names.
+        kinds: Their names, those of :data:`PLACED` also with a colon and a place.
         local: An address of this computer whose network is searched, too; 0.0.0.0 for all of them.
         timeout_s: How long answers are taken.
     """
@@ -80,7 +124,8 @@ def find_streams(
 
 def _searched(local: str, timeout_s: float, kind: str) -> list[FoundStream] | str:
     """The streams of a protocol, or the reason why it could not be searched."""
+    name, _, place = kind.partition(":")
     try:
-        return SEARCHES[kind](local, timeout_s)
+        return SEARCHES[name](local, timeout_s, place)
     except MbkfError as error:
         return f"{kind}: not searched ({error})"

@@ -21,6 +21,8 @@ class FoundStream:
         markers: Number of named markers, 0 for points without names; None where it is not known.
         rate_hz: Its frame rate; None where it is not known.
         plates: Number of its force plates; None where it is not known.
+        segments: Number of body segments whose orientations it has.
+        sensors: Number of its inertial sensors.
     """
 
     kind: str
@@ -31,6 +33,8 @@ class FoundStream:
     markers: int | None = None
     rate_hz: float | None = None
     plates: int | None = None
+    segments: int = 0
+    sensors: int = 0
 
     @property
     def source(self) -> str:
@@ -40,10 +44,12 @@ class FoundStream:
     @property
     def carries(self) -> str:
         """Its contents in words."""
+        rate = "" if self.rate_hz is None else f" at {self.rate_hz:g} Hz"
+        if self.segments or self.sensors:
+            return f"{self.segments} segments{rate}" if self.segments else f"{self.sensors} sensors{rate}"
         if self.markers is None:
             return "not known"
         points = f"{self.markers} markers" if self.markers else "points without names"
-        rate = "" if self.rate_hz is None else f" at {self.rate_hz:g} Hz"
         return f"{points}{rate}, {self.plates or 'no'} plate{'' if self.plates == 1 else 's'}"
 
     def described(self, stream: StreamDescription | None) -> FoundStream:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar, cast
 
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.stream.known import KnownStream
@@ -27,7 +27,7 @@ PacketT = TypeVar("PacketT", bound=Arrived)
 class Client(Protocol):
     """A connection to a server."""
 
-    def take(self, timeout_s: float) -> Any:
+    def take(self, timeout_s: float) -> object:
         """The next packet; None where none comes in time."""
 
     def close(self) -> None:
@@ -60,6 +60,11 @@ class ReconnectingSource(ABC, Generic[ClientT, PacketT]):
         self._news: list[tuple[str, str]] = []
         self._reported: set[str] = set()
 
+    @property
+    def connected(self) -> bool:
+        """True while the server is connected."""
+        return self._client is not None
+
     def news(self) -> list[tuple[str, str]]:
         """Events of the connection since the last call."""
         news, self._news = self._news, []
@@ -86,8 +91,7 @@ class ReconnectingSource(ABC, Generic[ClientT, PacketT]):
 
     def _next(self, client: ClientT, timeout_s: float) -> PacketT | None:
         """The next packet of a connection; raises as the client's ``take``."""
-        found: PacketT | None = client.take(timeout_s)
-        return found
+        return cast(PacketT | None, client.take(timeout_s))
 
     def _take(self, timeout_s: float) -> PacketT | None:
         """The next packet; a connection that broke off is made anew.

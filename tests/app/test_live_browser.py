@@ -1,15 +1,24 @@
 """A live run from the page in a real browser: replayed, seen, stopped, and then in the table with its 3-D view."""
 
+import threading
+from contextlib import closing
+from shutil import copy
+
 import pytest
 
+from benchmarks.streams.vicon_server import ViconServer
 from mbkf.app import routes as module
 from mbkf.app.server import AppServer
 from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture import read_capture
 from mbkf.stream.discovery import Found
 from mbkf.stream.found import FoundStream
+from mbkf.stream.played import played
+from mbkf.stream.replay import ReplaySettings
+from mbkf.stream.replay import replay as replay_stream
 from mbkf.trial.synth import synthesise
 from tests.app.test_recordings import record
-from tests.studies import study
+from tests.studies import study, walk_folder
 from tests.viz.browsing import until
 
 pytestmark = pytest.mark.slow
@@ -96,7 +105,8 @@ def test_names_of_streams_are_text_and_failures_are_told(opened, lab, monkeypatc
         assert listed == f"{HOSTILE} (LSL stream on lab; markers: 36, 120 Hz, force plates: 2)"
         page.select_option("select.found", "1")
         assert page.input_value("select[name=source]") == "qualisys"
-        assert page.input_value("input[name=place]") == "10.0.0.2:22232"
+        assert page.input_value("input[name=host]") == "10.0.0.2"
+        assert page.input_value("input[name=port]") == "22232"
         assert page.title() == "P1 · mbkf" and page.locator("dialog img").count() == 0
         page.select_option("select[name=source]", "natnet")
         page.fill("input[name=local]", "nowhere.invalid")
@@ -129,3 +139,34 @@ def test_an_export_that_fails_is_told_and_can_be_asked_for_again(opened, lab):
         choice.click()
         assert page.get_by_role("button", name="GLB").is_enabled()
     opened.errors[:] = [one for one in opened.errors if "400 (Bad Request)" not in one]  # the refusal itself
+
+
+def test_a_vicon_at_its_address_is_followed_and_recorded_as_a_capture(opened, lab):
+    copy(walk_folder() / "subject.toml", lab.workspace.folder("P1"))
+    walk = read_capture(walk_folder() / "trial.c3d")
+    stream = played(walk)
+    with closing(ViconServer(stream)) as server:
+        rest = (stream, server, ReplaySettings(), threading.Event())
+        sender = threading.Thread(target=replay_stream, args=rest)
+        sender.start()
+        with opened(lab.url) as page:
+            page.click("button.live")
+            page.select_option("select[name=source]", "xsens")
+            assert page.locator("input[name=record]").is_hidden()
+            page.select_option("select[name=source]", "vicon")
+            assert page.input_value("input[name=port]") == "801"
+            page.fill("input[name=port]", str(server.port))
+            page.check("input[name=record]")
+            page.click("dialog button.main")
+            live = page.frame_locator("dialog iframe").frame_locator("iframe")
+            live.locator(FRAMED).wait_for()
+            sender.join()
+            page.click("dialog .stop")
+            until(page, f"/Recorded as live-/.test({text_of(page, 'dialog .told')})")
+            page.keyboard.press("Escape")
+            (file,) = lab.workspace.folder("P1").glob("recorded-*.c3d")
+            page.get_by_role("row", name=file.stem).first.wait_for()
+    kept = read_capture(file)
+    assert kept.markers.names == walk.markers.names and len(kept.plates) == len(walk.plates)
+    ended = ("ERR_CONNECTION_RE", "before receiving a handshake")  # a live page that ended
+    opened.errors[:] = [one for one in opened.errors if not any(text in one for text in ended)]

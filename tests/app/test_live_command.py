@@ -2,7 +2,7 @@
 
 import pytest
 
-from mbkf.app.live_command import live_offer, live_options, recording_folder
+from mbkf.app.live_command import live_offer, live_options, recording_folder, recording_options
 from mbkf.app.workspace import Workspace
 from mbkf.cli.main import build_parser
 from mbkf.errors import InvalidInput
@@ -47,9 +47,14 @@ def test_a_group_that_motive_streams_to_is_named(workspace):
 @pytest.mark.parametrize(
     ("said", "source", "local"),
     [
-        ({"source": "qualisys", "place": "192.168.1.10:22232 "}, "qualisys:192.168.1.10:22232", "127.0.0.1"),
-        ({"source": "udp", "place": "15200", "local": "0.0.0.0"}, "udp:15200", "0.0.0.0"),
-        ({"source": "udp", "place": "", "local": ""}, "udp", "127.0.0.1"),
+        (
+            {"source": "qualisys", "host": "10.0.0.2", "port": "22232 "},
+            "qualisys:10.0.0.2:22232",
+            "127.0.0.1",
+        ),
+        ({"source": "vicon", "host": " lab", "port": ""}, "vicon:lab", "127.0.0.1"),
+        ({"source": "udp", "port": "15200", "local": "0.0.0.0"}, "udp:15200", "0.0.0.0"),
+        ({"source": "udp", "port": "", "local": ""}, "udp", "127.0.0.1"),
     ],
 )
 def test_other_streams_are_followed_at_their_places(workspace, said, source, local):
@@ -87,6 +92,8 @@ def test_the_scaled_body_is_taken_where_there_is_one(workspace, lab):
     scaled.write_text("")
     args = parsed(live_options(workspace, "P1", {**LSL, "body": "subject"}))
     assert (args.subject, args.mass) == (str(scaled), None)
+    args = parsed(live_options(workspace, "P1", {"source": "xsens", "port": "9764", "body": "subject"}))
+    assert (args.source, args.subject) == ("xsens:9764", str(scaled))
     assert live_offer(workspace, "P1")["subject"] is True
     scaled.unlink()
 
@@ -98,7 +105,11 @@ def test_the_scaled_body_is_taken_where_there_is_one(workspace, lab):
         ({}, "choose a stream, a camera system or a capture"),
         ({"source": "file:/etc/passwd", "body": "standing"}, "choose a stream, a camera system or a capture"),
         ({"source": "lsl", "body": "standing"}, "choose a stream"),
-        ({"source": "qualisys", "place": " ", "body": "standing"}, "address of QTM's computer is missing"),
+        ({"source": "vicon", "host": " ", "body": "standing"}, "address of the camera system's computer is"),
+        ({"source": "vicon", "host": "lab", "port": "0", "body": "standing"}, "'0' is not a port"),
+        ({"source": "udp", "port": "65536", "body": "standing"}, "'65536' is not a port"),
+        ({"source": "xsens", "port": "²", "body": "standing"}, "'²' is not a port"),
+        ({"source": "xsens", "port": "", "body": "standing"}, "need the session's scaled body"),
         ({"source": "natnet", "server": "1.2.3.4", "body": "standing"}, "the local address is missing"),
         ({"source": "file", "trial": "../P2/walk1", "body": "standing"}, "no capture"),
         ({"source": "file", "trial": 3, "body": "standing"}, "short text"),
@@ -125,3 +136,20 @@ def test_a_recording_has_a_folder_of_its_own(workspace, lab):
     (workspace.place("P1") / "live-now-2").mkdir(parents=True)
     assert recording_folder(workspace, "P1", "now").name == "live-now-3", "neither a capture's nor a result's"
     capture.unlink()
+
+
+def test_a_stream_is_recorded_as_a_new_capture_of_the_session(workspace, lab):
+    wanted = {**LSL, "record": "on"}
+    assert recording_options(workspace, "P1", LSL, "now") == []
+    first = lab / "P1" / "recorded-now.c3d"
+    assert parsed(recording_options(workspace, "P1", wanted, "now")).record == str(first)
+    first.write_bytes(b"damaged, and still not to be replaced")
+    (workspace.place("P1") / "recorded-now-2").mkdir(parents=True)
+    args = parsed(recording_options(workspace, "P1", wanted, "now"))
+    assert args.record == str(lab / "P1" / "recorded-now-3.c3d") and not args.overwrite
+    first.unlink()
+
+
+def test_sensors_are_not_recorded_as_a_capture(workspace):
+    with pytest.raises(InvalidInput, match="no markers"):
+        recording_options(workspace, "P1", {"source": "xsens", "record": "on"}, "now")

@@ -17,15 +17,15 @@ def test_words_that_follow_a_stream_are_safe_in_a_shell():
 def test_streams_are_listed(monkeypatch, capsys):
     searched = []
 
-    def qualisys(local, timeout_s):
-        searched.append(local)
+    def qualisys(local, timeout_s, place):
+        searched.append((local, place))
         return [QTM]
 
     monkeypatch.setattr(discovery, "SEARCHES", {"lsl": lambda *_: 1 / 0, "qualisys": qualisys})
-    assert main(["live", "--list", "--from", "qualisys", "--local", "10.0.0.1"]) == 0
+    assert main(["live", "--list", "--from", "qualisys:lab", "--local", "10.0.0.1"]) == 0
     shown = capsys.readouterr().out
     assert "QTM [8]" in shown and "36 markers at 100 Hz, 2 plates" in shown
-    assert "mbkf live --from qualisys:10.0.0.2 …" in shown and searched == ["10.0.0.1"]
+    assert "mbkf live --from qualisys:10.0.0.2 …" in shown and searched == [("10.0.0.1", "lab")]
 
 
 def test_nothing_found_says_what_to_do(monkeypatch, capsys):
@@ -35,7 +35,7 @@ def test_nothing_found_says_what_to_do(monkeypatch, capsys):
     assert shown.out == "" and NOTHING in shown.err
 
 
-@pytest.mark.parametrize("source", ["file:walk.c3d", "qualisys:10.0.0.2", "x"])
+@pytest.mark.parametrize("source", ["file:walk.c3d", "natnet:10.0.0.2", "x", "x:1"])
 def test_other_sources_are_not_searched_for(source, capsys):
     assert main(["live", "--list", "--from", source]) == 2
     assert f"unknown source '{source}'" in capsys.readouterr().err

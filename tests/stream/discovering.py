@@ -1,6 +1,8 @@
 """A search of this computer alone that ends with the first answer."""
 
 import socket
+import threading
+from contextlib import contextmanager, suppress
 
 from mbkf.stream.asking import Answer
 
@@ -15,3 +17,41 @@ def first_answer(question, port, local, wait_s):
         one.sendto(question(one.getsockname()[1]), (HERE, port))
         data, (sender, _) = one.recvfrom(65536)
     return [Answer(sender, HERE, data)]
+
+
+@contextmanager
+def answering(data):
+    """The port of a server that says the same to every client and then nothing."""
+    with socket.create_server((HERE, 0)) as server:
+
+        def answer():
+            with suppress(OSError):
+                while True:
+                    connection, _ = server.accept()
+                    with connection:
+                        connection.sendall(data)
+                        connection.recv(1)
+
+        thread = threading.Thread(target=answer, daemon=True)
+        thread.start()
+        yield server.getsockname()[1]
+        server.shutdown(socket.SHUT_RDWR)
+    thread.join()
+
+
+@contextmanager
+def sending(step):
+    """Calls a function again and again in a thread, as a sender does."""
+    done = threading.Event()
+
+    def send():
+        while not done.wait(0.001):
+            step()
+
+    thread = threading.Thread(target=send)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()

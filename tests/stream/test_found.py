@@ -13,6 +13,8 @@ from tests.captures import made_capture
         ((None, None, None), "not known"),
         ((36, 100.0, 2), "36 markers at 100 Hz, 2 plates"),
         ((36, None, 1), "36 markers, 1 plate"),
+        ((None, 60.0, None, 15), "15 segments at 60 Hz"),
+        ((None, None, None, 0, 17), "17 sensors"),
         ((0, 99.5, 0), "points without names at 99.5 Hz, no plates"),
     ],
 )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import struct
 from contextlib import closing, suppress
 from dataclasses import replace
+from functools import partial
 
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.stream.asking import Answer, asked
@@ -18,6 +19,7 @@ from mbkf.stream.natnet.cursor import opened
 from mbkf.stream.natnet.descriptions import Descriptions
 from mbkf.stream.natnet.layout import own_sets
 from mbkf.stream.natnet.server import read_version
+from mbkf.stream.side_by_side import side_by_side
 
 COMMAND_PORT = 1510
 """Motive's command port."""
@@ -39,10 +41,10 @@ def natnet_streams(local: str, timeout_s: float, port: int = COMMAND_PORT) -> li
         port: The command port that is asked.
     """
     answers = asked(lambda _: packets.message(packets.CONNECT, b"Ping\0"), port, local, timeout_s)
-    return [found for one in answers if (found := _found(one, port)) is not None]
+    return side_by_side(partial(_found, port), answers)
 
 
-def _found(answer: Answer, port: int) -> FoundStream | None:
+def _found(port: int, answer: Answer) -> FoundStream | None:
     """The server that answered; None where the packet is of another kind or of a version that we do not read."""
     options = {"server": answer.address, "local": answer.local}
     if port != COMMAND_PORT:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import socket
 import time
 from collections import deque
@@ -16,6 +17,9 @@ BASE_PORT = 22222
 
 VERSIONS = ("1.25", "1.20", "1.13", "1.8", "1.1")
 """Versions of the protocol, asked for one after another until QTM knows one."""
+
+GREETING_S = ANSWER_S * (2 + len(VERSIONS))
+"""Longest wait for the answers to a new connection: a welcome, versions and parameters."""
 
 DATAGRAM = 65536
 """Most bytes of a datagram."""
@@ -42,13 +46,14 @@ class QtmClient:
         parameters: XML of the last parameters that arrived.
     """
 
-    def __init__(self, host: str, port: int, over_udp: bool = False) -> None:
+    def __init__(self, host: str, port: int, over_udp: bool = False, greeting_s: float = GREETING_S) -> None:
         """Connects, agrees on a version and asks for parameters.
 
         Args:
             host: QTM's computer.
             port: Its base port.
             over_udp: Whether frames come over UDP.
+            greeting_s: Longest wait for all answers to that.
 
         Raises:
             OSError: The server is not there.
@@ -58,6 +63,7 @@ class QtmClient:
         self._waiting: deque[Packet] = deque()
         self._datagrams: socket.socket | None = None
         self._connection = PacketConnection(host, port + 1, "QTM ended the connection")
+        self._until_s = time.perf_counter() + greeting_s
         try:
             welcome = self._answer()
             if "QTM RT Interface connected" not in welcome:
@@ -74,6 +80,7 @@ class QtmClient:
         except BaseException:
             self.close()
             raise
+        self._until_s = math.inf
 
     def command(self, text: str) -> str:
         """QTM's answer to a command: text, or XML. Packets of data that come meanwhile wait to be taken.
@@ -139,7 +146,7 @@ class QtmClient:
         )
 
     def _answer(self) -> str:
-        until = time.perf_counter() + ANSWER_S
+        until = min(time.perf_counter() + ANSWER_S, self._until_s)
         kept: list[Packet] = []
         try:
             while True:

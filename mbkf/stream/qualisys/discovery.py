@@ -1,4 +1,4 @@
-"""Qualisys Track Managers that answer in the network.
+"""Qualisys Track Managers that answer in the network, or at a given computer.
 
 Source: QTM Real-time Server Protocol Documentation 1.25 (Qualisys), section Auto discover.
 """
@@ -6,19 +6,24 @@ Source: QTM Real-time Server Protocol Documentation 1.25 (Qualisys), section Aut
 from __future__ import annotations
 
 import struct
-from contextlib import suppress
+from contextlib import closing, suppress
 
-from mbkf.errors import MbkfError
+from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.asking import Answer, asked
 from mbkf.stream.found import FoundStream
-from mbkf.stream.qualisys.client import BASE_PORT
+from mbkf.stream.qualisys.client import BASE_PORT, QtmClient
 from mbkf.stream.qualisys.packets import COMMAND, DISCOVER, HEADER, packet, text_of
-from mbkf.stream.qualisys.source import QualisysSource
+from mbkf.stream.qualisys.parameters import read_parameters
+from mbkf.stream.side_by_side import side_by_side
+from mbkf.stream.source import StreamDescription
 
 DISCOVER_PORT = BASE_PORT + 4
 """Port that QTM listens at for clients that look for it, whatever its base port is."""
 
 LAST_PORT = 65535
+
+DESCRIBED_S = 1.5
+"""A server that answered describes its stream within this time."""
 
 _PORT = struct.Struct(">H")
 
@@ -32,7 +37,20 @@ def qualisys_streams(local: str, timeout_s: float, port: int = DISCOVER_PORT) ->
         port: The port that is asked.
     """
     answers = asked(lambda own: packet(DISCOVER, _PORT.pack(own)), port, local, timeout_s)
-    return [found for one in answers if (found := _found(one)) is not None]
+    return side_by_side(_found, answers)
+
+
+def qualisys_at(host: str, base: int) -> list[FoundStream]:
+    """The server of a computer and what it streams; nothing where another one answers or none does.
+
+    Args:
+        host: The computer.
+        base: Its base port.
+    """
+    try:
+        return [_server("QTM", host, base).described(_described(host, base))]
+    except (OSError, InvalidInput):
+        return []
 
 
 def _found(answer: Answer) -> FoundStream | None:
@@ -40,13 +58,26 @@ def _found(answer: Answer) -> FoundStream | None:
     data = answer.data
     if len(data) < HEADER.size + _PORT.size or HEADER.unpack_from(data) != (len(data), COMMAND):
         return None
-    name = text_of(data[HEADER.size : -_PORT.size])
     base: int = _PORT.unpack(data[-_PORT.size :])[0]
     if not 0 < base < LAST_PORT:  # clients connect to the port after it
         return None
-    source, stream = QualisysSource(answer.address, base), None
-    with suppress(MbkfError):  # it does not measure
-        stream = source.connect(0.0)
-    source.close()
-    place = answer.address if base == BASE_PORT else f"{answer.address}:{base}"
-    return FoundStream("qualisys", name, answer.address, place).described(stream)
+    found = _server(text_of(data[HEADER.size : -_PORT.size]), answer.address, base)
+    with suppress(OSError, InvalidInput):
+        return found.described(_described(answer.address, base))
+    return found
+
+
+def _server(name: str, host: str, base: int) -> FoundStream:
+    return FoundStream("qualisys", name, host, host if base == BASE_PORT else f"{host}:{base}")
+
+
+def _described(host: str, base: int) -> StreamDescription | None:
+    """A server's stream; None where it does not measure.
+
+    Raises:
+        OSError: The server is not there, or does not answer in time.
+        InvalidInput: It is not QTM.
+    """
+    with closing(QtmClient(host, base, greeting_s=DESCRIBED_S)) as client, suppress(MbkfError):
+        return read_parameters(client.parameters, None).stream
+    return None

@@ -35,12 +35,13 @@ class ViconClient:
         supported: Types of objects that the server has.
     """
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, answer_s: float = ANSWER_S) -> None:
         """Connects and states the types that are wanted.
 
         Args:
             host: Computer of Vicon's program.
             port: Its port.
+            answer_s: Longest wait for the program's first packet.
 
         Raises:
             OSError: The server is not there, or does not answer.
@@ -50,7 +51,7 @@ class ViconClient:
         self._asked_s: float | None = None
         self._connection = PacketConnection(host, port, "Vicon's program ended the connection")
         try:
-            self.supported = self._greeting()
+            self.supported = self._greeting(answer_s)
             wanted = tuple(one for one in objects.WANTED if one in self.supported)
             self._connection.send(objects.packet(objects.enums((*wanted, objects.CONTENTS))))
         except InvalidPacket as error:
@@ -109,8 +110,8 @@ class ViconClient:
         """Ends the connection."""
         self._connection.close()
 
-    def _greeting(self) -> tuple[int, ...]:
-        until = time.perf_counter() + ANSWER_S
+    def _greeting(self, answer_s: float) -> tuple[int, ...]:
+        until = time.perf_counter() + answer_s
         while (left := until - time.perf_counter()) > 0.0:
             self._receive(left)
             if self._waiting:

@@ -11,6 +11,7 @@ from mbkf.conventions import Array, read_only
 from mbkf.errors import InvalidPacket, MbkfError
 from mbkf.io.axes import rotation_to_world
 from mbkf.stream.known import KnownStream
+from mbkf.stream.packet_connection import ANSWER_S
 from mbkf.stream.reconnecting import ReconnectingSource
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 from mbkf.stream.vicon import objects
@@ -28,7 +29,14 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
     """A :class:`mbkf.stream.source.FrameSource`."""
 
     def __init__(
-        self, host: str, port: int, *, up: str | None = None, person: str | None = None, pull: bool = False
+        self,
+        host: str,
+        port: int,
+        *,
+        up: str | None = None,
+        person: str | None = None,
+        pull: bool = False,
+        answer_s: float = ANSWER_S,
     ) -> None:
         """A source that is not connected yet.
 
@@ -38,13 +46,14 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
             up: Axis that points up; None for the one that is stated.
             person: Subject to follow; None for all of them.
             pull: Whether each frame is asked for.
+            answer_s: Longest wait for the answer to a connection.
 
         Raises:
             UnknownName: The axis does not exist.
         """
         super().__init__("Vicon")
         rotation_to_world(up or "z")
-        self._place, self._pull = (host, port), pull
+        self._place, self._pull = (host, port, answer_s), pull
         self._up, self._person = up, person
         self._objects: dict[int, list[bytes]] = {}
         self._forces: dict[int, int] = {}

@@ -66,6 +66,16 @@ class XsensSource:
         self._differences: Differences | None = None
         self._ready: deque[SourceFrame] = deque()
 
+    @property
+    def sender(self) -> str | None:
+        """Address of the sender; None before its first readable datagram."""
+        return None if self._datagrams.sender is None else self._datagrams.sender[0]
+
+    @property
+    def kind(self) -> int | None:
+        """Type of the data that are read; None before the stream is described."""
+        return None if self._described is None else self._described.kind
+
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The stream, once a second of it has come; frames flow from the first read on.
 

@@ -1,7 +1,9 @@
 // The live run on the page: a form for its stream and body, its own page while it goes on, and how it ended.
 "use strict";
 
-const SOURCE_WORDS = { lsl: "live_lsl", natnet: "live_natnet", qualisys: "live_qualisys", udp: "live_udp", file: "live_file" };
+const SOURCE_WORDS = {
+  lsl: "live_lsl", natnet: "live_natnet", qualisys: "live_qualisys", vicon: "live_vicon", xsens: "live_xsens", udp: "live_udp", file: "live_file",
+};
 
 const LIVE_AGAIN_MS = 500;
 
@@ -20,7 +22,8 @@ async function askLive(path, options = {}) {
 }
 
 function streamText(one) {
-  const carries = one.markers === null ? [word("live_unknown")] : [one.markers ? word("live_markers", one.markers) : word("live_points")];
+  const points = one.markers === null ? word("live_unknown") : one.markers ? word("live_markers", one.markers) : word("live_points");
+  const carries = [one.segments ? word("live_segments", one.segments) : one.sensors ? word("live_sensors", one.sensors) : points];
   if (one.rate_hz !== null) carries.push(word("live_hz", Math.round(one.rate_hz)));
   if (one.plates !== null) carries.push(word("live_plates", one.plates));
   return word("live_stream_of", one.name, word(SOURCE_WORDS[one.kind]), one.address, carries.join(", "));
@@ -78,21 +81,38 @@ class LiveDialog {
     const select = (name, choices) => element("select", { name }, ...choices.map(([value, text]) => element("option", { value }, text)));
     const sources = Object.entries(SOURCE_WORDS).filter(([kind]) => kind !== "file" || offer.captures.length).map(([kind, name]) => [kind, word(name)]);
     const source = select("source", sources), captures = offer.captures.map(({ name, file, kind }) => [name, `${file} (${word(KIND_WORDS[kind])})`]), place = element("div", { className: "fields" });
-    const bodies = [["standing", word("live_standing")]];
-    if (offer.subject) bodies.unshift(["subject", word("live_subject")]);
-    const body = select("body", bodies), note = element("p", {});
-    const weigh = () => { note.textContent = body.value === "subject" ? "" : offer.mass_kg === null ? word("live_weigh") : word("live_mass", offer.mass_kg); };
+    const bodies = offer.subject ? [["subject", word("live_subject")]] : [], standing = ["standing", word("live_standing")];
+    const body = select("body", []), note = element("p", {});
+    const record = element("input", { type: "checkbox", name: "record" }), recording = element("label", {}, record, word("live_record"));
+    const weigh = () => {
+      if (body.value === "subject") note.textContent = "";
+      else if (source.value === "xsens") note.textContent = word("live_no_body");
+      else note.textContent = offer.mass_kg === null ? word("live_weigh") : word("live_mass", offer.mass_kg);
+    };
     const input = (name, value = "", type = "text") => element("input", { name, type, value, spellcheck: false });
     const local = (known) => field(word("live_local"), input("local", known.local || "127.0.0.1"));
+    const there = (name, known, usual) => {
+      const [host, port] = (known.place || "").split(":");
+      return [field(word(name), input("host", host || "127.0.0.1")), field(word("live_its_port"), input("port", port || usual))];
+    };
     const parts = {
       lsl: (known) => [field(word("live_stream"), input("stream", known.stream))],
       natnet: (known) => [field(word("live_server"), input("server", known.server || "127.0.0.1")), local(known),
         input("port", known.port, "hidden"), input("multicast", known.multicast, "hidden")],
-      qualisys: (known) => [field(word("live_qtm"), input("place", known.place || "127.0.0.1"))],
-      udp: (known) => [field(word("live_port"), input("place", known.place || "15100")), local(known)],
+      qualisys: (known) => there("live_qtm", known, "22222"),
+      vicon: (known) => there("live_vicon_host", known, "801"),
+      xsens: (known) => [field(word("live_port"), input("port", known.place || "9763")), local(known)],
+      udp: (known) => [field(word("live_port"), input("port", known.place || "15100")), local(known)],
       file: () => [field(word("live_capture"), select("trial", captures))],
     };
-    const fill = (known = {}) => place.replaceChildren(...parts[source.value](known));
+    const fill = (known = {}) => {
+      place.replaceChildren(...parts[source.value](known));
+      recording.hidden = record.disabled = source.value === "xsens";
+      const chosen = body.value, choices = source.value === "xsens" ? bodies : [...bodies, standing];
+      body.replaceChildren(...choices.map(([value, text]) => element("option", { value }, text)));
+      if (choices.some(([value]) => value === chosen)) body.value = chosen;
+      weigh();
+    };
     source.onchange = () => { this.tell(""); fill(); };
     const rehearsed = captures.some(([name]) => name === this.trial);
     const search = this.search((found) => {
@@ -100,7 +120,7 @@ class LiveDialog {
       fill({ place: found.place, ...found.options });
     }, () => !rehearsed && place.querySelector("input[name=stream]")?.value === "");
     body.onchange = weigh;
-    const form = element("form", { className: "live" }, ...search, field(word("live_source"), source), place, field(word("live_body"), body), note,
+    const form = element("form", { className: "live" }, ...search, field(word("live_source"), source), place, field(word("live_body"), body), note, recording,
       element("p", {}, word("live_targets")), element("button", { className: "main" }, word("live_start")));
     form.onsubmit = (event) => {
       event.preventDefault();
@@ -110,7 +130,6 @@ class LiveDialog {
     if (rehearsed) source.value = "file";
     fill();
     if (rehearsed) form.elements.trial.value = this.trial;
-    weigh();
     source.focus();
   }
 

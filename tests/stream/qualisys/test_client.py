@@ -6,6 +6,7 @@ import pytest
 
 from benchmarks.streams.qualisys_server import QtmServer
 from mbkf.errors import InvalidInput
+from mbkf.stream.packet_connection import PacketConnection
 from mbkf.stream.played import played
 from mbkf.stream.qualisys import client as client_module
 from mbkf.stream.qualisys import packets
@@ -60,3 +61,17 @@ def test_a_refusal_is_an_error(client):
 
 def test_the_parameters_are_here_from_the_start(client):
     assert client.parameters.startswith("<QTM_Parameters_Ver") and client.version == "1.25"
+
+
+def test_answers_to_a_greeting_that_never_come_are_waited_for_no_longer_than_asked(server, monkeypatch):
+    now = [0.0]
+
+    def pass_time(_, timeout_s, beside):
+        now[0] += timeout_s
+        return []
+
+    monkeypatch.setattr(PacketConnection, "wait", pass_time)
+    monkeypatch.setattr(client_module.time, "perf_counter", lambda: now[0])
+    with pytest.raises(TimeoutError):
+        QtmClient("127.0.0.1", server.port, greeting_s=0.5)
+    assert now == [0.5]
