@@ -30,7 +30,7 @@ from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
 from mbkf.stream.run.folder import LOG_FOLDER
-from mbkf.trial.live.log import SUBJECT_FILE
+from mbkf.trial.live.log import SUBJECT_FILE, read_live_log
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.synth import synthesise, write_folder
@@ -39,6 +39,9 @@ SECONDS, QUICK_SECONDS = 20.0, 5.0
 RATES_HZ = (100.0, 300.0)
 EQUAL, SINGLE = 0.0, 1e-4
 """Bounds of differences: of the same frames, and of frames in a file's single precision."""
+
+CAUGHT_UP_S, BEHIND_S = 1.0, 0.05
+"""Within a second of its first frame, a run answers no later than this after a frame arrives."""
 
 MEDIAN_MS, P99_MS = 1.0, 3.0
 """Bounds of latency beyond that of an idle process."""
@@ -67,6 +70,9 @@ def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
         if not trial.unlabelled:
             apart = recorded_difference(found, file)
             yield Check(f"{trial.name}: difference from the recorded C3D file", apart, SINGLE, "<=")
+        log = read_live_log(found.folder / LOG_FOLDER)
+        caught_up = caught_up_s(log.rows["number"] / log.stream.rate_hz, log.rows["latency_s"])
+        yield Check(f"{trial.name}: from the first frame until 50 ms behind", caught_up, CAUGHT_UP_S, "<=", "s")
         yield from latency(trial.name, found)
     yield from fault_rows(context, protocol)
     if protocol in ROWS:
@@ -87,6 +93,17 @@ def recorded_difference(found: Run, file: Path) -> float:
     part = slice(round(2.0 * capture.markers.rate_hz), min(run.frames, again.frames) - 1)
     names = [name for name in COMPARED if name not in ("angles", "moments")]
     return max(apart(getattr(run, name)[part], getattr(again, name)[part]) for name in names)
+
+
+def caught_up_s(times_s: Array, latency_s: Array) -> float:
+    """Time from the first frame's arrival until frames are answered within :data:`BEHIND_S`.
+
+    Args:
+        times_s: (T,) times of the frames.
+        latency_s: (T,) from each arrival to its answer; NaN for lost frames.
+    """
+    soon = np.flatnonzero(latency_s <= BEHIND_S)
+    return float((times_s + latency_s)[soon[0]] - times_s[0]) if len(soon) else np.inf
 
 
 def latency(name: str, found: Run) -> Iterator[Check]:

@@ -76,6 +76,12 @@ def test_an_idle_process_is_subtracted(tmp_path):
     assert [row.passed for row in rows] == [False, True]
 
 
+def test_a_run_has_caught_up_with_its_first_soon_answer():
+    times_s = 4.0 + 0.01 * np.arange(4)
+    assert streams.caught_up_s(times_s, np.array([0.3, np.nan, 0.04, 0.002])) == pytest.approx(0.06)
+    assert streams.caught_up_s(times_s, np.full(4, 0.3)) == np.inf
+
+
 def test_each_protocol_has_a_receiver_and_a_sender():
     for protocol in ("lsl", "natnet", *FAULTS):
         wire = wire_of(protocol)
