@@ -26,6 +26,7 @@ from benchmarks.streams.faults import FAULTS
 from benchmarks.streams.results_out import out_rows
 from benchmarks.streams.scenes import MANY, belt_walk
 from benchmarks.streams.xsens import xsens_rows
+from mbkf.conventions import Array
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
@@ -72,7 +73,9 @@ def stream_rows(context: Context, protocol: str) -> Iterator[Check]:
             yield Check(f"{trial.name}: difference from the recorded C3D file", apart, SINGLE, "<=")
         log = read_live_log(found.folder / LOG_FOLDER)
         caught_up = caught_up_s(log.rows["number"] / log.stream.rate_hz, log.rows["latency_s"])
-        yield Check(f"{trial.name}: from the first frame until 50 ms behind", caught_up, CAUGHT_UP_S, "<=", "s")
+        yield Check(
+            f"{trial.name}: from the first frame until 50 ms behind", caught_up, CAUGHT_UP_S, "<=", "s"
+        )
         yield from latency(trial.name, found)
     yield from fault_rows(context, protocol)
     if protocol in ROWS:
