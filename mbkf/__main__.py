@@ -12,6 +12,9 @@ def main() -> int:
     """
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from mbkf.cli.late_methods import compile_late
+
+    compile_late()
     from mbkf.cli.main import main as command
 
     return command()

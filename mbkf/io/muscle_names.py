@@ -7,6 +7,7 @@ forms are those of captures and of the makers' software (Delsys, Noraxon, Myon, 
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import NamedTuple
 
 SIDE_WORDS = {
@@ -79,8 +80,15 @@ _PATTERNS = {
     "pectoralis_major": r"pm|pec|pect|pectoralis(major)?",
     "gm": r"gm|glm",
 }
-MUSCLES = {name: re.compile(pattern) for name, pattern in _PATTERNS.items()}
-"""Pattern of each muscle's name without spaces, in small letters; GM stays as written: it abbreviates three muscles."""
+
+
+@cache
+def muscles() -> dict[str, re.Pattern[str]]:
+    """Pattern of each muscle's name without spaces, in small letters.
+
+    GM stays as written: it abbreviates three muscles. The patterns are compiled when a trial has channels to name.
+    """
+    return {name: re.compile(pattern) for name, pattern in _PATTERNS.items()}
 
 
 class Muscle(NamedTuple):
@@ -125,7 +133,7 @@ def _known(letters: str, side: str) -> Muscle | None:
         tried += [(letters.removeprefix(word), one) for word, one in SIDE_WORDS.items() if len(word) > 2]
     for name, of_side in tried:
         if of_side in ("", "r", "l"):
-            for muscle, pattern in MUSCLES.items():
+            for muscle, pattern in muscles().items():
                 if pattern.fullmatch(name):
                     return Muscle(muscle, of_side)
     return None

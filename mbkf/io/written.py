@@ -91,8 +91,6 @@ _FORMS: Mapping[str, tuple[bytes, ...]] = {
 }
 """Formats, and the headings of mbkf's files in each; a file has the first format with a heading that fits."""
 
-_OURS = {form: [re.compile(one, re.DOTALL) for one in headings] for form, headings in _FORMS.items()}
-
 FORM_OF_SUFFIX = {".html": PAGE, ".toml": SETTINGS, ".csv": TABLE, ".json": DATA}
 """Formats of the files that a command always writes in the same one."""
 
@@ -116,8 +114,12 @@ def form_of(path: str | Path) -> str | None:
             head += file.read(_TAIL_BYTES)
     if not head:
         return ""
-    fits = (form for form, headings in _OURS.items() if any(heading.match(head) for heading in headings))
+    fits = (form for form, headings in _FORMS.items() if any(_fits(one, head) for one in headings))
     return next(fits, None)
+
+
+def _fits(heading: bytes, head: bytes) -> bool:
+    return re.match(heading, head, re.DOTALL) is not None
 
 
 def check_replaceable(path: str | Path, *, edits: bool = False, form: str | None = None) -> None:

@@ -37,7 +37,6 @@ from mbkf.model.description import (
 from mbkf.model.sides import mirrored
 from mbkf.model.spread_tables import joint_centres, segment_skin, shoulder_girdle
 from mbkf.model.trunk_levels import trunk_levels
-from mbkf.model.urdf_body import side_path, urdf_body_text
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
@@ -58,13 +57,10 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
         FileFormatError: The file or its side file is missing or not a valid body description.
     """
     path = Path(body)
-    if path.suffix.lower() == ".osim":
-        from mbkf.model.osim_body import osim_body_text
-
-        return parse_body(osim_body_text(path), f"{path} with {side_path(path).name}")
-    if path.suffix.lower() == ".urdf":
-        return parse_body(urdf_body_text(path), f"{path} with {side_path(path).name}")
-    if path.suffix.lower() == ".toml":
+    suffix = path.suffix.lower()
+    if suffix in (".osim", ".urdf"):
+        return _of_model(path, suffix)
+    if suffix == ".toml":
         try:
             text = plain_text(path)
         except (OSError, ValueError) as error:
@@ -73,6 +69,17 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
             ) from error
         return parse_body(text, path)
     return _shipped(str(body))
+
+
+def _of_model(path: Path, suffix: str) -> BodyDescription:
+    """The body of an OpenSim model or a URDF file; readers of XML are loaded for these alone."""
+    from mbkf.model.urdf_body import side_path, urdf_body_text
+
+    if suffix == ".osim":
+        from mbkf.model.osim_body import osim_body_text
+
+        return parse_body(osim_body_text(path), f"{path} with {side_path(path).name}")
+    return parse_body(urdf_body_text(path), f"{path} with {side_path(path).name}")
 
 
 @cache
