@@ -13,6 +13,7 @@ from pathlib import Path
 
 from mbkf.conventions import JsonTable, TomlTable
 from mbkf.io.files_read import SETTINGS_BYTES, read_bytes
+from mbkf.io.toml_lines import mistake
 
 MOST_PARTS = 32
 """Parts of the longest key between dots."""
@@ -69,8 +70,6 @@ def parse_toml(text: str) -> TomlTable:
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        from mbkf.io.toml_lines import mistake  # its patterns take long to compile
-
         raise mistake(text, error) from error
     except RecursionError as error:
         raise ValueError("nested too deep") from error

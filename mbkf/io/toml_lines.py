@@ -16,20 +16,21 @@ Place = tuple[str | int, ...]
 LONGEST_LINE = 500
 """Length of the longest line that is searched for a common mistake; a person's line is shorter."""
 
-_TITLE = re.compile(r"\s*(\[\[?)(.+?)\]\]?\s*(?:#.*)?")
-_ENTRY = re.compile(
+# Patterns as texts, since few files have a mistake, and compiling all takes longer than reading one.
+_TITLE = r"\s*(\[\[?)(.+?)\]\]?\s*(?:#.*)?"
+_ENTRY = (
     r"\s*((?:[\w-]+|\"(?:[^\"\\]|\\.)*\"|'[^']*')(?:\s*\.\s*(?:[\w-]+|\"(?:[^\"\\]|\\.)*\"|'[^']*'))*)\s*="
 )
-_PART = re.compile(r"[\w-]+|\"(?:[^\"\\]|\\.)*\"|'[^']*'")
-_LONG = re.compile(r"'''|\"\"\"")
-_AT_LINE = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
+_PART = r"[\w-]+|\"(?:[^\"\\]|\\.)*\"|'[^']*'"
+_LONG = r"'''|\"\"\""
+_AT_LINE = r" \(at (?:line (\d+), column \d+|end of document)\)$"
 
-_DECIMAL_COMMA = re.compile(r"(\s*[\w.\"'-]+\s*=\s*)([+-]?\d+),(\d+)\s*(?:#.*)?")
-_UNIT = re.compile(r"(\s*[\w.\"'-]+\s*=\s*[+-]?\d+(?:\.\d+)?)\s*([A-Za-z]+)\s*(?:#.*)?")
-_BARE_TEXT = re.compile(r"(\s*[\w.\"'-]+\s*=\s*)([^\W\d][^\"'#=]*?)\s*(?:#.*)?")
-_COLON = re.compile(r"\s*([\w-]+)\s*:\s*(.*)")
-_CURLY = re.compile("[\u2018\u2019\u201a\u201c\u201d\u201e\u00ab\u00bb]")
-_SPACED_KEY = re.compile(r"\s*([A-Za-z_]\w*(?:\s+\(?\w+\)?)+)\s*=")
+_DECIMAL_COMMA = r"(\s*[\w.\"'-]+\s*=\s*)([+-]?\d+),(\d+)\s*(?:#.*)?"
+_UNIT = r"(\s*[\w.\"'-]+\s*=\s*[+-]?\d+(?:\.\d+)?)\s*([A-Za-z]+)\s*(?:#.*)?"
+_BARE_TEXT = r"(\s*[\w.\"'-]+\s*=\s*)([^\W\d][^\"'#=]*?)\s*(?:#.*)?"
+_COLON = r"\s*([\w-]+)\s*:\s*(.*)"
+_CURLY = "[\u2018\u2019\u201a\u201c\u201d\u201e\u00ab\u00bb]"
+_SPACED_KEY = r"\s*([A-Za-z_]\w*(?:\s+\(?\w+\)?)+)\s*="
 
 
 class TomlMistake(ValueError):
@@ -60,7 +61,7 @@ def line_of(text: str, place: Place) -> int | None:
 
 def mistake(text: str, error: tomllib.TOMLDecodeError) -> TomlMistake:
     """An error of the parser with its line and, where the mistake is a common one, its mend."""
-    match = _AT_LINE.search(str(error))
+    match = re.search(_AT_LINE, str(error))
     lines = text.split("\n")
     number = int(match[1]) if match is not None and match[1] else max(len(lines), 1)
     line = lines[number - 1].strip() if number <= len(lines) else ""
@@ -72,17 +73,17 @@ def mistake(text: str, error: tomllib.TOMLDecodeError) -> TomlMistake:
 
 def _advice(line: str, reason: str) -> str:
     """The mend of a common mistake; empty for others."""
-    if match := _DECIMAL_COMMA.fullmatch(line):
+    if match := re.fullmatch(_DECIMAL_COMMA, line):
         return f"decimals have a point, write {match[1].strip()} {match[2]}.{match[3]}"
-    if match := _UNIT.fullmatch(line):
+    if match := re.fullmatch(_UNIT, line):
         return f"a number stands without its unit, write {match[1].strip()}"
-    if _CURLY.search(line):
+    if re.search(_CURLY, line):
         return 'quotation marks must be straight, write " instead of curly ones'
-    if match := _SPACED_KEY.match(line):
+    if match := re.match(_SPACED_KEY, line):
         return f"an entry's name has no spaces; '{match[1]}' must be one of the entries of the documentation"
-    if match := _COLON.fullmatch(line):
+    if match := re.fullmatch(_COLON, line):
         return f"an entry has an equals sign, write {match[1]} = …"
-    if match := _BARE_TEXT.fullmatch(line):
+    if match := re.fullmatch(_BARE_TEXT, line):
         return f'a text stands in quotation marks, write {match[1].strip()} "{match[2]}"'
     if "overwrite" in reason or "declare" in reason:
         return "this entry stands above already; keep one of them"
@@ -98,13 +99,13 @@ def _places(text: str) -> Iterator[tuple[int, Place]]:
         if closing:
             closing = "" if line.count(closing) % 2 else closing
             continue
-        title, entry = _TITLE.fullmatch(line), _ENTRY.match(line)
+        title, entry = re.fullmatch(_TITLE, line), re.match(_ENTRY, line)
         if entry is not None:
             yield number, (*course.table, *_parts(entry[1]))
         elif title is not None:
             _open(course, _parts(title[2]), title[1] == "[[")
             yield number, course.table
-        opened = _LONG.search(line)
+        opened = re.search(_LONG, line)
         if opened is not None and line.count(opened[0]) % 2:
             closing = opened[0]
 
@@ -123,4 +124,4 @@ def _open(course: _Course, keys: tuple[str, ...], listed: bool) -> None:
 
 def _parts(keys: str) -> tuple[str, ...]:
     """The keys of a dotted key, without quotation marks."""
-    return tuple(part[1:-1] if part[0] in "\"'" else part for part in _PART.findall(keys))
+    return tuple(part[1:-1] if part[0] in "\"'" else part for part in re.findall(_PART, keys))
