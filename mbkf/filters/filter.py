@@ -218,15 +218,13 @@ class Filter(Generic[StateT]):
             readings = summed(self.blocks, statements, self.layout)
             posterior = self._updated(state, readings)
 
-        channels = Cached(lambda: self._spreads.read(decided, statements))
+        judged = Cached(lambda: self._spreads.judged(memory.spreads, self._spreads.read(decided, statements)))
 
         def remembered() -> Memory:
             kept = list(memory.blocks)
             for k, block in self._remembering:
                 kept[k] = block.remember(posterior, points[k], decided[k], kept[k])
-            spreads = memory.spreads
-            if self.follows_spreads:
-                spreads = self._spreads.after(spreads, channels())
+            spreads = judged()[1] if self.follows_spreads else memory.spreads
             return Memory(self.plant.remember(posterior, notes, memory.plant), kept, spreads)
 
         return Step(
@@ -235,7 +233,7 @@ class Filter(Generic[StateT]):
             Decisions(prior.noise, decided, notes),
             readings,
             Cached(remembered),
-            Cached(lambda: self._spreads.innovations(memory.spreads, channels())),
+            Cached(lambda: judged()[0]),
         )
 
     def _decided(

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import READING_KINDS, Array
+from mbkf.kernel.loading import library
 from mbkf.numerics.kalman import Information
 from mbkf.numerics.running_spread import RunningSpread
 from mbkf.sensors.block import AnyBlock, Channels, Rows, Statement
@@ -75,6 +76,7 @@ class InnovationSpreads:
             self._readers.append((number, block, len(sd[-1])))
             if block.kind == "markers":
                 self._markers = slice(first, len(kinds))
+        self._kinds = np.array(kinds, dtype=np.int32)
         self._of_kind = np.equal.outer(kinds, np.arange(len(READING_KINDS))).astype(float)
         spread, is_known = (np.concatenate([np.zeros(0), *parts]) for parts in (sd, known))
         self._first = RunningSpread(spread**2, EXPECTED_FRAMES * is_known)
@@ -98,6 +100,18 @@ class InnovationSpreads:
         return Channels(
             np.concatenate([one.mean_square for one in read]), np.concatenate([one.readings for one in read])
         )
+
+    def judged(self, before: RunningSpread, read: Channels) -> tuple[Innovations, RunningSpread]:
+        """:meth:`innovations` and :meth:`after` together, by the compiled kernel where there is one."""
+        kernel = library()
+        if kernel is None:
+            return self.innovations(before, read), self.after(before, read)
+        own, readings, kinds = self._markers, read.readings.astype(float), len(READING_KINDS)
+        squared, counted, ratio, variance, *after = kernel.judge_innovations(
+            kinds, read.mean_square, readings, *before, self._least, self._most, self._kinds, self._forget
+        )
+        found = Innovations(squared, counted.astype(int), ratio[own], np.sqrt(variance[own]))
+        return found, RunningSpread(*after)
 
     def innovations(self, before: RunningSpread, read: Channels) -> Innovations:
         """A frame's readings in units of their spread in the frames before."""
@@ -139,6 +153,9 @@ def _whitened(said: Statement, channels: int) -> Channels:
     if isinstance(said, Information):
         first = np.arange(channels) == 0
         return Channels(first * (said.innovation / max(said.readings, 1)), first * said.readings)
+    if isinstance(said, Rows) and said.readings == 3 * channels:
+        y = said.innovation[: said.readings].reshape(channels, 3)
+        return Channels(np.vecdot(y, y) / 3.0, np.full(channels, 3))
     squares, readings = [0.0] * channels, [0] * channels
     for rows in (said,) if isinstance(said, Rows) else said or ():
         for k, y in enumerate(rows.innovation[: rows.readings].tolist()):

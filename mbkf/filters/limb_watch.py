@@ -33,6 +33,9 @@ MISFIT_M, TIMES_OTHERS = 0.03, 2.0
 """A limb is in doubt where markers of one of its segments lie so far (RMS), and so many times further than others, or
 where a joint lies further beyond its range than any new pose may."""
 
+SURELY = 0.999
+"""Margin for rounding: limbs within this share of both limits are not in doubt."""
+
 JUMP_M = 0.05
 """A limb is searched in the same frame where a segment's used markers lie so far (RMS) from their prediction: fast
 limbs are mispredicted by less."""
@@ -165,6 +168,10 @@ class LimbWatch:
     def _lasting(self, number: int, estimate: Posterior) -> LimbMend | None:
         """The mend of a limb that looks have found in doubt."""
         seen = named(self._looks[-1].markers_m, self.order)
+        if not self._open and self._fits.fits_within(
+            estimate.q, seen, SURELY * MISFIT_M, SURELY * BEYOND_RAD
+        ):
+            return None  # as evidence would show, which costs more
         evidence = self._fits.evidence(estimate.q, seen)
         suspects = in_doubt(evidence)
         for k in [k for k in self._open if not suspects[k]]:

@@ -123,6 +123,36 @@ class BodyFunctions(Protocol):
             wrenches: w_f of the right, the left foot.
         """
 
+    @requires("above >= 1", "above < joints", "N >= 3*nv")
+    def section_state(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        carried: In[Array, "6"],
+        transport: In[Array, "3 6"],
+        above: int,
+        residual: In[Array, "6"],
+        by_state: In[Array, "6 N"],
+        /,
+    ) -> tuple[
+        Made[Array, "wrench: 2 6"],
+        Made[Array, "moment: 2 3"],
+        Made[Array, "rows: 2 3 N"],
+        Made[Array, "by_root: 3 6"],
+    ]:
+        """Loads at a section of the trunk by way, top-down and bottom-up, with derivatives.
+
+        Args:
+            tree: The segments above the section.
+            q, v, a: Motion.
+            carried: Wrench of all loads on them.
+            transport: Moment about the section by a wrench about the root's origin, in its axes.
+            above: Joint of the segment above, in whose axes moments are; where it is spherical, they turn with it.
+            residual, by_state: The whole body's residual at the root, and its derivatives by the state.
+        """
+
     def height_jacobian(
         self, tree: Tree, q: In[Array, "nq"], joint_ids: In[Int32Array, "n in 1:joints"], /
     ) -> Made[Array, "heights: n nv"]:

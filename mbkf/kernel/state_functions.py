@@ -341,6 +341,38 @@ class StateFunctions(Protocol):
             level: The level.
         """
 
+    def judge_innovations(
+        self,
+        kinds: int,
+        mean_square: In[Array, "n"],
+        readings: In[Array, "n"],
+        before: In[Array, "n"],
+        frames: In[Array, "n"],
+        least: In[Array, "n"],
+        most: In[Array, "n"],
+        kind: In[Int32Array, "n in 0:kinds"],
+        forget: float,
+        /,
+    ) -> tuple[
+        Made[Array, "squared: kinds"],
+        Made[Array, "counted: kinds"],
+        Made[Array, "ratio: n"],
+        Made[Array, "variance: n"],
+        Made[Array, "after: n"],
+        Made[Array, "frames_after: n"],
+    ]:
+        """A frame's innovations in units of their running spread, summed by kind, and the spread after them.
+
+        Args:
+            kinds: Number of kinds.
+            mean_square: Mean squares of the frame's readings by channel; any number where there is not a reading.
+            readings: Their number.
+            before, frames: Running mean squares of the channels and the frames that each rests on.
+            least, most: Range in which variances lie.
+            kind: Kind of each channel.
+            forget: Least weight of a frame.
+        """
+
     def choose_products(self, own: bool, /) -> None:
         """Multiplies matrices by 512-bit instructions of the kernel's own where the processor has them, or by BLAS."""
 

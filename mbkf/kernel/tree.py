@@ -20,6 +20,10 @@ KINDS = {
 """Kinds of joints of ``tree.h`` by Pinocchio's names."""
 
 
+Loads = tuple[Array, Array]
+"""(6,) residual at the root, and its derivatives (6, N)."""
+
+
 class CompiledTree:
     """A Pinocchio model's equations in compiled code (:class:`mbkf.kernel.body_functions.BodyFunctions`).
 
@@ -89,6 +93,24 @@ class CompiledTree:
         """:meth:`tau`, its derivatives, Jacobian (6, nv). Args: as :meth:`BodyFunctions.torque_derivatives`."""
         motion = _read(q), _read(v), _read(a)
         return self.kernel.torque_derivatives(self.handle, *motion, moves, _read(wrenches))
+
+    def section(
+        self, motion: tuple[Array, Array, Array], carried: Array, transport: Array, above: int, whole: Loads
+    ) -> tuple[Array, Array, Array, Array]:
+        """(2, 6) wrenches, (2, 3) moments, (2, 3, N) rows, (3, 6). Args: as :meth:`BodyFunctions.section_state`."""
+        q, v, a = motion
+        residual, by_state = whole
+        return self.kernel.section_state(
+            self.handle,
+            _read(q),
+            _read(v),
+            _read(a),
+            carried,
+            transport,
+            above,
+            _read(residual),
+            _read(by_state),
+        )
 
     def mass_inverse(self, q: Array, moving: BoolArray) -> tuple[Array, Array]:
         """(nv, nv) mass matrix, and the inverse of its part of the moving dofs; the rest of that is 0.

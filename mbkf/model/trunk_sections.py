@@ -79,6 +79,7 @@ class TrunkSections:
             [-skew(self.places_m), np.tile(np.eye(3), (len(self.levels), 1, 1))], axis=2
         )
         above = dict.fromkeys(level.above for level in self.levels)
+        self._above = [model.joint(level.above).joint_id for level in self.levels]
         self._turns = [model.joint(name).q for name in above]
         self._turned_by = [list(above).index(level.above) for level in self.levels]
 
@@ -159,6 +160,9 @@ class TrunkSections:
             residual: (6,) the root's residual, generalised forces in its axes.
             by_state: (6, N) derivative of the residual.
         """
+        found = self._compiled((q, v, a), carried, (residual, by_state))
+        if found is not None:
+            return found
         shape, by_root = (len(self.levels), *by_state.shape), self.by_root(q)
         wrenches, slopes = np.empty((len(WAYS), *shape[:2])), np.zeros(shape)
         motion = 3 * self._model.nv  # the feet are below
@@ -176,6 +180,24 @@ class TrunkSections:
         for k, level in enumerate(self.levels):  # axes of the segment above turn with its joint
             rows[:, k][..., self._model.joint(level.above).v] += turned[:, k]
         return SectionState(wrenches, moment, rows, by_root)
+
+    def _compiled(
+        self, motion: tuple[Array, Array, Array], carried: Array, whole: tuple[Array, Array]
+    ) -> SectionState | None:
+        """:meth:`state` by the kernel; None where there is none."""
+        trees = [] if self._model.tree is None else [upper.model.tree for upper in self._upper]
+        if not trees:
+            return None
+        residual, by_state = whole[0], np.ascontiguousarray(whole[1])
+        parts = [
+            tree.section(motion, carried[k], self.transports[k], self._above[k], (residual, by_state))
+            for k, tree in enumerate(trees)
+            if tree is not None
+        ]
+        wrench, moment, rows, by_root = zip(*parts, strict=True)
+        return SectionState(
+            np.stack(wrench, axis=1), np.stack(moment, axis=1), np.stack(rows, axis=1), np.array(by_root)
+        )
 
     def by_root(self, q: Array) -> Array:
         """(…, L, 3, 6) moments about the levels, axes of the segment above, by a wrench about the root's origin.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.kernel.markers import innovations
 from mbkf.model.limbs import Limb, limbs
 from mbkf.numerics.elimination import Border
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
@@ -129,8 +130,7 @@ class LimbFits:
             q: (nq,) configuration.
             measured_m: (M, 3) measured positions of a frame, NaN where missing.
         """
-        apart = measured_m - self.sensor.positions(q)
-        squared = np.vecdot(apart, apart)
+        squared = _squared(measured_m - self.sensor.positions(q))
         seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
         squared[~seen] = 0.0
         sums, counts = self._on_segment @ squared, self._on_segment @ seen
@@ -147,6 +147,23 @@ class LimbFits:
         return LimbEvidence(
             number, np.sqrt(own / np.maximum(number, 1.0)), np.sqrt(worst), np.sqrt(others), beyond, dof
         )
+
+    def fits_within(self, q: Array, measured_m: Array, most_m: float, most_rad: float) -> bool:
+        """True where every seen marker lies nearer than a distance, and every joint's excess over its range is smaller.
+
+        Args:
+            q: (nq,) configuration.
+            measured_m: (M, 3) measured positions of a frame, NaN where missing.
+            most_m: The distance.
+            most_rad: The excess, rad.
+        """
+        places_m = self.sensor.positions(q)
+        found = innovations(measured_m, places_m, most_m)
+        near = found.near if found is not None else not (_squared(measured_m - places_m) > most_m**2).any()
+        if not near:
+            return False
+        excess = self._ranges.beyond(self._posture.deviation(q)[0])
+        return excess is None or bool(np.abs(excess).max() <= most_rad)
 
     def worst_segment(self, squared_m2: Array) -> Array:
         """(L,) largest mean square among each limb's segments, of squared distances (M,), m²."""
@@ -248,3 +265,8 @@ def _shown(every: Sequence[Limb], unobservable: BoolArray) -> Iterator[Limb]:
         if len(dofs):
             joints = tuple(one for one in limb.joints if not unobservable[one.v].all())
             yield Limb(limb.name, joints, dofs)
+
+
+def _squared(apart_m: Array) -> Array:
+    """(M,) squared lengths of (M, 3) vectors."""
+    return np.asarray(np.vecdot(apart_m, apart_m))

@@ -110,7 +110,7 @@ def reconstruct(
         )
         measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
         capture = replace(capture, notes=tuple(notes))
-        found = assemble(capture, subject, settings, measured, hidden, inputs, result)
+        found = assemble(capture, subject, settings, measured, hidden, inputs, result, recording.plates)
         found = with_contacts(found, inputs.sensor.model, subject, measured, others_of(capture, use.used))
         seen = (shown, subject, inputs, recording, alone, before, lengths)
         judged = (*trial_checks(*seen), in_view_finding(capture.markers, use.used)) if settings.checks else ()

@@ -202,3 +202,17 @@ def test_the_part_above_grows_with_the_person():
     assert part.mass == pytest.approx(2.0 * level.part_mass_kg)
     np.testing.assert_allclose(part.lever, 1.2 * level.part_com_m)
     np.testing.assert_allclose(np.diag(part.inertia), 2.0 * 1.2**2 * level.part_inertia_kg_m2)
+
+
+@seeds
+def test_the_kernel_gives_the_references_loads_and_derivatives(seed, monkeypatch):
+    model, sections, s = made(seed)
+    whole = NewtonEuler(model).torques(s.q, s.v, s.a, s.w)
+    by_state = np.pad(whole.by_state[:6], ((0, 0), (0, 6)), constant_values=0.3)
+    carried = np.random.default_rng(seed).normal(size=(3, 6))
+    found = sections.state(s.q, s.v, s.a, carried, whole.tau[:6], by_state)
+    monkeypatch.setattr(TrunkSections, "_compiled", lambda *_: None)
+    expected = sections.state(s.q, s.v, s.a, carried, whole.tau[:6], by_state)
+    for name in ("wrench", "moment", "by_state", "by_root"):
+        one, other = getattr(found, name), getattr(expected, name)
+        assert_near(one, other, 1e-12 * worst(other))

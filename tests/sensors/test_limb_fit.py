@@ -72,6 +72,18 @@ def test_evidence_by_limb():
     assert (found.misfit_m[rest] < 1e-9).all() and (found.beyond_rad[rest] == 0.0).all()
 
 
+def test_a_body_fits_within_the_largest_distance_and_excess():
+    q = bent(-0.6)
+    excess = FITS.evidence(q, SENSOR.positions(q)).beyond_rad.max()
+    seen = SENSOR.positions(q)
+    seen[4] += [0.02, 0.0, 0.0]
+    seen[7] = np.nan
+    assert 0.1 < excess < 0.7
+    for most_m, most_rad in ((0.021, 1.01 * excess), (0.019, 1.01 * excess), (0.021, 0.99 * excess)):
+        fits = most_m > 0.02 and most_rad > excess
+        assert FITS.fits_within(q, seen, most_m, most_rad) == fits
+
+
 def test_ranges_may_be_left_out():
     q = bent(-np.radians(30.0))
     free = FITS.fit(LEG, q, SENSOR.positions(q), ranged=False)

@@ -83,6 +83,33 @@ class BearingParts:
     def at(self, q: Array, v: Array) -> BearingPoints:
         """The parts at a configuration q (nq,) with velocity v (nv,)."""
         rotations, origins, jacobian = self.model.placements_and_jacobian(q)
-        points = origins[self.joint_ids] + np.einsum("bij,bj->bi", rotations[self.joint_ids], self._local)
-        twists = (self._moves * v) @ jacobian.T
-        return BearingPoints(points, np.linalg.norm(twists[:, :3] + np.cross(twists[:, 3:], points), axis=1))
+        return self._moving(rotations[self.joint_ids], origins[self.joint_ids], jacobian, v)
+
+    def course(self, q: Array, v: Array) -> BearingPoints:
+        """The parts of T frames, points (T, B, 3) and speeds (T, B); NaN where a configuration is.
+
+        Args:
+            q: (T, nq) configurations.
+            v: (T, nv) velocities.
+        """
+        frames, parts = len(q), len(self)
+        turns, origins = np.full((frames, parts, 3, 3), np.nan), np.full((frames, parts, 3), np.nan)
+        jacobians = np.full((frames, 6, self.model.nv), np.nan)
+        for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
+            rotations, places, jacobians[t] = self.model.placements_and_jacobian(q[t])
+            turns[t], origins[t] = rotations[self.joint_ids], places[self.joint_ids]
+        return self._moving(turns, origins, jacobians, v)
+
+    def _moving(self, rotations: Array, origins: Array, jacobians: Array, v: Array) -> BearingPoints:
+        """Points and speeds of one frame, or of many along a first axis.
+
+        Args:
+            rotations: (…, B, 3, 3) axes of the parts' segments.
+            origins: (…, B, 3) their origins.
+            jacobians: (…, 6, nv) spatial Jacobian of the body.
+            v: (…, nv) velocity.
+        """
+        points = origins + (rotations @ self._local[:, :, None])[..., 0]
+        twists = (self._moves * v[..., None, :]) @ np.swapaxes(jacobians, -1, -2)
+        speeds = np.linalg.norm(twists[..., :3] + np.cross(twists[..., 3:], points), axis=-1)
+        return BearingPoints(points, speeds)

@@ -123,7 +123,8 @@ def other_contacts(
         unobservable: (nv,) dofs that move no marker; None: markers show every dof.
     """
     bearings = BearingParts(model, unobservable)
-    points, speeds = _moving(bearings, q, v)
+    moving = bearings.course(q, v)
+    points, speeds = moving.points_m, moving.speeds_m_s
     judged = read & loads.valid & ~np.isnan(q).any(axis=1)
     body, soles = WholeBody.of(model, q, v), sole_points(model, q)
     reached = np.concatenate([points, soles.mean(axis=2)], axis=1)
@@ -139,15 +140,6 @@ def other_contacts(
         seated = sits(body, soles, points[:, k], speeds[:, k], rate_hz, loads.floor_m)
         flags[:, k] |= seated & ~lying.any(axis=1)
     return replace(found, flags=flags)
-
-
-def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
-    """(T, B, 3) middles of the parts and (T, B) their speeds; NaN where untracked."""
-    points, speeds = np.full((len(q), len(bearings), 3), np.nan), np.full((len(q), len(bearings)), np.nan)
-    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        found = bearings.at(q[t], v[t])
-        points[t], speeds[t] = found.points_m, found.speeds_m_s
-    return points, speeds
 
 
 def _missing(

@@ -67,6 +67,7 @@ class Evidence:
         times_s: Array,
         rate_hz: float,
         plates: Sequence[PlateReadings],
+        wrench: Array | None = None,
     ) -> Evidence:
         """Of a trial.
 
@@ -76,9 +77,10 @@ class Evidence:
             times_s: (T,) times of the frames.
             rate_hz: Frame rate.
             plates: The plates.
+            wrench: (T, P, 6) their wrenches over the frames, where they are known.
         """
         body = WholeBody.of(model, motion.q, motion.v)
-        raw = plate_wrenches(tuple(plates), times_s, rate_hz)
+        raw = plate_wrenches(tuple(plates), times_s, rate_hz) if wrench is None else wrench
         loads = assign_feet(model, motion.q, times_s, rate_hz, tuple(plates), raw)
         asked = body.missing_wrench(np.zeros_like(body.momentum), rate_hz, WINDOW_S)
         known = ~np.isnan(body.momentum).any(axis=1) & ~np.isnan(raw).any(axis=(1, 2)) & (len(plates) > 0)

@@ -35,6 +35,7 @@ def plate_checks(
     rate_hz: float,
     plates: tuple[PlateReadings, ...],
     others: BoolArray | None = None,
+    wrench: Array | None = None,
 ) -> tuple[Finding, ...]:
     """Checks of the plates against the motion of markers alone.
 
@@ -48,14 +49,15 @@ def plate_checks(
         rate_hz: Frame rate.
         plates: The plates.
         others: (T,) frames in which parts besides the feet carry load.
+        wrench: (T, P, 6) wrenches of the plates over the frames, where they are known.
     """
     if not plates:
         return ()
 
-    def evidence_of(given: tuple[PlateReadings, ...]) -> Evidence:
-        return Evidence.of(model, motion, times_s, rate_hz, given)
+    def evidence_of(given: tuple[PlateReadings, ...], wrench: Array | None = None) -> Evidence:
+        return Evidence.of(model, motion, times_s, rate_hz, given, wrench)
 
-    as_read = evidence_of(plates)
+    as_read = evidence_of(plates, wrench)
     near = np.zeros(len(times_s), dtype=bool)
     if others is not None and not gains.explained(as_read):
         near = dilated(others, round(OTHERS_S * rate_hz))

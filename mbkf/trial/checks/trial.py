@@ -46,4 +46,7 @@ def trial_checks(
     others = recording.readings.get(BEARING)
     bears = None if others is None else np.asarray(np.asarray(others).any(axis=1))
     model = inputs.sensor.model
-    return (*plate_checks(model, alone, shown.times_s, shown.rate_hz, inputs.plates, bears), *found)
+    return (
+        *plate_checks(model, alone, shown.times_s, shown.rate_hz, inputs.plates, bears, recording.plates),
+        *found,
+    )

@@ -66,7 +66,9 @@ class StrayLoad:
             on_feet_n: (3,) force on the feet by the contacts that were decided.
             plates: (K, 6) wrenches that the plates read.
         """
-        read_n = np.nan_to_num(plates[:, :3]).sum(axis=0)
+        read_n = plates[:, :3].sum(axis=0)
+        if not np.isfinite(read_n).all():
+            read_n = np.nan_to_num(plates[:, :3]).sum(axis=0)
         stray = read_n[2] - on_feet_n[2] > self._least_n
         self._frames = self._frames + 1 if stray else 0
         self.reads = 0 < self._frames <= self._most

@@ -44,8 +44,8 @@ def with_other_contacts(
         return inputs, recording
     q, v = motion
     model, rate_hz = inputs.sensor.model, 1.0 / inputs.dt_s
-    loads = assign_feet(model, q, times_s, rate_hz, inputs.plates)
     plates = recording.plates
+    loads = assign_feet(model, q, times_s, rate_hz, inputs.plates, plates)
     read = np.full(len(plates), plates.shape[1] > 0) & ~np.isnan(plates).any(axis=(1, 2))
     judged = contradictions(model, q, times_s, rate_hz, loads, read)
     doubted = _doubted(judged, times_s) if missing else np.ones(len(q), dtype=bool)

@@ -53,6 +53,7 @@ def assemble(
     hidden: BoolArray,
     inputs: FilterInputs,
     result: Track,
+    wrench: Array | None = None,
 ) -> Reconstruction:
     """Reactions, torques and clinical coordinates of a tracked trial, put together.
 
@@ -64,18 +65,17 @@ def assemble(
         hidden: (T, M) those taken away on purpose.
         inputs: Inputs of the filter, with the plates it read.
         result: The track.
+        wrench: (T, P, 6) wrenches of the plates over the frames, where they are known.
     """
     model, times_s = inputs.sensor.model, measured.times_s
     given = settings.filter == "torque" and settings.torque.plates == "inputs"
-    ground = ground_reactions(model, result, times_s, measured.rate_hz, inputs.plates, given)
-    torques = ground.torques
-    frame = pelvis_frame(settings.pelvis, model, result.q, times_s)
+    ground = ground_reactions(model, result, times_s, measured.rate_hz, inputs.plates, given, wrench)
+    torques, frame = ground.torques, pelvis_frame(settings.pelvis, model, result.q, times_s)
     reading = angle_reading(settings.angles, model, subject, capture.processing)
     zero_q = zero_posture(settings.angles_zero, subject)
     motion, moments = clinical_motion(model, result, torques, frame, reading, zero_q)
-    located = result.tracked & _located(result)
+    located, force_n = result.tracked & _located(result), ground.loads.foot_wrench[:, :, 2]
     bears, source = bearing(ground.supports.support_wrench), ground.loads.foot_source
-    force_n = ground.loads.foot_wrench[:, :, 2]
     known = torques_known(model, motion.coordinate_names, moments.moments_sd, source, force_n, bears)
     known &= torques_possible(torques.tau, ROOT_DOFS, model.mass_kg)
     balance = balance_of(model, result, measured.rate_hz, ground)

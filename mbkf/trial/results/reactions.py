@@ -58,6 +58,7 @@ def ground_reactions(
     rate_hz: float,
     plates: tuple[PlateReadings, ...],
     inputs: bool = False,
+    wrench: Array | None = None,
 ) -> GroundReactions:
     """Loads and torques of a tracked trial.
 
@@ -68,8 +69,9 @@ def ground_reactions(
         rate_hz: Frame rate.
         plates: The plates it could read.
         inputs: The plates are known inputs, so that the load of a foot without a plate is not estimated.
+        wrench: (T, P, 6) wrenches of the plates (:func:`mbkf.sensors.contact.plates.plate_wrenches`), where known.
     """
-    read = assign_feet(model, track.q, times_s, rate_hz, plates)
+    read = assign_feet(model, track.q, times_s, rate_hz, plates, wrench)
     supports = supports_of(model, track)
     by_plates = inverse_dynamics(model, track, read.wrench)
     known = np.where(bool(plates), 1.0, np.nan)

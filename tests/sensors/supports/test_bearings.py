@@ -61,3 +61,16 @@ def test_what_ends_a_limb_may_hold_and_what_is_on_the_root_may_sit():
     holding = {name for name, grips in zip(bearings.names, bearings.grips, strict=True) if grips}
     assert holding == {"right_hand", "left_hand"}
     assert bearings.parts[bearings.seat].segment == reference_model().roles.root
+
+
+def test_a_course_is_that_of_its_frames():
+    model, q, v = moved(2)
+    bearings, rng = BearingParts(model), RNG(3)
+    qs = np.array([q, np.full(model.nq, np.nan), moderate_pose(model, rng)])
+    vs = np.array([v, v, rng.normal(size=model.nv)])
+    found = bearings.course(qs, vs)
+    assert np.isnan(found.points_m[1]).all() and np.isnan(found.speeds_m_s[1]).all()
+    for t in (0, 2):
+        alone = bearings.at(qs[t], vs[t])
+        np.testing.assert_allclose(found.points_m[t], alone.points_m, rtol=1e-13, atol=1e-14)
+        np.testing.assert_allclose(found.speeds_m_s[t], alone.speeds_m_s, rtol=1e-12)
