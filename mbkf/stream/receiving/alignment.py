@@ -42,6 +42,7 @@ class ReadyFrame(NamedTuple):
         lost: The frame never came.
         imus: (S, 6) readings of inertial sensors, NaN where missing; None where there are none.
         orientations: (S, 4) their orientations, NaN where missing; None where they are not known.
+        left_out: Numbers and plates (K, 6) of the frames before it that the filter was too slow for, a second of them.
     """
 
     number: int
@@ -52,6 +53,7 @@ class ReadyFrame(NamedTuple):
     lost: bool = False
     imus: Array | None = None
     orientations: Array | None = None
+    left_out: tuple[tuple[int, Array], ...] = ()
 
 
 class FrameAlignment:

@@ -10,10 +10,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from mbkf.conventions import Array
-from mbkf.stream.receiving.alignment import FrameAlignment, Note, ReadyFrame, Record
+from mbkf.stream.receiving.alignment import BRIDGED_S, FrameAlignment, Note, ReadyFrame, Record
 from mbkf.stream.receiving.reader import next_frame
 from mbkf.stream.receiving.ring_buffer import RingBuffer
-from mbkf.stream.source import FrameSource, PlateSamples, StreamDescription
+from mbkf.stream.source import FrameSource, PlateSamples, SourceFrame, StreamDescription
 
 SLACK_S, START_SLACK_S = 0.25, 5.0
 """The ring buffer holds the frames of this time: a pause of the machine, and a start of the filter with its search."""
@@ -76,7 +76,9 @@ class Receiver:
         self._alignment = FrameAlignment(
             stream, columns, note, mass_kg, live=not source.patient, record=record
         )
-        self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient, _stale)
+        self._buffer: RingBuffer[ReadyFrame] = RingBuffer(
+            self._frames(START_SLACK_S), source.patient, _stale, self._joined
+        )
         self._overwritten = 0
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mbkf-reader", daemon=True)
@@ -155,12 +157,21 @@ class Receiver:
                 frame = next_frame(self._source, note, self._stopping)
             except EOFError:
                 return
-            if frame is None:
-                continue
-            ready, samples = self._alignment.accept(frame)
-            for one in ready:
-                gone = [old for old in self._buffer.put(one) if not old.lost]
-                if gone:
-                    self._overwritten += len(gone)
-                    note("overwritten", "the filter could not keep up; only the latest frame was kept")
-            self._samples(samples)
+            if frame is not None:
+                self._put(frame)
+
+    def _put(self, frame: SourceFrame) -> None:
+        """Aligns a frame of the source and buffers it."""
+        ready, samples = self._alignment.accept(frame)
+        for one in ready:
+            gone = [old for old in self._buffer.put(one) if not old.lost]
+            if gone:
+                self._overwritten += len(gone)
+                sentence = "the filter could not keep up; only the latest frame was kept"
+                self._note("overwritten", sentence, None, 1)
+        self._samples(samples)
+
+    def _joined(self, gone: list[ReadyFrame], newest: ReadyFrame) -> ReadyFrame:
+        """The newest frame with the plates of those that it overwrites, of as many as are bridged."""
+        left = [known for one in gone for known in (*one.left_out, (one.number, one.plates))]
+        return newest._replace(left_out=tuple(left[-self._frames(BRIDGED_S) :]))

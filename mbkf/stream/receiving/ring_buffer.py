@@ -18,7 +18,13 @@ T = TypeVar("T")
 class RingBuffer(Generic[T]):
     """Holds a limited number of items; a full buffer drops all of them for the next one."""
 
-    def __init__(self, size: int, patient: bool = False, stale: Callable[[T, T], bool] | None = None) -> None:
+    def __init__(
+        self,
+        size: int,
+        patient: bool = False,
+        stale: Callable[[T, T], bool] | None = None,
+        joined: Callable[[list[T], T], T] | None = None,
+    ) -> None:
         """An empty buffer.
 
         Args:
@@ -26,9 +32,10 @@ class RingBuffer(Generic[T]):
             patient: Whether a full buffer makes the writer wait instead of dropping items.
             stale: Whether the oldest item is too old beside the newest; until it is, a buffer whose size was reduced by
                 :meth:`allow` holds up to its first size, since items that come at once are soon taken. None for always.
+            joined: Makes of items that are dropped and the next one that next one; None leaves it as it is.
         """
         self._size, self._patient = max(1, size), patient
-        self._most, self._stale = self._size, stale
+        self._most, self._stale, self._joined = self._size, stale, joined
         self._items: deque[T] = deque()
         self._changed = threading.Condition()
         self._closed = False
@@ -48,7 +55,9 @@ class RingBuffer(Generic[T]):
             if len(self._items) >= self._size and not self._closed and self._too_old(item):
                 overwritten.extend(self._items)
                 self._items.clear()
-            self._items.append(item)
+            self._items.append(
+                item if self._joined is None or not overwritten else self._joined(overwritten, item)
+            )
             self._changed.notify_all()
             return overwritten
 

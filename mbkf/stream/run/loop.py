@@ -107,8 +107,9 @@ class FilterLoop:
         before = self._statistics.taken(frame)
         if before is not None and frame.number > before.number + 1:
             if frame.number - before.number <= BRIDGED_S * self._setup.stream.rate_hz:
+                plates = dict(frame.left_out)
                 for number in range(before.number + 1, frame.number):
-                    self._push(self._empty_frame(number, frame.arrival_s))
+                    self._push(self._unseen_frame(number, frame.arrival_s, plates.get(number)))
             else:
                 self._note("cut", "a gap was too long to bridge: the filter starts anew", frame.number, 1)
                 self._answer(self._setup.filter.cut())
@@ -126,8 +127,10 @@ class FilterLoop:
             self._starting_until_s = 0.0
             self._receiver.allow_pause()
 
-    def _empty_frame(self, number: int, arrival_s: float) -> ReadyFrame:
-        plates = np.full((len(self._setup.stream.plates), 6), np.nan)
+    def _unseen_frame(self, number: int, arrival_s: float, plates: Array | None) -> ReadyFrame:
+        """A frame without markers; its plates count, as they do in the log."""
+        if plates is None:
+            plates = np.full((len(self._setup.stream.plates), 6), np.nan)
         unseen = np.full((len(self._setup.names), 3), np.nan)
         return ReadyFrame(number, arrival_s, unseen, np.zeros((0, 3)), plates, lost=True)
 

@@ -14,6 +14,13 @@ def test_the_latest_item_wins():
     assert [buffer.take(0.0) for _ in range(3)] == [6, 7, None]
 
 
+def test_an_item_may_carry_those_that_it_overwrites():
+    buffer = RingBuffer(2, joined=lambda gone, newest: (gone, newest))
+    for k in range(5):
+        buffer.put(k)
+    assert buffer.left() == [([([0, 1], 2), 3], 4)]
+
+
 def test_it_may_hold_more_for_a_while():
     buffer = RingBuffer(1)
     buffer.allow(3)
