@@ -36,6 +36,9 @@ MARGIN_S = 60.0
 """Beyond the length of the capture, so much time may pass before a run is given up."""
 
 COMPARED = ("q", "v", "a", "tau", "foot_wrench", "angles", "moments", "sd_q", "sd_v", "sd_tau", "predicted_m")
+QUATERNION = slice(3, 7)
+"""The pelvis' quaternion in a configuration."""
+
 PAGE = re.compile(r"page: (http://\S+)")
 
 
@@ -214,9 +217,34 @@ def difference(run: Run) -> float:
     return largest_difference(read_reconstruction(run.folder), again)
 
 
-def largest_difference(one: Reconstruction, other: Reconstruction) -> float:
-    """Over the quantities compared."""
-    return max(apart(getattr(one, name), getattr(other, name)) for name in COMPARED)
+def largest_difference(
+    one: Reconstruction,
+    other: Reconstruction,
+    names: Sequence[str] = COMPARED,
+    part: slice = slice(None),
+) -> float:
+    """Over quantities in a part of the frames; q and −q of the pelvis' quaternion are one orientation.
+
+    Relative to the value where that is larger than one; NaN where different samples are known.
+    """
+    values = {name: (getattr(one, name)[part], getattr(other, name)[part]) for name in names}
+    if "q" in values:
+        values["q"] = on_same_side(*values["q"]), values["q"][1]
+    return float(np.max([apart(*both) for both in values.values()]))  # NaN counts, wherever it is
+
+
+def on_same_side(q: Array, other: Array) -> Array:
+    """(T, nq) configurations whose quaternions lie in the hemisphere of others', frame by frame.
+
+    Args:
+        q: (T, nq) the configurations.
+        other: (T, nq) the others; of another shape they are no measure.
+    """
+    if q.shape != other.shape:
+        return q
+    turned = np.array(q)
+    turned[np.sum(q[:, QUATERNION] * other[:, QUATERNION], axis=1) < 0.0, QUATERNION] *= -1.0
+    return turned
 
 
 def apart(one: Array, other: Array) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.checks import Check, Context, information, number
 from benchmarks.live import lost
-from benchmarks.live.runs import COMPARED, Run, apart, difference, play
+from benchmarks.live.runs import COMPARED, Run, difference, largest_difference, play
 from benchmarks.parts import part_rows
 from benchmarks.robustness import stream_faults
 from benchmarks.streams.clients import ROWS, client_rows
@@ -95,7 +95,7 @@ def recorded_difference(found: Run, file: Path) -> float:
     again, run = reconstruct(capture, subject, settings=settings), read_reconstruction(found.folder)
     part = slice(round(2.0 * capture.markers.rate_hz), min(run.frames, again.frames) - 1)
     names = [name for name in COMPARED if name not in ("angles", "moments")]
-    return max(apart(getattr(run, name)[part], getattr(again, name)[part]) for name in names)
+    return largest_difference(run, again, names, part)
 
 
 def caught_up_s(times_s: Array, latency_s: Array) -> float:

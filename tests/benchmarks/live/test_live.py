@@ -71,3 +71,19 @@ def test_differences_are_relative_and_nan_counts():
     missing = one.q.copy()
     missing[0] = math.nan
     assert math.isnan(largest_difference(replace(one, q=missing), one))
+    assert math.isnan(largest_difference(replace(one, tau=one.tau * math.nan), one))
+    assert largest_difference(replace(one, q=missing), one, part=slice(1, None)) == 0.0
+
+
+def test_a_quaternion_and_its_negative_are_one_orientation():
+    one = made_up()
+    q = one.q.copy()
+    q[::2, 3:7] *= -1.0
+    assert largest_difference(replace(one, q=q), one) == 0.0
+    q[1, 3:7] = [0.0, 0.0, 0.1, -np.sqrt(0.99)]
+    other = one.q.copy()
+    other[1, 3:7] = [0.0, 0.0, 0.0, 1.0]
+    found = largest_difference(replace(one, q=q), replace(one, q=other))
+    assert found == pytest.approx(0.1)
+    q[0, 0] -= 3.0
+    assert largest_difference(replace(one, q=q), one, ("q",)) > 0.5
