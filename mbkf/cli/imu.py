@@ -119,11 +119,11 @@ def posture_of(args: argparse.Namespace, model: HumanModel) -> Array | None:
     Raises:
         InvalidInput: The motion belongs to another body.
     """
+    if args.posture is None:
+        return None
     from mbkf.errors import InvalidInput
     from mbkf.trial.inertial.synth import read_motion
 
-    if args.posture is None:
-        return None
     motion = read_motion(args.posture)
     if motion.model.nq != model.nq:
         raise InvalidInput(f"{args.posture} holds another body; reconstruct the posture with this subject")

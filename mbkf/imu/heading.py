@@ -90,9 +90,9 @@ def held_headings(
         x = x + K @ known
         P = P - K @ H @ P
         means[t], covariances[t] = x, P
+    back = np.linalg.solve(covariances[:-1] + Q + 1e-15 * np.eye(n), covariances[:-1]).swapaxes(1, 2)
     for t in range(count - 2, -1, -1):
-        C = np.linalg.solve(covariances[t] + Q + 1e-15 * np.eye(n), covariances[t]).T
-        means[t] += C @ (means[t + 1] - means[t])
+        means[t] += back[t] @ (means[t + 1] - means[t])
     return means - means[:, :1]
 
 
