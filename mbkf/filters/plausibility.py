@@ -8,6 +8,7 @@ linearisations back in time, leaves the possible states earlier and further than
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import isfinite
 
 import numpy as np
 
@@ -27,12 +28,13 @@ DOUBT = 2.0
 
 def plausible(estimate: Posterior, model: Body) -> bool:
     """True where an estimate is finite, no joint turns faster than :data:`MOST_RAD_S`, and forces can be borne."""
-    if not (np.isfinite(estimate.q).all() and np.isfinite(estimate.a).all()):
+    q, v, a = estimate.q, estimate.v, estimate.a
+    if not isfinite(float(q @ q) + float(a @ a)):
         return False
-    if not np.abs(estimate.v).max(initial=0.0) <= MOST_RAD_S:  # NaN is not
+    if not (v.max(initial=0.0) <= MOST_RAD_S and v.min(initial=0.0) >= -MOST_RAD_S):  # NaN is not
         return False
     most = DOUBT * MOST_WEIGHTS * GRAVITY_M_S2 * model.mass_kg
-    return not (np.abs(estimate.wrench[:, :3]) > most).any()
+    return not any(abs(force) > most for force in estimate.wrench[:, :3].ravel().tolist())
 
 
 def moved_away(filtered: Posterior, smoothed: Posterior, model: Body) -> bool:

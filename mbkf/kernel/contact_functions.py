@@ -196,3 +196,36 @@ class ContactFunctions(Protocol):
             width: Width of the window, in samples.
             origins: Of the plates, m.
         """
+
+    def plate_spreads(
+        self, origins: In[Array, "K 3"], points: In[Array, "n 3"], force: float, moment: float, /
+    ) -> Made[Array, "spreads: n 6"]:
+        """Spreads of wrenches about the world's origin that are independent about the origins nearest to points.
+
+        Args:
+            origins: Of plates, m; without one, a point stands for its own.
+            points: The points, m.
+            force, moment: Spreads about the origins, per component, N and N m.
+        """
+
+    def missing_forces(
+        self,
+        by_position: In[Array, "w n"],
+        by_force: In[Array, "w n"],
+        lengths: In[Int32Array, "w in 0:n+1"],
+        held: In[Array, "n 6"],
+        known: int,
+        mass: float,
+        gravity: In[Array, "3"],
+        /,
+    ) -> Made[Array, "missing: w 3"]:
+        """Mean forces that act besides weight and contacts over windows that end now, N; 0 where frames are missing.
+
+        Args:
+            by_position, by_force: Weights of the frames in each window, the latest last.
+            lengths: Frames of each window.
+            held: Centre of mass, m, and force of all contacts, N, by frame.
+            known: Number of the latest frames that count.
+            mass: Of the body, kg.
+            gravity: Acceleration, m/s².
+        """

@@ -20,6 +20,7 @@ import numpy as np
 import pinocchio as pin
 
 from mbkf.conventions import Array
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 from mbkf.model.description import TrunkLevel
 from mbkf.model.human import HumanModel
@@ -95,6 +96,12 @@ class TrunkSections:
             kept[model.root.joint_id] = self.part(k)
             found.append(NewtonEuler(model.with_inertias(kept)))
         return found
+
+    @cached_property
+    def _trees(self) -> list[CompiledTree]:
+        """The parts above the levels in compiled code; empty without a kernel."""
+        trees = [upper.model.tree for upper in self._upper]
+        return [tree for tree in trees if tree is not None]
 
     def joints_above(self, level: TrunkLevel) -> set[int]:
         """Joints whose segments hang on the segment above a level, that one's included."""
@@ -185,19 +192,17 @@ class TrunkSections:
         self, motion: tuple[Array, Array, Array], carried: Array, whole: tuple[Array, Array]
     ) -> SectionState | None:
         """:meth:`state` by the kernel; None where there is none."""
-        trees = [] if self._model.tree is None else [upper.model.tree for upper in self._upper]
-        if not trees:
+        if not self._trees:
             return None
         residual, by_state = whole[0], np.ascontiguousarray(whole[1])
-        parts = [
-            tree.section(motion, carried[k], self.transports[k], self._above[k], (residual, by_state))
-            for k, tree in enumerate(trees)
-            if tree is not None
-        ]
-        wrench, moment, rows, by_root = zip(*parts, strict=True)
-        return SectionState(
-            np.stack(wrench, axis=1), np.stack(moment, axis=1), np.stack(rows, axis=1), np.array(by_root)
-        )
+        ways, levels = len(WAYS), len(self.levels)
+        wrench, moment = np.empty((ways, levels, ROOT)), np.empty((ways, levels, 3))
+        rows, by_root = np.empty((ways, levels, 3, by_state.shape[1])), np.empty((levels, 3, ROOT))
+        for k, tree in enumerate(self._trees):
+            wrench[:, k], moment[:, k], rows[:, k], by_root[k] = tree.section(
+                motion, carried[k], self.transports[k], self._above[k], (residual, by_state)
+            )
+        return SectionState(wrench, moment, rows, by_root)
 
     def by_root(self, q: Array) -> Array:
         """(…, L, 3, 6) moments about the levels, axes of the segment above, by a wrench about the root's origin.

@@ -14,7 +14,7 @@ import numpy as np
 from mbkf.conventions import BoolArray
 from mbkf.model.body import Body
 from mbkf.model.layout import ROOT_RESIDUAL, SUPPORT, UNSEEN_MOMENT, Layout
-from mbkf.model.newton_euler import NewtonEuler
+from mbkf.model.newton_euler import ROOT, NewtonEuler
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.states import LoadedState
 
@@ -78,6 +78,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         self._support: slice | None = None
         self._support_extra = slice(0)
         self._loads: list[_Load] = []
+        self._by_loads = np.zeros((ROOT, 0))
         model = balance.model
         feet = [model.joint(segment).v.start for segment in model.roles.feet]
         self._unseen_foot = unobservable is not None and bool(unobservable[feet].any())
@@ -92,6 +93,10 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
             for name, components in LOADS_AT_ROOT.items()
             if name in layout
         ]
+        added = [load.state for load in self._loads] + ([] if self._support is None else [self._support])
+        self._by_loads = np.zeros((ROOT, max((part.stop for part in added), default=0)))
+        for load in self._loads:
+            self._by_loads[load.components, load.state] = np.diag(self._sharp[load.components])
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
@@ -103,10 +108,9 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
         residual = root.residual
         known = root.by_state.shape[1]
-        added = [load.state for load in self._loads] + ([] if support is None else [support])
-        if not added:
+        if support is None and not self._loads:
             return Rows(root.by_state * sharp, -residual * self._sharp, readings=6)
-        rows = np.zeros((6, max(part.stop for part in added)))
+        rows = self._by_loads.copy()
         np.multiply(root.by_state, sharp, out=rows[:, :known])
         if support is not None:
             np.multiply(root.by_state[:, -6:], sharp, out=rows[:, support])
@@ -114,7 +118,6 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
             residual = residual.copy()
         for load in self._loads:
             residual[load.components] += state.extra[load.extra]
-            rows[load.components, load.state] = np.diag(self._sharp[load.components])
         return Rows(rows, -residual * self._sharp, readings=6)
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:

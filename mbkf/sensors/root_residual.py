@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, read_only
 from mbkf.model.layout import ROOT_RESIDUAL, ExtraState
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.records import unread
@@ -64,6 +64,7 @@ class DecayingLoad(Block[LoadedState, None, Notes, None]):
         self.name, self.sd = name, sd
         self._walk = sd * (2.0 / memory_s) ** 0.5
         self._sharp = 1.0 / (sd * (0.5 * memory_s / dt_s) ** 0.5)
+        self._rows = read_only(np.diag(self._sharp))
 
     def states(self) -> list[ExtraState]:
         """The load, in the root's axes."""
@@ -72,7 +73,7 @@ class DecayingLoad(Block[LoadedState, None, Notes, None]):
     def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
         """Rows on the load, one a component."""
         load = at.state.extra[self.layout.extra_index(self.name)]
-        return Rows(np.diag(self._sharp), -load * self._sharp, self.layout[self.name].start)
+        return Rows(self._rows, -load * self._sharp, self.layout[self.name].start)
 
 
 class RootResidual(DecayingLoad):

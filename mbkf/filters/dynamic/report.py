@@ -243,7 +243,8 @@ class DynamicReport(StateReport[DynamicState]):
         if not levels:
             return by_state, shared
         rows, of_sharing = self._levels.at(state, loads, torque.tau, by_state)
-        both = np.asfortranarray(np.vstack([by_state, rows]))
+        both = np.empty((len(by_state) + len(rows), by_state.shape[1]), order="F")
+        both[: len(by_state)], both[len(by_state) :] = by_state, rows
         return both, None if shared is None else np.concatenate([shared, of_sharing])
 
     @cached_property

@@ -15,11 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.kernel.loading import library
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.white_noise import WhiteNoise
 
 LEAST_FORCE_N, LEAST_MOMENT_NM = 0.1, 0.02
 """Least noise of a plate's forces and moments: readings are stored in steps of such a size."""
+
+_NO_ORIGINS = np.zeros((0, 3))
 
 _OTHERS = 1.0 - np.eye(3)
 """Of squares by axis, the sums of the other two."""
@@ -65,6 +68,11 @@ class PlateNoise:
         Args:
             middles_m: (2, 3) middles of the soles.
         """
+        kernel = library()
+        if kernel is not None:
+            return kernel.plate_spreads(
+                self.origins_m, np.ascontiguousarray(middles_m, float), self.force.sd, self.moment.sd
+            )
         if not len(self.origins_m):
             return spread_about_origin(self.force.sd, self.moment.sd, middles_m)
         away = middles_m[:, None] - self.origins_m
@@ -80,6 +88,9 @@ def spread_about_origin(force_n: float, moment_nm: float, points_m: Array) -> Ar
         moment_nm: Spread of each moment about the points, N m.
         points_m: The points, m.
     """
+    kernel = library()
+    if kernel is not None:
+        return kernel.plate_spreads(_NO_ORIGINS, np.ascontiguousarray(points_m, float), force_n, moment_nm)
     found = np.empty((len(points_m), 6))
     found[:, :3] = force_n
     levers = (points_m * points_m) @ _OTHERS

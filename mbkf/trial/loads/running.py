@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.kernel.loading import library
 from mbkf.model.body import Body
 from mbkf.trial.loads.balance import BRIDGE_S, GRAVITY, CentreOfMass, LoadBalance, Window
 from mbkf.trial.loads.flags import LIMITS, READ_SHARE, Limit
@@ -100,7 +101,7 @@ class RunningBalance:
         windows = [
             Window.of(longer * limit.duration_s, rate_hz) for limit in RUNNING_LIMITS for longer in LONGER
         ]
-        self._lengths = np.array([len(window) for window in windows])
+        self._lengths = np.array([len(window) for window in windows], dtype=np.int32)
         self._most, self._least = int(self._lengths.max()), int(self._lengths.min())
         self._by_position = np.array([np.pad(w.by_position, (self._most - len(w), 0)) for w in windows])
         self._by_force = np.array([np.pad(w.by_force, (self._most - len(w), 0)) for w in windows])
@@ -171,8 +172,11 @@ class RunningBalance:
 
     def _missing(self) -> tuple[Array, BoolArray]:
         """(w, 3) mean forces over all windows that end now, 0 over those (w,) that the frames kept do not fill."""
-        held = self._kept[self._after - self._most : self._after]
-        fits = self._lengths <= self._after - self._first
+        held, known = self._kept[self._after - self._most : self._after], self._after - self._first
+        fits, kernel = self._lengths <= known, library()
+        if kernel is not None:
+            weights = self._by_position, self._by_force, self._lengths
+            return kernel.missing_forces(*weights, held, known, self._mass_kg, GRAVITY), fits
         required = self._by_position @ held[:, :3] - GRAVITY
         missing_n = self._mass_kg * required - self._by_force @ held[:, 3:]
         return np.where(fits[:, None], missing_n, 0.0), fits
