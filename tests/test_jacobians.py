@@ -68,7 +68,7 @@ ELSEWHERE = {
     "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.windows.slopes": "numerics/test_windows.py",
     "numerics.later_frames.LinearStep.transition": "numerics/test_later_frames.py",
-    "numerics.smoothing.BackwardPass.through_parts": "numerics/test_smoothing.py through_parts",
+    "numerics.smoothing.BackwardPass.through_frame": "numerics/test_smoothing.py through_frame",
     "numerics.transition.DenseTransition.phi": "numerics/test_transition.py",
     "numerics.rotations.exponential_and_left_jacobian": "numerics/test_rotations.py",
     "numerics.rotations.travel_by_turn": "numerics/test_rotations.py",

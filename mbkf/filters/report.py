@@ -136,8 +136,9 @@ class StateReport(ABC, Generic[StateT]):
                 states.append(plant.retract(record.state, *back.corrected(record.state.P)))
             if k and record.step is not None:
                 known, predicted = record.step.readings, record.step.prior.state
-                back.through_parts(record.state.P, known.matrix, known.rows, known.whole_vector)
-                back.through_motion(plant.step_transition(run[k - 1].record.state, predicted))
+                transition = plant.step_transition(run[k - 1].record.state, predicted)
+                parts = known.matrix, known.rows, known.whole_vector
+                back.through_frame(record.state.P, *parts, transition)
         return states[::-1]
 
 

@@ -1,5 +1,5 @@
-/* Backward pass of a smoother in its curvature L, as mbkf/numerics/smoothing.py computes it with whole matrices. Products
- * with zeros are left out: a transition couples a joint's dofs alone, readings are of the first components and of a few
+/* Backward pass of a smoother in its gradient and curvature L, as mbkf/numerics/smoothing.py computes them with whole
+ * matrices. Products with zeros are left out: a transition couples a joint's dofs alone, readings are of the first components and of a few
  * rows, whose columns are bands (bands.h). */
 #include <string.h>
 
@@ -70,6 +70,86 @@ void mbkf_curvature_before_motion(int N, int nv, int J, int orders, const double
     rows_before(N, L, &phi, before, pushed);
     transpose(N, before, turned);
     rows_before(N, turned, &phi, before, pushed);
+}
+
+/* step -= P gradient and change += P kept, both in one way through P, four of its columns at once. */
+VECTORISED static void both_products(int N, const double *P, const double *gradient, const double *kept,
+                                     double *restrict step, double *restrict change)
+{
+    int k = 0;
+    for (; k + 4 <= N; k += 4) {
+        const double *p = P + (long)k * N;
+        const double g0 = gradient[k], g1 = gradient[k + 1], g2 = gradient[k + 2], g3 = gradient[k + 3];
+        const double h0 = kept[k], h1 = kept[k + 1], h2 = kept[k + 2], h3 = kept[k + 3];
+        for (int i = 0; i < N; i++) {
+            const double a = p[i], b = p[N + i], c = p[2 * N + i], d = p[3 * N + i];
+            step[i] -= g0 * a + g1 * b + (g2 * c + g3 * d);
+            change[i] += h0 * a + h1 * b + (h2 * c + h3 * d);
+        }
+    }
+    for (; k < N; k++)
+        for (int i = 0; i < N; i++) {
+            step[i] -= gradient[k] * P[(long)k * N + i];
+            change[i] += kept[k] * P[(long)k * N + i];
+        }
+}
+
+/* out -= rows' rows x, rows (m x N). */
+VECTORISED static void without_rows(int N, int m, const double *rows, const double *x,
+                                    double *restrict out)
+{
+    for (int j = 0; j < m; j++, rows += N) {
+        double sum = 0.0;
+        for (int i = 0; i < N; i++)
+            sum += rows[i] * x[i];
+        for (int i = 0; i < N; i++)
+            out[i] -= sum * rows[i];
+    }
+}
+
+/* before = Phi' gradient */
+static void gradient_before_motion(int N, const Transition *phi, const double *gradient, double *before)
+{
+    const int nv = phi->nv, orders = phi->orders;
+    double *rates = before + nv;
+    memcpy(before, gradient, sizeof(double) * N);
+    memset(before, 0, sizeof(double) * (1 + orders) * nv);
+    for (int one = 0; one < phi->J; one++)
+        for (int i = phi->joints[2 * one]; i < phi->joints[2 * one + 1]; i++) {
+            double pushed = 0.0;
+            for (int k = phi->joints[2 * one]; k < phi->joints[2 * one + 1]; k++) {
+                before[i] += phi->A[k * nv + i] * gradient[k];
+                pushed += phi->B[k * nv + i] * gradient[k];
+            }
+            for (int order = 0; order < orders; order++)
+                rates[order * nv + i] = phi->push[order] * pushed;
+        }
+    for (int order = 0; order < orders; order++)
+        for (int of = 0; of < orders; of++)
+            for (int i = 0; i < nv; i++)
+                rates[order * nv + i] += phi->rates[of * orders + order] * gradient[(1 + of) * nv + i];
+}
+
+void mbkf_gradient_before(int N, int n, int m, int nv, int J, int orders, const double *P, const double *gradient,
+                          const double *vector, const double *information, const double *rows, const double *A,
+                          const double *B, const int *joints, const double *push, const double *rates, double *step,
+                          double *before)
+{
+    const Transition phi = {nv, orders, J, A, B, push, rates, joints};
+    double *kept = are_all_dofs(J, joints, nv) ? workspace(2L * N) : NULL;
+    if (!kept)
+        return;
+    double *change = kept + N;
+    for (int i = 0; i < N; i++)
+        kept[i] = gradient[i] - vector[i];
+    memset(step, 0, sizeof *step * N);
+    memset(change, 0, sizeof *change * N);
+    both_products(N, P, gradient, kept, step, change);
+    without_rows(N, m, rows, change, kept);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++)
+            kept[i] -= change[j] * information[(long)j * n + i];
+    gradient_before_motion(N, &phi, kept, before);
 }
 
 /* Column by column, P L row by row is L P. */

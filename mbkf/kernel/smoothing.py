@@ -18,10 +18,12 @@ class SparseBackwardPass(BackwardPass):
 
     def __init__(self, size: int, covariances: bool = True) -> None:
         super().__init__(size, covariances)
-        self._kernel = library() if covariances else None
-        self._of: Array | None = None
+        self._kernel = library()
+        self._of: tuple[Array, Array] | None = None
         self._given = False
-        if self._kernel is not None:  # fresh memory costs more than the products that go there
+        if (
+            self._kernel is not None and covariances
+        ):  # fresh memory costs more than the products that go there
             self._smoothed, (self._PL, self._spare) = np.empty((size, size)), np.empty((2, size, size))
 
     def covariance(self, P: Array) -> Array:
@@ -38,61 +40,53 @@ class SparseBackwardPass(BackwardPass):
 
     def _smooth(self, P: Array, curvature: Array) -> None:
         """Works out P − P L P and P L; kept, since a frame's answer and its readings both need them."""
-        if self._of is not P and self._kernel is not None:
+        known = self._of is not None and self._of[0] is P and self._of[1] is curvature
+        if not known and self._kernel is not None:
             if self._given:
                 self._smoothed, self._given = np.empty(P.shape), False
             self._kernel.smoothed_covariance(P, curvature, self._smoothed, self._PL)
-            self._of = P
+            self._of = P, curvature
 
     def _swap(self) -> None:
         """The curvature worked out in the spare memory becomes the current one."""
         if self.curvature is not None:
             self._spare, self.curvature, self._of = self.curvature, self._spare, None
 
-    def through_parts(
-        self, P: Array, matrix: Array, rows: Array, vector: Array, change: Array | None = None
-    ) -> None:
-        """From after a frame's readings to before them, as :meth:`through_readings`.
+    def through_frame(
+        self, P: Array, matrix: Array, rows: Array, vector: Array, transition: Transition
+    ) -> Array:
+        """From after a frame's readings to after those of the frame before it; returns :meth:`step` of the frame.
 
-        With S = P − P L P, and Z = L P + Λ S / 2, the curvature is L + Λ − Z Λ − (Z Λ)ᵀ.
+        With S = P − P L P, and Z = L P + Λ S / 2, the curvature before the readings is L + Λ − Z Λ − (Z Λ)ᵀ. A
+        transition other than a :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
 
         Args:
             P: (N, N) posterior covariance.
             matrix: (n, n) information on the first n components.
             rows: (m, N) whitened Jacobian of the other readings: Λ is ``matrix`` on the first n, and rowsᵀ rows.
             vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
-            change: (N,) P (λ − vector), where it is known; it saves a product with P.
+            transition: Φ of the step into the frame.
         """
-        n = len(matrix)
-        if self.curvature is not None and self._kernel is None:
-            super().through_parts(P, matrix, rows, vector, change)
-            return
-        if self.curvature is not None and self._kernel is not None:
+        if self._kernel is None:
+            return super().through_frame(P, matrix, rows, vector, transition)
+        rows = np.ascontiguousarray(rows)
+        if self.curvature is not None:
             self._smooth(P, self.curvature)
-            known = matrix, np.ascontiguousarray(rows)
-            self._kernel.curvature_before_readings(
-                self.curvature, self._smoothed, self._PL, *known, self._spare
-            )
+            before_readings = self._kernel.curvature_before_readings
+            before_readings(self.curvature, self._smoothed, self._PL, matrix, rows, self._spare)
             self._swap()
-        kept = self.gradient - vector
-        change = P @ kept if change is None else change
-        self.gradient = kept - (rows @ change) @ rows
-        self.gradient[:n] -= matrix @ change[:n]
-
-    def through_motion(self, transition: Transition) -> None:
-        """From before a frame's readings to after those of the frame before it.
-
-        A transition other than a :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
-        """
-        if self.curvature is None:
-            self.gradient = transition.backward(self.gradient)
-        elif self._kernel is None or not isinstance(transition, RateTransition):
-            super().through_motion(transition)
-            self._of = None
-        else:
-            self.gradient = transition.backward(self.gradient)
-            A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
-            self._kernel.curvature_before_motion(
-                self.curvature, A, B, transition.joints, transition.push, transition.rates, self._spare
-            )
+        if not isinstance(transition, RateTransition):
+            step, kept = self.step(P), self.gradient - vector
+            change = P @ kept
+            kept -= (rows @ change) @ rows
+            kept[: len(matrix)] -= matrix @ change[: len(matrix)]
+            self.gradient = kept
+            self.through_plant(transition.matrix(len(kept)))
+            return step
+        A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
+        phi = A, B, transition.joints, transition.push, transition.rates
+        step, self.gradient = self._kernel.gradient_before(P, self.gradient, vector, matrix, rows, *phi)
+        if self.curvature is not None:
+            self._kernel.curvature_before_motion(self.curvature, *phi, self._spare)
             self._swap()
+        return step

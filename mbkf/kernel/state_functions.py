@@ -166,6 +166,32 @@ class StateFunctions(Protocol):
             before: Curvature before the step.
         """
 
+    @requires("nv + orders*nv <= N", "n <= N")
+    def gradient_before(
+        self,
+        P: In[Array, "N N symmetric"],
+        gradient: In[Array, "N"],
+        vector: In[Array, "N"],
+        information: In[Array, "n n symmetric"],
+        rows: In[Array, "m N"],
+        A: In[Array, "nv nv"],
+        B: In[Array, "nv nv"],
+        joints: In[Int32Array, "J 2 in 0:nv+1"],
+        push: In[Array, "orders"],
+        rates: In[Array, "orders orders"],
+        /,
+    ) -> tuple[Made[Array, "step: N"], Made[Array, "before: N"]]:
+        """−P g and Φᵀ (g − λ − Λ P (g − λ)) for a gradient g of later readings.
+
+        Args:
+            P: Posterior covariance.
+            gradient: g after the readings.
+            vector: λ of the readings.
+            information: Part of Λ on the first n components.
+            rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
+            A, B, joints, push, rates: Φ, as :meth:`curvature_before_motion` takes it.
+        """
+
     def smoothed_covariance(
         self,
         P: In[Array, "N N symmetric"],

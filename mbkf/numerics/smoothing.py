@@ -43,44 +43,39 @@ class BackwardPass:
         """Both of a frame; without curvature its own covariance, which is never smaller than the smoothed one."""
         return self.step(P), P if self.curvature is None else self.covariance(P)
 
-    def through_readings(
-        self, P: Array, information: Array, vector: Array, change: Array | None = None
-    ) -> None:
+    def through_readings(self, P: Array, information: Array, vector: Array) -> None:
         """From after a frame's readings to before them.
 
         Args:
             P: (N, N) posterior covariance.
             information: (N, N) Λ = HᵀR⁻¹H of the frame's readings.
             vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
-            change: (N,) P (λ − vector), where it is known; it saves a product with P.
         """
         kept = self.gradient - vector
-        self.gradient = kept - information @ (P @ kept if change is None else change)
+        self.gradient = kept - information @ (P @ kept)
         if self.curvature is not None:
             C = -(P @ information)
             C.reshape(-1)[:: len(C) + 1] += 1.0
             curvature = C.T @ (self.curvature @ C + information)
             self.curvature = 0.5 * (curvature + curvature.T)
 
-    def through_parts(
-        self, P: Array, matrix: Array, rows: Array, vector: Array, change: Array | None = None
-    ) -> None:
-        """From after a frame's readings to before them, as :meth:`through_readings`.
+    def through_frame(
+        self, P: Array, matrix: Array, rows: Array, vector: Array, transition: Transition
+    ) -> Array:
+        """From after a frame's readings to after those of the frame before it; returns :meth:`step` of the frame.
 
         Args:
             P: (N, N) posterior covariance.
             matrix: (n, n) information on the first n components.
             rows: (m, N) whitened Jacobian of the other readings: Λ is ``matrix`` on the first n, and rowsᵀ rows.
             vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
-            change: (N,) P (λ − vector), where it is known; it saves a product with P.
+            transition: Φ of the step into the frame.
         """
-        information = rows.T @ rows
+        step, information = self.step(P), rows.T @ rows
         information[: len(matrix), : len(matrix)] += matrix
-        self.through_readings(P, information, vector, change)
-
-    def through_motion(self, transition: Transition) -> None:
-        """From before a frame's readings to after those of the frame before it."""
+        self.through_readings(P, information, vector)
         self.through_plant(transition.matrix(len(self.gradient)))
+        return step
 
     def through_plant(self, transition: Array) -> None:
         """From before a frame's readings to after those of the frame before it; ``transition`` is Φ (N, N)."""

@@ -136,15 +136,15 @@ def test_smoothed_covariances_are_symmetric_positive_and_never_larger():
 
 
 def test_readings_and_transitions_may_come_by_their_parts():
-    """through_parts: information on the first components, and rows; through_motion: any form of Φ."""
+    """through_frame: information on the first components, and rows, and any form of Φ."""
     rng = np.random.default_rng(5)
     H, rows, P, vector, phi = (rng.normal(size=size) for size in ((4, 3), (2, 5), (5, 5), (5,), (5, 5)))
     whole = rows.T @ rows
     whole[:3, :3] += H.T @ H
     found, expected = BackwardPass(5), BackwardPass(5)
     for _ in range(2):
-        found.through_parts(P @ P.T, H.T @ H, rows, vector)
-        found.through_motion(DenseTransition(phi))
+        step = found.through_frame(P @ P.T, H.T @ H, rows, vector, DenseTransition(phi))
+        np.testing.assert_array_equal(step, expected.step(P @ P.T))
         expected.through_readings(P @ P.T, whole, vector)
         expected.through_plant(phi)
     np.testing.assert_array_equal(found.gradient, expected.gradient)

@@ -34,7 +34,6 @@ class _Frame(NamedTuple):
         delta: (N,) correction of the mean.
         readings: The readings; None in the first frame, whose state is taken as it is.
         vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
-        step: (N,) P times ``vector``.
         transition: Φ from the frame before; None in the first frame.
     """
 
@@ -42,7 +41,6 @@ class _Frame(NamedTuple):
     delta: Array
     readings: Readings | None
     vector: Array
-    step: Array
     transition: Transition | None
 
 
@@ -90,11 +88,10 @@ def _damping(steps: Sequence[Array], nv: int) -> float:
 def _filtered(kalman: DynamicFilter, run: Sequence[Step[DynamicState]]) -> list[_Frame]:
     """The filter's own pass: its posteriors are the trajectory, so that it corrects nothing."""
     nothing = np.zeros(kalman.layout.size)
-    passed = [_Frame(run[0].state.P, nothing, None, nothing, nothing, None)]
+    passed = [_Frame(run[0].state.P, nothing, None, nothing, None)]
     for last, step in pairwise(run):
-        P, vector = step.state.P, step.readings.whole_vector
-        transition = kalman.plant.step_transition(last.state, step.prior.state)
-        passed.append(_Frame(P, nothing, step.readings, vector, P @ vector, transition))
+        readings, transition = step.readings, kalman.plant.step_transition(last.state, step.prior.state)
+        passed.append(_Frame(step.state.P, nothing, readings, readings.whole_vector, transition))
     return passed
 
 
@@ -117,7 +114,7 @@ def _forward(
     plant = kalman.plant
     delta, P = plant.difference(means[0], begin), begin.P
     nothing = np.zeros_like(delta)
-    passed = [_Frame(P, delta, None, nothing, nothing, None)]
+    passed = [_Frame(P, delta, None, nothing, None)]
     for last, mean, decisions, room in zip(
         means[:-1], means[1:], decided[1:], memory[: len(means) - 1], strict=True
     ):
@@ -129,9 +126,8 @@ def _forward(
         readings = kalman.linearise(mean, decisions)
         P = informed_with_rows(prior.P, readings.matrix, readings.rows, room)
         vector = readings.whole_vector - readings.apply(delta)
-        step = P @ vector
-        delta += step
-        passed.append(_Frame(P, delta, readings, vector, step, transition))
+        delta += P @ vector
+        passed.append(_Frame(P, delta, readings, vector, transition))
     return passed
 
 
@@ -145,9 +141,10 @@ def _backward(forward: Sequence[_Frame], covariances: int = 0) -> Iterator[tuple
     back = SparseBackwardPass(len(forward[0].delta), covariances > 0)
     for k in range(len(forward) - 1, -1, -1):
         here = forward[k]
-        later = back.step(here.P)
-        yield here.delta + later, back.covariance(here.P) if k < covariances else None
-        if here.readings is not None and here.transition is not None:
-            matrix, rows = here.readings.matrix, here.readings.rows
-            back.through_parts(here.P, matrix, rows, here.vector, -later - here.step)
-            back.through_motion(here.transition)
+        P = back.covariance(here.P) if k < covariances else None
+        if here.readings is None or here.transition is None:
+            later = back.step(here.P)
+        else:
+            known = here.readings.matrix, here.readings.rows, here.vector
+            later = back.through_frame(here.P, *known, here.transition)
+        yield here.delta + later, P
