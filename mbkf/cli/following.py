@@ -135,16 +135,19 @@ def sinks(
     Raises:
         MbkfError: An address cannot be served, or a library is missing.
     """
+    from mbkf.stream.results.values import ResultValues
+
     found: list[FrameSink] = [SaidVerdict(say)]
     setup = session.setup
+    values = ResultValues(setup.model)
     if args.publish is not None:
         from mbkf.stream.lsl.results import LslResults
 
-        found.append(LslResults(setup.model, args.publish, setup.stream.rate_hz))
+        found.append(LslResults(values, args.publish, setup.stream.rate_hz))
     if args.websocket is not None:
         from mbkf.stream.results.websocket import WebSocketResults, parse_address
 
-        served = WebSocketResults(setup.model, *parse_address(args.websocket), args.token)
+        served = WebSocketResults(values, *parse_address(args.websocket), args.token)
         say(f"results: {served.url}")
         found.append(served)
     for kind, option, to in (("json", "--send-json", args.send_json), ("osc", "--send-osc", args.send_osc)):
@@ -153,7 +156,7 @@ def sinks(
             from mbkf.stream.results.websocket import parse_address
 
             place = parse_address(to, option)
-            found.append(DatagramResults(setup.model, kind, *place, partial(session.note, "results")))
+            found.append(DatagramResults(values, kind, *place, partial(session.note, "results")))
     if args.view:
         from mbkf.viz.live.page import LivePage
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.model.body import Body
 from mbkf.stream.libraries import lsl
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.judgement import Judgement
@@ -23,16 +22,16 @@ VERDICT_SUFFIX, VERDICT_TYPE = "-verdict", "Markers"
 class LslResults:
     """A :class:`mbkf.stream.results.frame.FrameSink`; a stamp is the time of sending less the frame's latency."""
 
-    def __init__(self, model: Body, name: str, rate_hz: float) -> None:
+    def __init__(self, values: ResultValues, name: str, rate_hz: float) -> None:
         """Opens the stream.
 
         Args:
-            model: The scaled body.
+            values: Makes the numbers; receivers of one run share it.
             name: Name of the stream.
             rate_hz: Frame rate.
         """
         self._lsl = lsl()
-        self._values = ResultValues(model)
+        self._values = values
         extra = (("frame", "none"), ("tracked", "none"), ("latency", "s"))
         count = len(self._values.names) + len(extra)
         info = self._lsl.StreamInfo(

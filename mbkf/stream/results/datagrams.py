@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable
 
 from mbkf.errors import InvalidInput
-from mbkf.model.body import Body
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.message import frame_message
 from mbkf.stream.results.osc import OscBundles
@@ -26,12 +25,17 @@ class DatagramResults:
     """A :class:`mbkf.stream.results.frame.FrameSink`."""
 
     def __init__(
-        self, model: Body, kind: str, address: str, port: int, report: Callable[[str], None] | None = None
+        self,
+        values: ResultValues,
+        kind: str,
+        address: str,
+        port: int,
+        report: Callable[[str], None] | None = None,
     ) -> None:
         """Opens the socket.
 
         Args:
-            model: The scaled body.
+            values: Makes the numbers; receivers of one run share it.
             kind: :data:`JSON` or :data:`OSC`.
             address: Address of the receiver.
             port: Its port.
@@ -40,7 +44,7 @@ class DatagramResults:
         Raises:
             InvalidInput: It cannot be sent to.
         """
-        self._values = ResultValues(model)
+        self._values = values
         self._bundles = OscBundles(self._values.names) if kind == OSC else None
         self._names_due_s = 0.0
         self._kind, self._report = kind, report

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 
-from mbkf.conventions import SIDES, Array
+from mbkf.conventions import SIDES, Array, read_only
 from mbkf.io.dimensions import labels_of
 from mbkf.io.results import PLOTTED
 from mbkf.io.verdict import PARTS
@@ -15,8 +17,12 @@ from mbkf.stream.results.frame import LiveFrame
 _LOAD = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
+HELD = 256
+"""Frames that a receiver may lag behind; their rows are kept for it."""
+
+
 class ResultValues:
-    """Turns frames into rows of named numbers, one after another.
+    """Turns frames into rows of named numbers, one after another; receivers that share it compute each row once.
 
     Angles in rad (the pelvis's translations in m), moments in N m (N), reactions in N and N m about the world's origin,
     z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same. Then stand
@@ -33,6 +39,8 @@ class ResultValues:
     def __init__(self, model: Body) -> None:
         self._clinical = ClinicalAngles(model)
         self._before: Array | None = None
+        self._lock = threading.Lock()
+        self._rows: dict[int, tuple[LiveFrame, Array]] = {}
         angles = self._clinical.names
         rad = ["rad" if turns else "m" for turns in self._clinical.rotational]
         nm = ["N m" if turns else "N" for turns in self._clinical.rotational]
@@ -62,10 +70,18 @@ class ResultValues:
         self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
 
     def row(self, frame: LiveFrame) -> Array:
-        """(len(names),) the numbers of a frame, NaN where the body is not tracked.
+        """(len(names),) the numbers of a frame, NaN where the body is not tracked; not to be changed.
 
         Angles stay continuous with the row before.
         """
+        with self._lock:
+            if id(frame) not in self._rows:
+                self._rows[id(frame)] = frame, self._computed(frame)
+                if len(self._rows) > HELD:
+                    del self._rows[next(iter(self._rows))]
+            return self._rows[id(frame)][1]
+
+    def _computed(self, frame: LiveFrame) -> Array:
         numbers = np.full((6, len(self._clinical.names)), np.nan)
         if np.isfinite(frame.q).all():
             q, clinical = frame.q[None], self._clinical
@@ -80,6 +96,5 @@ class ResultValues:
         plotted = [np.ravel(values) for values in (unknown | dict(frame.plotted)).values()]
         words = (np.nan,) * (1 + len(PARTS)) if frame.judgement is None else frame.judgement.codes
         stated = np.array([frame.unexplained, frame.valid, *words], dtype=float)
-        return np.concatenate(
-            [numbers[:4].ravel(), *loads, numbers[4:].ravel(), frame.wrench_offset.ravel(), *plotted, stated]
-        )
+        offsets = numbers[4:].ravel(), frame.wrench_offset.ravel()
+        return read_only(np.concatenate([numbers[:4].ravel(), *loads, *offsets, *plotted, stated]))

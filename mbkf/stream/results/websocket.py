@@ -17,7 +17,6 @@ from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
 from mbkf.errors import InvalidInput
-from mbkf.model.body import Body
 from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.judgement import Judgement
@@ -53,11 +52,11 @@ class WebSocketResults:
         url: Where to listen, with the token where one is needed.
     """
 
-    def __init__(self, model: Body, address: str, port: int, token: str | None = None) -> None:
+    def __init__(self, values: ResultValues, address: str, port: int, token: str | None = None) -> None:
         """Listens for clients.
 
         Args:
-            model: The scaled body.
+            values: Makes the numbers; receivers of one run share it.
             address: Address to listen on.
             port: Port to listen on; 0 for any that is free.
             token: Secret that clients have to send. Addresses other than this computer's own always need one; it is
@@ -68,7 +67,7 @@ class WebSocketResults:
         """
         self._local = is_loopback(address)
         self._token = token if self._local else token or secrets.token_urlsafe(16)
-        self._values = ResultValues(model)
+        self._values = values
         self._changed = threading.Condition()
         self._newest, self._count, self._closed = "", 0, False
         self._judgement: Judgement | None = None

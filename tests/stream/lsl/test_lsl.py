@@ -312,7 +312,7 @@ def test_streams_that_cannot_be_used_are_refused(name):
 
 def test_results_are_published_with_names_and_units(name):
     model = HumanModel.scaled(mass_kg=75.0)
-    results = LslResults(model, name, 100.0)
+    results = LslResults(ResultValues(model), name, 100.0)
     (info,) = until(lambda: PYLSL.resolve_byprop("name", name, 1, 5.0))
     inlet = PYLSL.StreamInlet(info, as_numpy=True)
     inlet.open_stream(PATIENCE_S)

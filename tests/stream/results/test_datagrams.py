@@ -23,7 +23,7 @@ def receiver():
 
 
 def test_json_holds_names_and_every_frame(receiver):
-    results = DatagramResults(MODEL, JSON, *receiver.getsockname())
+    results = DatagramResults(ResultValues(MODEL), JSON, *receiver.getsockname())
     frames = [shown_frame(MODEL, number) for number in range(3)]
     for frame in frames:
         results.take(frame)
@@ -39,7 +39,7 @@ def test_json_holds_names_and_every_frame(receiver):
 
 
 def test_osc_holds_the_numbers(receiver):
-    results = DatagramResults(MODEL, OSC, *receiver.getsockname())
+    results = DatagramResults(ResultValues(MODEL), OSC, *receiver.getsockname())
     results.take(shown_frame(MODEL))
     results.close()
     bundle = receiver.recv(65536)
@@ -48,7 +48,7 @@ def test_osc_holds_the_numbers(receiver):
 
 def test_messages_that_are_too_large_are_stated_once(receiver, monkeypatch):
     told = []
-    results = DatagramResults(MODEL, JSON, *receiver.getsockname(), told.append)
+    results = DatagramResults(ResultValues(MODEL), JSON, *receiver.getsockname(), told.append)
     monkeypatch.setattr(datagrams, "frame_message", lambda *_: {"values": [0] * 40_000})
     for number in range(3):
         results.take(shown_frame(MODEL, number))
@@ -61,7 +61,7 @@ def test_messages_that_are_too_large_are_stated_once(receiver, monkeypatch):
 def test_nobody_has_to_listen(receiver):
     place = receiver.getsockname()
     receiver.close()
-    results = DatagramResults(MODEL, JSON, *place)
+    results = DatagramResults(ResultValues(MODEL), JSON, *place)
     for number in range(20):
         results.take(shown_frame(MODEL, number))
     results.close()
@@ -70,4 +70,4 @@ def test_nobody_has_to_listen(receiver):
 
 def test_a_place_that_is_none_is_refused():
     with pytest.raises(InvalidInput, match="cannot be sent to"):
-        DatagramResults(MODEL, OSC, "300.1.1.1", 9)
+        DatagramResults(ResultValues(MODEL), OSC, "300.1.1.1", 9)

@@ -14,6 +14,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.verdict import Reason, Verdict
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
+from mbkf.stream.results import values as values_module
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.results.values import ResultValues
@@ -54,7 +55,7 @@ def shown_frame(model, number=0, followed=True):
 
 @pytest.fixture
 def served():
-    results = WebSocketResults(MODEL, "127.0.0.1", 0)
+    results = WebSocketResults(ResultValues(MODEL), "127.0.0.1", 0)
     yield results
     results.close()
 
@@ -94,6 +95,17 @@ def test_values_are_clinical_and_carry_their_spread():
     found = [row[f"{name}_moment_sd_offset"] for name in clinical.names]
     np.testing.assert_allclose(found, np.sqrt(B.T**2 @ frame.torques_offset**2), atol=1e-12)
     assert len(values.units) == len(values.names) == len(set(values.names))
+
+
+def test_receivers_that_share_the_values_compute_each_row_once(monkeypatch):
+    values, computed, once = ResultValues(MODEL), [], ResultValues._computed
+    monkeypatch.setattr(ResultValues, "_computed", lambda *both: computed.append(both[1]) or once(*both))
+    frames = [shown_frame(MODEL, k) for k in range(values_module.HELD + 1)]
+    rows = [values.row(frame) for frame in frames]
+    assert values.row(frames[-1]) is rows[-1] and values.row(frames[1]) is rows[1]  # a receiver that lags
+    assert len(computed) == len(frames)
+    assert values.row(frames[0]) is not rows[0]  # one that lags too far
+    np.testing.assert_array_equal(values.row(frames[0]), rows[0])
 
 
 def test_where_nobody_is_followed_there_are_no_angles():
@@ -160,7 +172,7 @@ def test_a_name_that_is_not_this_computers_is_refused(served):
 
 
 def test_another_address_needs_a_token():
-    results = WebSocketResults(MODEL, "0.0.0.0", 0)
+    results = WebSocketResults(ResultValues(MODEL), "0.0.0.0", 0)
     try:
         address, _, token = results.url.partition("?token=")
         assert len(token) > 16
@@ -177,7 +189,7 @@ def test_another_address_needs_a_token():
 def test_a_port_that_is_taken_is_refused(served):
     port = int(served.url.split(":")[2].strip("/"))
     with pytest.raises(InvalidInput, match="cannot listen"):
-        WebSocketResults(MODEL, "127.0.0.1", port)
+        WebSocketResults(ResultValues(MODEL), "127.0.0.1", port)
 
 
 def test_addresses_are_read():
