@@ -226,6 +226,12 @@ def largest_difference(
     """Over quantities in a part of the frames; q and −q of the pelvis' quaternion are one orientation.
 
     Relative to the value where that is larger than one; NaN where different samples are known.
+
+    Args:
+        one: The results.
+        other: Those that they are compared with.
+        names: The quantities.
+        part: The frames.
     """
     values = {name: (getattr(one, name)[part], getattr(other, name)[part]) for name in names}
     if "q" in values:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ def encoded(
     Args:
         groups: Parameters by group and name, without those that follow from the data.
         points: (T, N, 3) points in the file's unit.
-        residuals: (T, N) residuals, −1 where a point is missing.
+        residuals: (T, N) fourth numbers: −1 where a point is missing, else its residual in steps of −POINT:SCALE.
         analogs: (C, S) analog channels; S is a multiple of T.
         rate_hz: Frame rate.
         first_frame: Number of the first frame, counted from 1.
@@ -61,7 +62,9 @@ def encoded(
     counted = _counts(groups, points.shape[:2], channels, (rate_hz, per_frame * rate_hz), first_frame)
     section = _section({**groups, **counted})
     blocks = len(section) // BLOCK_BYTES
-    header = _header(count, channels, per_frame, first_frame, frames, PARAMETER_BLOCK + blocks, rate_hz)
+    scale = float(cast(float, counted["POINT"]["SCALE"]))
+    counts = count, channels, per_frame, first_frame, frames
+    header = _header(*counts, PARAMETER_BLOCK + blocks, scale, rate_hz)
     data = numbers.tobytes()
     return header + section + data + bytes(-len(data) % BLOCK_BYTES)
 
@@ -106,12 +109,19 @@ def _counts(
 
 
 def _header(
-    points: int, channels: int, per_frame: int, first: int, frames: int, data_block: int, rate_hz: float
+    points: int,
+    channels: int,
+    per_frame: int,
+    first: int,
+    frames: int,
+    data_block: int,
+    scale: float,
+    rate_hz: float,
 ) -> bytes:
     last = min(first + frames - 1, LAST_FRAME_OF_HEADER)
     known = struct.pack(
         "<BB5HfHHf",
-        PARAMETER_BLOCK, KEY, points, channels * per_frame, min(first, LAST_FRAME_OF_HEADER), last, 0, -1.0,
+        PARAMETER_BLOCK, KEY, points, channels * per_frame, min(first, LAST_FRAME_OF_HEADER), last, 0, scale,
         data_block, per_frame, rate_hz,
     )  # fmt: skip
     return known + bytes(BLOCK_BYTES - len(known))

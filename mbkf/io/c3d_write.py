@@ -32,23 +32,29 @@ MOST_CHANNELS = 255
 EVENT_ICONS = {"Foot Strike": 1, "Foot Off": 2}
 """Pictures that Vicon's programs show for events."""
 
+MOST_STEPS, LEAST_STEP_MM = 255, 0.01
+"""A residual is a number of steps in one byte; smaller steps say nothing of cameras."""
+
 _CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 _OFFSET_LIMIT = 2.0**15
 """OFFSET is an integer of 16 bits with a sign; channels with another offset are stored without one."""
 
 
-def write_c3d(capture: Capture, path: str | Path, *, every_channel: bool = False) -> None:
+def write_c3d(
+    capture: Capture, path: str | Path, *, every_channel: bool = False, residuals_m: Array | None = None
+) -> None:
     """Writes a capture as C3D: z up, mm, plates of type 2 with their offset already removed; whole or not at all.
 
-    Missing samples get residual −1. Plate and analog samples are interpolated to a whole number per frame
-    where they are not; where a recording does not reach, they hold 0. C3D stores 32-bit floats. Samples that came from
-    a C3D file keep its scaling, and so every bit.
+    Missing samples get residual −1, others that of the camera system in up to 255 steps, or 0. Plates and channels are
+    interpolated to a whole number per frame where they are not; where a recording does not reach, they hold 0. C3D
+    stores 32-bit floats. Samples that came from a C3D file keep its scaling, and so every bit.
 
     Args:
         capture: The capture.
         path: The file.
         every_channel: Write channels that are named as those of the plates, too; the plates' then get other names.
+        residuals_m: (T, M) residuals of the markers, NaN where they are not known; None for no residuals.
 
     Raises:
         InvalidInput: The name does not end in ``.c3d``, the capture has no frames, or more channels than fit.
@@ -62,12 +68,13 @@ def write_c3d(capture: Capture, path: str | Path, *, every_channel: bool = False
     markers = capture.markers
     points, missing, point = _points(capture)
     analogs, channels = _analogs(capture, every_channel)
+    words, point["SCALE"] = _fourth_words(missing, residuals_m)
     groups = {"POINT": point, **channels, **_events(capture)}
     if capture.subject_mass_kg is not None:
         groups["PROCESSING"] = {"BODYMASS": float(capture.subject_mass_kg)}
     first_frame = max(round(markers.start_time_s * markers.rate_hz), 0) + 1
     groups["MANUFACTURER"] = {"SOFTWARE": [MARK]}
-    content = encoded(groups, points, np.where(missing, -1.0, 0.0), analogs, markers.rate_hz, first_frame)
+    content = encoded(groups, points, words, analogs, markers.rate_hz, first_frame)
     with replacing(path.with_suffix(".c3d")) as temporary:
         temporary.write_bytes(content)
 
@@ -88,6 +95,26 @@ def _points(capture: Capture) -> tuple[Array, BoolArray, Parameters]:
         **_lists(derived),
     }
     return np.where(missing[:, :, None], 0.0, points), missing, group
+
+
+def _fourth_words(missing: BoolArray, residuals_m: Array | None) -> tuple[Array, float]:
+    """(T, N) the points' fourth numbers, and POINT:SCALE.
+
+    The low byte counts steps of |SCALE| mm, the high one would name cameras; missing points have −1, and 0 stands for a
+    residual that is not known. Source: C3D manual (c3d.org), sections on 3D residuals and on floating-point files.
+    """
+    words = np.where(missing, -1.0, 0.0)
+    if residuals_m is None:
+        return words, -1.0
+    known = np.zeros(missing.shape, dtype=bool)
+    known[:, : residuals_m.shape[1]] = (residuals_m > 0.0) & np.isfinite(residuals_m)
+    known &= ~missing
+    if not known.any():
+        return words, -1.0
+    found_mm = _MM * residuals_m[known[:, : residuals_m.shape[1]]]
+    step_mm = max(LEAST_STEP_MM, float(found_mm.max()) / MOST_STEPS)
+    words[known] = np.clip(np.round(found_mm / step_mm), 1.0, MOST_STEPS)
+    return words, -step_mm
 
 
 def _lists(derived: Sequence[DerivedPoint]) -> Parameters:

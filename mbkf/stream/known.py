@@ -59,9 +59,11 @@ class KnownStream:
                 markers[self._place[name]] = np.asarray(one, dtype=float).reshape(3)
         return markers
 
-    def in_order(self, found_m: Array) -> Array:
-        """(M, 3) known markers from those (F, 3) of the latest description."""
-        return found_m if self._columns is None else np.vstack([found_m, _NOWHERE])[self._columns]
+    def in_order(self, found: Array) -> Array:
+        """(M, …) values of the known markers from those (F, …) of the latest description, NaN for absent ones."""
+        if self._columns is None:
+            return found
+        return np.concatenate([found, np.full((1, *found.shape[1:]), np.nan)])[self._columns]
 
     def plate_samples(self, samples: PlateSamples) -> PlateSamples:
         """Samples of the known plates from those of the latest description; NaN for a plate that is gone."""

@@ -81,6 +81,8 @@ class SourceFrame:
             missing; None where there are none.
         orientations: (S, 4) unit quaternions of the segments' own frames (x forward, y left, z up in the neutral
             posture) → one world, z up; NaN where missing; None where they are not known.
+        residuals_m: (M + N,) the camera system's residuals of markers and points, NaN where it states no residual;
+            None for a system that streams no residuals.
     """
 
     number: int
@@ -90,6 +92,7 @@ class SourceFrame:
     plates: PlateSamples
     imus: Array | None = None
     orientations: Array | None = None
+    residuals_m: Array | None = None
 
 
 class FrameSource(Protocol):

@@ -1,5 +1,6 @@
 """What is written is what is read back."""
 
+import struct
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,8 @@ from hypothesis.extra.numpy import arrays
 
 from mbkf.errors import InvalidInput
 from mbkf.io.c3d import read_c3d
+from mbkf.io.c3d_decode import decode
+from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.plate_corners import plate_axes
@@ -192,3 +195,29 @@ def test_channels_keep_their_values_with_scalings_that_the_file_cannot_hold(tmp_
     write_c3d(Capture("", markers_of(np.ones((50, 1, 3))), analog=tuple(channels)), tmp_path / "a.c3d")
     for found in read_c3d(tmp_path / "a.c3d", CaptureOptions(unit="mm")).analog:
         np.testing.assert_array_equal(found.values, values)
+
+
+@pytest.mark.parametrize(("largest_mm", "step_mm"), [(5.1, 0.02), (1.0, 0.01)])
+def test_residuals_are_steps_of_the_scale(tmp_path, largest_mm, step_mm):
+    """As in Qualisys' files: 0.4 mm is byte 4 of scale −0.1. ezc3d 1.7 reads the word's other half (its issue 386)."""
+    residuals = 1e-3 * np.array([[0.4, largest_mm], [1e-3, np.nan], [0.0, 0.5]])
+    positions = np.ones((3, 3, 3))
+    positions[2, 1] = np.nan
+    path = tmp_path / "x.c3d"
+    write_c3d(Capture("x", markers_of(positions)), path, residuals_m=residuals)
+    found = decode(path, check_layout(path))
+    scale = found.parameters.number("POINT", "SCALE")
+    assert scale == pytest.approx(-step_mm) and struct.unpack_from("<f", path.read_bytes(), 12) == (scale,)
+    expected = [[0.4, largest_mm, 0.0], [step_mm, 0.0, 0.0], [0.0, -1.0, 0.0]]
+    read = np.where(found.residuals < 0.0, -1.0, -scale * found.residuals)
+    np.testing.assert_allclose(read, expected, atol=1e-6)
+    assert (found.residuals == np.round(found.residuals)).all()
+    np.testing.assert_allclose(found.points[0], 1000.0)
+
+
+@pytest.mark.parametrize("residuals", [None, np.full((2, 1), np.nan), np.zeros((2, 1))])
+def test_a_file_without_residuals_stays_as_it_was(tmp_path, residuals):
+    capture = Capture("x", markers_of(np.ones((2, 1, 3))))
+    for name, some in (("one", None), ("other", residuals)):
+        write_c3d(capture, tmp_path / f"{name}.c3d", residuals_m=some)
+    assert (tmp_path / "one.c3d").read_bytes() == (tmp_path / "other.c3d").read_bytes()

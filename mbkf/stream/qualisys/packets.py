@@ -36,6 +36,9 @@ _COUNT, _PLATE = struct.Struct("<I"), struct.Struct("<III")
 _FLOATS = {MARKERS: 3, POINTS: 4, MARKERS_RESIDUAL: 4, POINTS_RESIDUAL: 5}
 """Numbers of four bytes per point; the first three are its coordinates."""
 
+_WITH_RESIDUAL = (MARKERS_RESIDUAL, POINTS_RESIDUAL)
+"""Components whose last number of a point is its residual, mm."""
+
 FORCE_NUMBERS = 9
 """Force N, moment N m and point of application mm."""
 
@@ -63,12 +66,14 @@ class DataFrame:
         number: Of the frame.
         time_us: Microseconds from the start.
         points: (N, 3) coordinates by type of component.
+        residuals: (N,) residuals by type of component, where it has them.
         forces: Samples by plate; None where the packet holds no component of forces.
     """
 
     number: int
     time_us: int
     points: Mapping[int, NDArray[np.float32]]
+    residuals: Mapping[int, NDArray[np.float32]]
     forces: tuple[PlateForces, ...] | None
 
 
@@ -94,6 +99,7 @@ def read_frame(payload: bytes) -> DataFrame:
     if count > MOST_COMPONENTS:
         raise InvalidPacket(f"QTM: {count} components in one packet")
     points: dict[int, NDArray[np.float32]] = {}
+    residuals: dict[int, NDArray[np.float32]] = {}
     forces: tuple[PlateForces, ...] | None = None
     at = _FRAME.size
     for _ in range(count):
@@ -103,21 +109,24 @@ def read_frame(payload: bytes) -> DataFrame:
         if not _PART.size <= size <= len(payload) - at:
             raise InvalidPacket(f"QTM: a component of {size} bytes where {len(payload) - at} are left")
         if kind in _FLOATS:
-            points[kind] = _points(payload, at + _PART.size, at + size, _FLOATS[kind])
+            rows = _points(payload, at + _PART.size, at + size, _FLOATS[kind])
+            points[kind] = rows[:, :3]
+            if kind in _WITH_RESIDUAL:
+                residuals[kind] = rows[:, -1]
         elif kind == FORCE:
             forces = _forces(payload, at + _PART.size, at + size)
         at += size
-    return DataFrame(number, time_us, points, forces)
+    return DataFrame(number, time_us, points, residuals, forces)
 
 
 def _points(data: bytes, at: int, end: int, width: int) -> NDArray[np.float32]:
-    """(N, 3) coordinates; count, and rates of dropped cameras, stand before them."""
+    """(N, width) numbers of points; count, and rates of dropped cameras, stand before them."""
     if end - at < 8:
         raise InvalidPacket("QTM: a component of points is cut off")
     count = _COUNT.unpack_from(data, at)[0]
     if count * width * 4 > end - at - 8:
         raise InvalidPacket(f"QTM: {count} points cannot stand in {end - at - 8} bytes")
-    return np.frombuffer(data, "<f4", count * width, at + 8).reshape(count, width)[:, :3]
+    return np.frombuffer(data, "<f4", count * width, at + 8).reshape(count, width)
 
 
 def _forces(data: bytes, at: int, end: int) -> tuple[PlateForces, ...]:

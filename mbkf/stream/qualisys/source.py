@@ -25,7 +25,7 @@ ASK_AGAIN_S = 0.25
 NEW_PARAMETERS = {1, 3, 7, 11}
 """Events after which parameters may be others: connected, capture started, file started, cameras' settings changed."""
 
-NO_POINTS = read_only(np.zeros((0, 3)))
+NO_POINTS, NO_RESIDUALS = read_only(np.zeros((0, 3))), read_only(np.zeros(0))
 
 
 class QualisysSource(ReconnectingSource[QtmClient, Packet]):
@@ -154,24 +154,30 @@ class QualisysSource(ReconnectingSource[QtmClient, Packet]):
             if self._plates.axes != before:
                 self._news.append(("plates axes", f"QTM states forces in axes of the {self._plates.axes}"))
             self._waiting.put_samples(samples, arrival_s)
-        labelled = frame.points.get(packets.MARKERS_RESIDUAL, frame.points.get(packets.MARKERS))
-        bare = frame.points.get(packets.POINTS_RESIDUAL, frame.points.get(packets.POINTS))
+        labelled, its_residuals = _component(frame, packets.MARKERS_RESIDUAL, packets.MARKERS)
+        bare, bare_residuals = _component(frame, packets.POINTS_RESIDUAL, packets.POINTS)
         if labelled is None and (bare is None or known.stream.marker_names):
             return  # forces alone
-        markers = NO_POINTS
+        markers, residuals = NO_POINTS, NO_RESIDUALS
         if known.stream.marker_names:
-            markers = self._markers(labelled, len(self._described.stream.marker_names))
+            markers, residuals = self._markers(labelled, its_residuals)
         points = NO_POINTS if bare is None or not len(bare) else self._world(bare)
+        residuals = np.concatenate([residuals, MM * bare_residuals.astype(float)])
         none = PlateSamples.none(len(known.stream.plates))
-        self._waiting.put(SourceFrame(frame.number, arrival_s, markers, points, none))
+        made = SourceFrame(frame.number, arrival_s, markers, points, none, residuals_m=residuals)
+        self._waiting.put(made)
 
-    def _markers(self, found: NDArray[np.float32] | None, described: int) -> Array:
-        """(M, 3) known markers; NaN where their number is not that of the parameters, which are then asked for."""
-        assert self._known is not None
-        if found is None or len(found) != described:
+    def _markers(
+        self, found: NDArray[np.float32] | None, residuals: NDArray[np.float32]
+    ) -> tuple[Array, Array]:
+        """(M, 3) known markers and (M,) residuals; NaN where their number is not the parameters', which it asks for."""
+        assert self._known is not None and self._described is not None
+        if found is None or len(found) != len(self._described.stream.marker_names):
             self._ask_for_parameters()
-            return np.full((len(self._known.stream.marker_names), 3), np.nan)
-        return self._known.in_order(self._world(found))
+            unseen = np.full((len(self._known.stream.marker_names), 4), np.nan)
+            return unseen[:, :3], unseen[:, 3]
+        in_order = self._known.in_order
+        return in_order(self._world(found)), in_order(MM * residuals.astype(float))
 
     def _world(self, points_mm: NDArray[np.float32]) -> Array:
         assert self._described is not None
@@ -201,6 +207,16 @@ class QualisysSource(ReconnectingSource[QtmClient, Packet]):
         self._described, self._plates = found, PlateForceReader(found)
         self._plates.axes = axes
         self._news += self._known.describe(found.stream)
+
+
+def _component(
+    frame: packets.DataFrame, with_residuals: int, plain: int
+) -> tuple[NDArray[np.float32] | None, NDArray[np.float32]]:
+    """Points (N, 3) and residuals (N,), mm, of one of two components; NaN for the one without residuals."""
+    if with_residuals in frame.points:
+        return frame.points[with_residuals], frame.residuals[with_residuals]
+    found = frame.points.get(plain)
+    return found, np.full(0 if found is None else len(found), np.nan, dtype=np.float32)
 
 
 def _same(one: QtmDescription, other: QtmDescription) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from mbkf.conventions import Array
 from mbkf.io.frame_log import FrameLogWriter
 from mbkf.stream.source import PlateSamples, SourceFrame, plausible
 from mbkf.trial.live.recording import MOST_POINTS, POINT_DTYPE, RecordingFiles
@@ -35,12 +36,14 @@ class Recorder:
         if number is not None:
             row = np.zeros(1, dtype=files.markers.dtype)
             row["number"], row["markers"] = number, plausible(frame.markers_m)[0]
+            row["residuals"] = self._residuals(frame)[: len(frame.markers_m)]
             self._put(files.markers, row)
         if number is not None and len(frame.unlabelled_m):
             seen = plausible(frame.unlabelled_m)[0]
-            seen = seen[~np.isnan(seen).any(axis=1)][:MOST_POINTS]
-            points = np.zeros(len(seen), dtype=POINT_DTYPE)
-            points["number"], points["point"] = number, seen
+            kept = np.flatnonzero(~np.isnan(seen).any(axis=1))[:MOST_POINTS]
+            points = np.zeros(len(kept), dtype=POINT_DTYPE)
+            points["number"], points["point"] = number, seen[kept]
+            points["residual"] = self._residuals(frame)[len(frame.markers_m) :][kept]
             self._put(files.points, points)
         fresh = samples.index if self._newest is None else samples.index[samples.index > self._newest]
         if len(fresh):
@@ -48,3 +51,9 @@ class Recorder:
             rows["index"], rows["wrench"] = fresh, samples.wrench[-len(fresh) :]
             self._put(files.samples, rows)
             self._newest = int(fresh[-1])
+
+    @staticmethod
+    def _residuals(frame: SourceFrame) -> Array:
+        """(M + N,) residuals of markers and points, NaN where they are not known."""
+        count = len(frame.markers_m) + len(frame.unlabelled_m)
+        return np.full(count, np.nan) if frame.residuals_m is None else frame.residuals_m

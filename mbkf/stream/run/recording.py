@@ -51,7 +51,7 @@ def write_recording(folder: Path) -> WrittenRecording:
             return WrittenRecording()
         file = found.to
         check_absent(file)
-        write_c3d(found.capture, file)
+        write_c3d(found.capture, file, residuals_m=found.residuals_m)
     except (MbkfError, OSError) as error:
         return WrittenRecording(file, 0, str(error))
     except Exception as error:  # the log must outlive whatever a damaged or strange one brings about

@@ -25,8 +25,8 @@ from mbkf.trial.live.log import LiveStream, described_plate, plates_dtype, plate
 MARKERS_FILE, POINTS_FILE, SAMPLES_FILE = "recorded_markers.log", "recorded_points.log", "recorded_plates.log"
 """Files in the log's folder."""
 
-POINT_DTYPE = np.dtype([("number", "<i8"), ("point", "<f8", (3,))])
-"""Type of a point without a name: its frame and place, m."""
+POINT_DTYPE = np.dtype([("number", "<i8"), ("point", "<f8", (3,)), ("residual", "<f4")])
+"""Type of a point without a name: its frame, place, m, and residual, m, NaN where it is not known."""
 
 MOST_POINTS = 1000
 """Points without names that are recorded of a frame, at most."""
@@ -36,7 +36,8 @@ class RecordingFiles(NamedTuple):
     """Writers of a recording.
 
     Attributes:
-        markers: A row per frame that arrived: its number and all markers of the stream (M, 3), m.
+        markers: A row per frame that arrived: its number, all markers of the stream (M, 3), m, and their residuals
+            (M,), m, NaN where they are not known.
         points: A row per point without a name.
         samples: A row per sample of the plates.
     """
@@ -65,7 +66,8 @@ def open_recording(folder: Path, stream: LiveStream, to: Path) -> RecordingFiles
         "markers": list(stream.marker_names),
         "plates": [described_plate(plate) for plate in stream.plates],
     }
-    rows = np.dtype([("number", "<i8"), ("markers", "<f8", (len(stream.marker_names), 3))])
+    count = len(stream.marker_names)
+    rows = np.dtype([("number", "<i8"), ("markers", "<f8", (count, 3)), ("residuals", "<f4", (count,))])
     with ExitStack() as opened:
 
         def opens(name: str, dtype: np.dtype, described: dict[str, object]) -> FrameLogWriter:
@@ -87,11 +89,13 @@ class Recorded:
     Attributes:
         to: The C3D file that it becomes.
         capture: Its contents, from time 0 on.
+        residuals_m: (T, N) the camera system's residuals of its points, NaN where they are not known.
         left_out: Sentences on what is left out or filled in.
     """
 
     to: Path
     capture: Capture
+    residuals_m: Array
     left_out: tuple[str, ...] = ()
 
 
@@ -112,7 +116,9 @@ def read_recording(folder: Path) -> Recorded | None:
     place = rows["number"] - first
     positions = np.full((count, len(header["markers"]), 3), np.nan)
     positions[place] = rows["markers"]
-    bare, crowded = _points(folder / POINTS_FILE, first, count)
+    residuals = np.full((count, len(header["markers"])), np.nan)
+    residuals[place] = rows["residuals"]
+    bare, bare_residuals, crowded = _points(folder / POINTS_FILE, first, count)
     names = [*header["markers"], *(f"*{k + 1}" for k in range(bare.shape[1]))]
     markers = MarkerTrajectories(
         tuple(names), np.concatenate([positions, bare], axis=1), header["rate_hz"], 0.0
@@ -125,21 +131,23 @@ def read_recording(folder: Path) -> Recorded | None:
         f"recording: {crowded} frames hold {MOST_POINTS} points without names; any further ones are left out"
     )
     sentences = ([lost] if missing else []) + ([full] if crowded else []) + filled
-    return Recorded(Path(header["to"]), Capture(header["trial"], markers, plates), tuple(sentences))
+    capture = Capture(header["trial"], markers, plates)
+    every = np.concatenate([residuals, bare_residuals], axis=1)
+    return Recorded(Path(header["to"]), capture, every, tuple(sentences))
 
 
-def _points(path: Path, first: int, count: int) -> tuple[Array, int]:
-    """(T, N, 3) points without names, NaN after a frame's last one, and the number of frames with all that fit."""
+def _points(path: Path, first: int, count: int) -> tuple[Array, Array, int]:
+    """(T, N, 3) points without names, (T, N) residuals, NaN after a frame's last one, and the number of full frames."""
     rows = read_frame_log(path).rows
     frame = rows["number"] - first
     rows, frame = rows[(frame >= 0) & (frame < count)], frame[(frame >= 0) & (frame < count)]
     if not len(rows):
-        return np.zeros((count, 0, 3)), 0
+        return np.zeros((count, 0, 3)), np.zeros((count, 0)), 0
     starts = np.flatnonzero(np.diff(frame, prepend=-1))
     column = np.arange(len(frame)) - np.repeat(starts, np.diff(starts, append=len(frame)))
-    points = np.full((count, int(column.max()) + 1, 3), np.nan)
-    points[frame, column] = rows["point"]
-    return points, int((column == MOST_POINTS - 1).sum())
+    points = np.full((count, int(column.max()) + 1, 4), np.nan)
+    points[frame, column, :3], points[frame, column, 3] = rows["point"], rows["residual"]
+    return points[:, :, :3], points[:, :, 3], int((column == MOST_POINTS - 1).sum())
 
 
 def _plates(

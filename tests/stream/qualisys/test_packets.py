@@ -28,8 +28,8 @@ def forces(*plates):
     return struct.pack("<I", len(made)) + b"".join(made)
 
 
-MARKERS = part(packets.MARKERS_RESIDUAL, points([[1, 2, 3, 0.5], [np.nan, 5, 6, 0.5]]))
-BARE = part(packets.POINTS_RESIDUAL, points([[7, 8, 9, 1, 0.5]]))
+MARKERS = part(packets.MARKERS_RESIDUAL, points([[1, 2, 3, 0.5], [np.nan, 5, 6, 0.25]]))
+BARE = part(packets.POINTS_RESIDUAL, points([[7, 8, 9, 1, 0.125]]))
 LOADS = part(packets.FORCE, forces((70, [range(9), range(9, 18)]), (70, [])))
 WHOLE = HEAD + MARKERS + BARE + LOADS
 
@@ -39,6 +39,8 @@ def test_a_frame_holds_its_components():
     assert (found.number, found.time_us) == (7, 10_000)
     np.testing.assert_array_equal(found.points[packets.MARKERS_RESIDUAL], [[1, 2, 3], [np.nan, 5, 6]])
     np.testing.assert_array_equal(found.points[packets.POINTS_RESIDUAL], [[7, 8, 9]])
+    np.testing.assert_array_equal(found.residuals[packets.MARKERS_RESIDUAL], [0.5, 0.25])
+    np.testing.assert_array_equal(found.residuals[packets.POINTS_RESIDUAL], [0.125])
     one, other = found.forces
     assert (one.plate, one.first, other.plate, len(other.samples)) == (1, 70, 2, 0)
     np.testing.assert_array_equal(one.samples, np.arange(18).reshape(2, 9))
@@ -49,7 +51,7 @@ def test_other_components_are_skipped():
         struct.pack("<QII", 1, 2, 2) + part(17, b"timecode") + part(packets.MARKERS, points([[1, 2, 3]]))
     )
     np.testing.assert_array_equal(found.points[packets.MARKERS], [[1, 2, 3]])
-    assert found.forces is None
+    assert found.forces is None and found.residuals == {}
 
 
 @pytest.mark.parametrize("end", range(0, len(WHOLE) - 1, 5))

@@ -1,6 +1,7 @@
 """A capture played by the simulated QTM arrives whole, and the source outlives everything that QTM may do."""
 
 import socket
+import struct
 import threading
 
 import numpy as np
@@ -121,6 +122,22 @@ def test_labels_in_another_order_are_followed_by_name(laboratory):
     one.server.send(shuffled, 0.0)
     (found,) = read(one.source, 1)
     np.testing.assert_allclose(found.markers_m, single(CAPTURE.markers.positions_m[4]), rtol=1e-15)
+
+
+def test_residuals_follow_their_markers(laboratory):
+    one = laboratory()
+    known, frame = one.server.names, next(iter(one.played.frames()))
+    one.server.names = [*known[1:], "NEW"]
+    one.source._asked_s = 0.0
+    one.server.to_all(6, bytes([CAMERAS_CHANGED]))
+    until(lambda: one.source.read(0.01) or one.source._described.stream.marker_names[-1] == "NEW")
+    rows = np.hstack([1e3 * frame.markers_m, np.arange(float(len(known)))[:, None]]).astype("<f4")
+    component = struct.pack("<Ihh", len(rows), 0, 0) + rows.tobytes()
+    payload = struct.pack("<QIIII", 0, 7, 1, 8 + len(component), 9) + component
+    one.server.send_data(one.server.streaming()[0], payload)
+    (found,) = read(one.source, 1)
+    expected = [np.nan, *(1e-3 * k for k in range(len(known) - 1))]
+    np.testing.assert_allclose(found.residuals_m, expected, rtol=1e-12)
 
 
 def test_labels_of_somebody_else_are_refused_until_the_known_ones_return(laboratory):

@@ -10,7 +10,9 @@ from mbkf.trial.live.log import plates_dtype
 from mbkf.trial.live.recording import MOST_POINTS
 
 FILES = SimpleNamespace(
-    markers=SimpleNamespace(dtype=np.dtype([("number", "<i8"), ("markers", "<f8", (2, 3))])),
+    markers=SimpleNamespace(
+        dtype=np.dtype([("number", "<i8"), ("markers", "<f8", (2, 3)), ("residuals", "<f4", (2,))])
+    ),
     points=SimpleNamespace(),
     samples=SimpleNamespace(dtype=plates_dtype(1)),
 )
@@ -40,6 +42,22 @@ def test_markers_that_are_too_far_away_are_missing():
 def test_points_are_those_that_are_there():
     rows = taken((5, [HERE, HERE], [HERE, GONE, FAR, HERE], []))["points"]
     assert [(row["number"], list(row["point"])) for row in rows] == [(5, HERE), (5, HERE)]
+
+
+def test_residuals_stay_with_their_points():
+    rows = {"markers": [], "points": []}
+    recorder = Recorder(
+        FILES, lambda file, some: rows["markers" if file is FILES.markers else "points"].append(some)
+    )
+    none = PlateSamples(np.zeros(0, dtype=np.int64), np.zeros((0, 1, 6)))
+    markers, points = np.array([HERE, GONE]), np.array([GONE, HERE, FAR, HERE])
+    residuals = 1e-3 * np.arange(6.0)
+    recorder.take(5, SourceFrame(99, 0.0, markers, points, none, residuals_m=residuals), none)
+    recorder.take(6, SourceFrame(99, 0.0, markers, points, none), none)
+    stated, unstated = (row["residuals"][0] for row in rows["markers"])
+    np.testing.assert_allclose(stated, [0.0, 1e-3], rtol=1e-6)
+    np.testing.assert_allclose(rows["points"][0]["residual"], [3e-3, 5e-3], rtol=1e-6)
+    assert np.isnan(unstated).all() and np.isnan(rows["points"][1]["residual"]).all()
 
 
 def test_the_number_of_points_of_a_frame_is_bounded():

@@ -77,7 +77,7 @@ def test_points_without_names_are_recorded(tmp_path, capture, subject):
 def test_a_file_that_cannot_be_written_leaves_the_log_which_makes_it_later(
     tmp_path, capture, subject, monkeypatch
 ):
-    def full(*_):
+    def full(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     stream, frames = frames_of(capture)

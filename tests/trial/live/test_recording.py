@@ -20,8 +20,10 @@ def recorded(folder, numbers, points=(), indices=(), stream=STREAM):
     files = open_recording(folder, stream, Path("walk.c3d"))
     rows = np.zeros(len(numbers), files.markers.dtype)
     rows["number"], rows["markers"] = numbers, np.reshape(numbers, (len(numbers), 1, 1))
+    rows["residuals"] = np.reshape(numbers, (len(numbers), 1))
     bare = np.zeros(len(points), POINT_DTYPE)
     bare["number"], bare["point"] = points, np.arange(len(points))[:, None]
+    bare["residual"] = 0.5 * np.arange(len(points))
     samples = np.zeros(len(indices), files.samples.dtype)
     samples["index"], samples["wrench"] = indices, np.reshape(indices, (len(indices), 1, 1))
     for file, some in zip(files, (rows, bare, samples), strict=True):
@@ -41,6 +43,7 @@ def test_lost_frames_are_gaps_and_time_begins_with_the_first_frame(tmp_path):
     markers, (plate,) = found.capture.markers, found.capture.plates
     assert (markers.names, markers.rate_hz, markers.start_time_s) == (("LASI", "RASI"), 100.0, 0.0)
     np.testing.assert_array_equal(markers.positions_m[:, 1, 2], [7, 8, np.nan, 10])
+    np.testing.assert_array_equal(found.residuals_m[:, 1], [7, 8, np.nan, 10])
     # frame 7 is at 2.07 s; so is sample 70
     assert plate.start_time_s == pytest.approx(0.005) and plate.name == "left"
     np.testing.assert_array_equal(plate.force_n[:, 0], np.arange(75, 105))
@@ -52,6 +55,8 @@ def test_points_without_names_stand_in_columns_in_their_order(tmp_path):
     assert found.capture.markers.names == ("LASI", "RASI", "*1", "*2")
     bare = found.capture.markers.positions_m[:, 2:, 0]
     np.testing.assert_array_equal(bare, [[1, 2], [np.nan, np.nan], [3, np.nan]])
+    np.testing.assert_array_equal(found.residuals_m[:, :2], [[3, 3], [4, 4], [5, 5]])
+    np.testing.assert_array_equal(found.residuals_m[:, 2:], 0.5 * bare)
 
 
 def test_frames_with_all_points_that_fit_are_stated(tmp_path):
