@@ -1,5 +1,6 @@
 """Tasks for workers in tests: quick ones, failing ones, endless ones, and ones that end or stop their worker."""
 
+import gc
 import itertools
 import os
 import signal
@@ -75,3 +76,11 @@ class Fail:
 
     def __call__(self, progress=None):
         raise RuntimeError("nobody foresaw this")
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """States after how many new objects its worker looks for circles."""
+
+    def __call__(self, progress=None):
+        return Outcome(Status.DONE, str(gc.get_threshold()[0]))

@@ -10,17 +10,18 @@ from mbkf.trial.synth import synthesise, write_folder
 SECONDS = 4.0
 
 
-def study(folder: Path, persons: int, trials: int) -> Path:
+def study(folder: Path, persons: int, trials: int, seconds: float = SECONDS) -> Path:
     """Persons P1, P2, … with a standing trial and so many walks each; returns the folder.
 
     Args:
         folder: Where to write.
         persons: How many.
         trials: Walks of each.
+        seconds: Duration of a walk.
     """
     shutil.rmtree(folder, ignore_errors=True)
     made = folder.with_name(f"{folder.name}-walk")
-    subject, walk = synthesise("walk", seconds=SECONDS)
+    subject, walk = synthesise("walk", seconds=seconds)
     write_folder(subject, walk, made)
     for person in range(1, persons + 1):
         own = folder / f"P{person}"

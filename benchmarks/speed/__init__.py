@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from benchmarks.checks import Check, Context, information
 from benchmarks.parts import Part, part_rows
-from benchmarks.speed import bodies, commands, growth, offline, processor_time, start
+from benchmarks.speed import batch_time, bodies, commands, growth, offline, processor_time, start
 from benchmarks.speed.products import Times
 from benchmarks.speed.steps import (
     INVERSE_DYNAMICS,
@@ -54,6 +54,7 @@ PARTS: dict[str, Part] = {
     "growth": lambda _: growth.rows(SECONDS, LEAST_STEPS // 4),
     "bodies": lambda context: bodies.rows(context.data),
     "commands": lambda context: commands.rows(context.out),
+    "batch": lambda context: batch_time.rows(context.out, *((1, 2) if context.quick else ())),
     "start": lambda context: start.rows(context.out),
     "processor": processor_time.rows,
     "offline": lambda context: offline.rows(context.out, context.minutes),

@@ -56,15 +56,15 @@ def rows(folder: Path, minutes: float | None = None) -> list[Check]:
     checks: list[Check] = []
     for motion in MOTIONS:
         trial = _written(folder / motion, motion, 100.0, 1.0)
-        before = _product_s()
+        before = product_s()
         smoothed, causal = (_reconstructed(trial, option) for option in ("--smooth", "--causal"))
-        product_s = min(before, _product_s())
-        in_products = smoothed.seconds / smoothed.frames / product_s
+        product = min(before, product_s())
+        in_products = smoothed.seconds / smoothed.frames / product
         checks += [
             Check(f"reconstruct, 60 s {motion}, a frame", smoothed.frame_ms, FRAME_MS, "<=", "ms"),
             Check("… in products", in_products, FRAME_P, "<=", "P"),
             Check("… causal", causal.frame_ms, CAUSAL_MS, "<=", "ms"),
-            information("… causal, in products", causal.seconds / causal.frames / product_s, "P"),
+            information("… causal, in products", causal.seconds / causal.frames / product, "P"),
         ]
     return checks + long_rows(folder, LONG_MINUTES)
 
@@ -148,6 +148,6 @@ def _frames(trial: Path) -> int:
     return read_capture(trial).markers.frames
 
 
-def _product_s() -> float:
+def product_s() -> float:
     """P on a single thread: the median of many."""
     return float(np.median([product_seconds() for _ in range(PRODUCTS)]))

@@ -7,6 +7,7 @@ so that it soon writes its first sign.
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import signal
@@ -23,6 +24,9 @@ BEAT_S = 1.0
 
 PROGRESS_S = 0.2
 """Shortest time between two messages about a stage."""
+
+GARBAGE_AFTER = 50_000
+"""New objects after which Python looks for circles among them, as in a command: what libraries make stays."""
 
 BEAT = None
 """A sign of life, among the messages."""
@@ -79,6 +83,7 @@ def answer(packed: bytes, line: Line) -> object:
 
 def main() -> None:
     """Does tasks until the input closes."""
+    gc.set_threshold(GARBAGE_AFTER)
     signal.signal(
         signal.SIGINT, signal.SIG_IGN
     )  # Ctrl-C reaches all processes of a terminal; the parent decides

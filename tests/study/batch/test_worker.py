@@ -10,9 +10,9 @@ import pytest
 from mbkf.study.batch import worker as module
 from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.progress import Progress
-from mbkf.study.batch.worker import BEAT, Line, answer
+from mbkf.study.batch.worker import BEAT, GARBAGE_AFTER, Line, answer
 from mbkf.study.batch.worker_process import PROGRAM
-from tests.batch_tasks import Answer, Fail
+from tests.batch_tasks import Answer, Fail, Threshold
 from tests.waiting import PATIENCE_S
 
 
@@ -66,3 +66,13 @@ def test_a_task_comes_in_and_its_outcome_goes_out_until_the_input_closes(tmp_pat
             assert found == Outcome(Status.DONE, str(number))
         process.stdin.close()
         assert process.wait(PATIENCE_S) == 1
+
+
+def test_circles_among_what_libraries_made_are_not_looked_for_in_every_task():
+    words = [sys.executable, "-c", PROGRAM]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        pickle.dump(pickle.dumps(Threshold()), process.stdin)
+        process.stdin.flush()
+        while (found := pickle.load(process.stdout)) is BEAT:
+            pass
+        assert found == Outcome(Status.DONE, str(GARBAGE_AFTER))
