@@ -35,9 +35,6 @@ LEAST, MOST = 0.1, 3.0
 EXPECTED_FRAMES = 2.0
 """So many frames the expected spread of a marker counts as."""
 
-NO_CHANNELS = Channels(np.zeros(0), np.zeros(0, dtype=int))
-"""Of a filter that reads nothing but priors."""
-
 
 class Innovations(NamedTuple):
     """A frame's innovations.
@@ -61,7 +58,7 @@ class InnovationSpreads:
     def __init__(self, blocks: Sequence[AnyBlock], dt_s: float) -> None:
         """Args: the filter's blocks, and the time between frames."""
         self._forget = 1.0 - math.exp(-dt_s / MEMORY_S)
-        self._readers: list[tuple[int, AnyBlock, int]] = []
+        self._readers: list[tuple[int, AnyBlock, slice]] = []
         kinds: list[int] = []
         sd: list[Array] = []
         known: list[Array] = []
@@ -73,7 +70,7 @@ class InnovationSpreads:
             sd.append(np.ones(block.quantities) if expected is None else expected)
             known.append(np.full(len(sd[-1]), expected is not None))
             kinds += len(sd[-1]) * [READING_KINDS.index(block.kind)]
-            self._readers.append((number, block, len(sd[-1])))
+            self._readers.append((number, block, slice(first, len(kinds))))
             if block.kind == "markers":
                 self._markers = slice(first, len(kinds))
         self._kinds = np.array(kinds, dtype=np.int32)
@@ -94,12 +91,14 @@ class InnovationSpreads:
             chosen: What the blocks decided.
             said: What they said.
         """
-        read = [self._read(block, chosen[k], said[k], channels) for k, block, channels in self._readers]
-        if not read:
-            return NO_CHANNELS
-        return Channels(
-            np.concatenate([one.mean_square for one in read]), np.concatenate([one.readings for one in read])
-        )
+        mean_square, readings = np.zeros(len(self._kinds)), np.zeros(len(self._kinds), dtype=int)
+        for k, block, own in self._readers:
+            read = block.channels(chosen[k])
+            if read is None and said[k] is not None:
+                read = _whitened(said[k], own.stop - own.start)
+            if read is not None:
+                mean_square[own], readings[own] = read
+        return Channels(mean_square, readings)
 
     def judged(self, before: RunningSpread, read: Channels) -> tuple[Innovations, RunningSpread]:
         """:meth:`innovations` and :meth:`after` together, by the compiled kernel where there is one."""
@@ -129,19 +128,6 @@ class InnovationSpreads:
         """The spreads that a frame's readings leave for the next."""
         return before.followed(read.mean_square, read.readings > 0, self._forget)
 
-    @staticmethod
-    def _read(block: AnyBlock, decision: object, said: Statement, channels: int) -> Channels:
-        """A block's innovations by channel.
-
-        Args:
-            block: The block.
-            decision: What it decided.
-            said: What it said.
-            channels: How many it has.
-        """
-        own = block.channels(decision)
-        return _whitened(said, channels) if own is None else own
-
 
 def _whitened(said: Statement, channels: int) -> Channels:
     """The counted readings of whitened rows, which alternate in threes between the channels, or of information.
@@ -153,9 +139,9 @@ def _whitened(said: Statement, channels: int) -> Channels:
     if isinstance(said, Information):
         first = np.arange(channels) == 0
         return Channels(first * (said.innovation / max(said.readings, 1)), first * said.readings)
-    if isinstance(said, Rows) and said.readings == 3 * channels:
-        y = said.innovation[: said.readings].reshape(channels, 3)
-        return Channels(np.vecdot(y, y) / 3.0, np.full(channels, 3))
+    if isinstance(said, Rows) and said.readings and said.readings % (3 * channels) == 0:
+        y, each = said.innovation[: said.readings].reshape(-1, channels, 3), said.readings // channels
+        return Channels(np.vecdot(y, y).sum(axis=0) / each, np.full(channels, each))
     squares, readings = [0.0] * channels, [0] * channels
     for rows in (said,) if isinstance(said, Rows) else said or ():
         for k, y in enumerate(rows.innovation[: rows.readings].tolist()):

@@ -208,24 +208,31 @@ class ContactFunctions(Protocol):
             force, moment: Spreads about the origins, per component, N and N m.
         """
 
+    @requires("l*longer == w", "longer >= 1")
     def missing_forces(
         self,
         by_position: In[Array, "w n"],
         by_force: In[Array, "w n"],
         lengths: In[Int32Array, "w in 0:n+1"],
+        limits: In[Array, "l longer"],
         held: In[Array, "n 6"],
         known: int,
         mass: float,
         gravity: In[Array, "3"],
+        level: bool,
         /,
-    ) -> Made[Array, "missing: w 3"]:
+    ) -> tuple[Made[Array, "missing: w 3"], Made[Array, "exceeded: l"], Made[Array, "swings: l"]]:
         """Mean forces that act besides weight and contacts over windows that end now, N; 0 where frames are missing.
+
+        Of each limit, the share that all of its windows exceed in one direction, and the largest share of the first.
 
         Args:
             by_position, by_force: Weights of the frames in each window, the latest last.
             lengths: Frames of each window.
+            limits: Force that counts as missing in each window, N.
             held: Centre of mass, m, and force of all contacts, N, by frame.
             known: Number of the latest frames that count.
             mass: Of the body, kg.
             gravity: Acceleration, m/s².
+            level: True where level forces are judged, too, and not the vertical one alone.
         """

@@ -320,6 +320,9 @@ class DynamicReport(StateReport[DynamicState]):
             return np.zeros((0, FEET))
         s, change = self.kalman.settings.errors, _changes(estimate).wrench
         edges = np.zeros((5, 2, 6))
+        bends = None if change is None else change[1]
+        if bends is not None and noise is not None:
+            bends = np.sign(bends) * np.sqrt(np.maximum(bends**2 - (OF_WHITE_NOISE * noise) ** 2, 0.0))
         for foot in (0, 1):
             if foot in free:
                 size = 0.0
@@ -329,14 +332,9 @@ class DynamicReport(StateReport[DynamicState]):
                 edges[foot, foot] = self._edge_n * size * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
             elif contact.contacts[foot] == Contact.AIR:
                 edges[foot, foot] = 0.0 if contact.below is None else contact.below
-            elif change is not None:
+            elif change is not None and bends is not None:
                 edges[foot, foot] = s.frame_share[0] * change[0, foot]
-                bend = change[1, foot]
-                if noise is not None:
-                    bend = np.sign(bend) * np.sqrt(
-                        np.maximum(bend**2 - (OF_WHITE_NOISE * noise[foot]) ** 2, 0.0)
-                    )
-                edges[2 + foot, foot] = s.frame_share[1] * bend
+                edges[2 + foot, foot] = s.frame_share[1] * bends[foot]
         if len(free) == FEET // 6 and contact.free is not None:
             stance = contact.free.stance
             beside, stepped = s.push_share

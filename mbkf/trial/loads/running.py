@@ -106,7 +106,7 @@ class RunningBalance:
         self._by_position = np.array([np.pad(w.by_position, (self._most - len(w), 0)) for w in windows])
         self._by_force = np.array([np.pad(w.by_force, (self._most - len(w), 0)) for w in windows])
         limits_n = [limit.share * self._weight_n / longer for limit in RUNNING_LIMITS for longer in LONGER]
-        self._limits_n = np.array(limits_n)[:, None]
+        self._limits_n = np.array(limits_n).reshape(len(RUNNING_LIMITS), len(LONGER))
         self._kept = np.zeros((4 * self._most, 6))
         self._first = self._after = self._most
         self._bridged, self._held, self._rest = (round(s * rate_hz) for s in (BRIDGE_S, HELD_S, QUIET_S))
@@ -143,18 +143,15 @@ class RunningBalance:
 
     def _judged(self, new: bool) -> RunningLoad:
         """The frame that was kept last; a force is stated anew only if ``new``."""
-        missing_n, fits = self._missing()
-        axes = slice(None) if self._level else slice(2, None)
-        shares = (missing_n[:, axes] / self._limits_n).reshape(len(RUNNING_LIMITS), len(LONGER), -1)
-        # Share of each limit that all of its windows exceed in one direction.
-        whole = np.maximum(shares.min(axis=1), -shares.max(axis=1)).max(axis=1)
-        swing = float(np.abs(shares[HALF, 0]).max())
-        goes_on = whole[HALF:].max() > RELEASE or swing > RELEASE * SWINGS
-        begins = new and goes_on and (whole.max() > 1.0 or swing > SWINGS)
+        missing_n, exceeded, swings = self._missing()
+        swing = swings[HALF]
+        goes_on = max(exceeded[HALF:]) > RELEASE or swing > RELEASE * SWINGS
+        begins = new and goes_on and (max(exceeded) > 1.0 or swing > SWINGS)
         half = HALF * len(LONGER)
-        self._quiet = 0 if goes_on or not fits[half] else self._quiet + 1
+        fits = self._lengths[half] <= self._after - self._first
+        self._quiet = 0 if goes_on or not fits else self._quiet + 1
         return self._stated(
-            missing_n[half] if fits[half] else UNKNOWN_N,
+            missing_n[half] if fits else UNKNOWN_N,
             bool(begins or (self._acting > 0 and self._quiet <= self._rest)),
         )
 
@@ -170,16 +167,24 @@ class RunningBalance:
         self._kept[self._after] = frame
         self._after += 1
 
-    def _missing(self) -> tuple[Array, BoolArray]:
-        """(w, 3) mean forces over all windows that end now, 0 over those (w,) that the frames kept do not fill."""
+    def _missing(self) -> tuple[Array, list[float], list[float]]:
+        """(w, 3) mean forces over all windows that end now, 0 over those that the frames kept do not fill.
+
+        Of each limit, the share that all of its windows exceed in one direction, and the largest share of the first.
+        """
         held, known = self._kept[self._after - self._most : self._after], self._after - self._first
-        fits, kernel = self._lengths <= known, library()
+        kernel = library()
         if kernel is not None:
-            weights = self._by_position, self._by_force, self._lengths
-            return kernel.missing_forces(*weights, held, known, self._mass_kg, GRAVITY), fits
+            weights = self._by_position, self._by_force, self._lengths, self._limits_n
+            found = kernel.missing_forces(*weights, held, known, self._mass_kg, GRAVITY, self._level)
+            return found[0], found[1].tolist(), found[2].tolist()
         required = self._by_position @ held[:, :3] - GRAVITY
         missing_n = self._mass_kg * required - self._by_force @ held[:, 3:]
-        return np.where(fits[:, None], missing_n, 0.0), fits
+        missing_n[self._lengths > known] = 0.0
+        shares = missing_n.reshape(*self._limits_n.shape, 3) / self._limits_n[:, :, None]
+        shares = shares[:, :, slice(None) if self._level else slice(2, None)]
+        exceeded = np.maximum(shares.min(axis=1), -shares.max(axis=1)).max(axis=1)
+        return missing_n, exceeded.tolist(), np.abs(shares[:, 0]).max(axis=1).tolist()
 
 
 class RunningLoads:
