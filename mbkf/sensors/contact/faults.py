@@ -19,7 +19,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.numerics.runs import runs
-from mbkf.sensors.contact.possible import MOST_WEIGHTS, Fault, Faults, impossible
+from mbkf.sensors.contact.possible import MOST_WEIGHTS, Fault, Faults, all_possible, impossible
 
 JUMP_WEIGHTS, JUMP_RATE = 0.5, 1000.0
 """Largest change of a foot's force from one sample to the next, in body weights and in body weights per second."""
@@ -69,7 +69,9 @@ def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) ->
     Returns:
         (S,) one :class:`Fault` per sample.
     """
-    faults = impossible(wrench, weight_n, reach_m)
+    faults = np.zeros(len(wrench), dtype=np.int8)
+    if not all_possible(wrench[:, None], weight_n, np.array([reach_m])):
+        faults = impossible(wrench, weight_n, reach_m)
     if _pulls(wrench, faults, rate_hz, weight_n):
         return np.where(faults == Fault.NOT_A_NUMBER, faults, np.int8(Fault.SIGN))
     if _throws(wrench, rate_hz, weight_n):
@@ -128,11 +130,11 @@ def _never_changes(known: Array) -> bool:
 
 
 def _stuck(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
-    if _never_changes(wrench[faults == NO_FAULT]):
+    same = (wrench[1:] == wrench[:-1]).all(axis=1)
+    if not same.any() or _never_changes(wrench[faults == NO_FAULT]):
         return np.zeros(len(wrench), dtype=bool)
     loaded = np.linalg.norm(wrench[:, :3], axis=1) >= STUCK_WEIGHTS * weight_n
-    same = (wrench[1:] == wrench[:-1]).all(axis=1) & loaded[1:]
-    return _equal(same, max(STUCK_SAMPLES, round(STUCK_S * rate_hz)))
+    return _equal(same & loaded[1:], max(STUCK_SAMPLES, round(STUCK_S * rate_hz)))
 
 
 def _saturated(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
