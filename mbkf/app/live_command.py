@@ -8,6 +8,7 @@ from pathlib import Path
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.session import TrialKind
+from mbkf.stream.discovery import port_number
 from mbkf.study.survey.session import SurveyedSession
 
 LSL, NATNET, QUALISYS, UDP, VICON, XSENS, FILE = "lsl", "natnet", "qualisys", "udp", "vicon", "xsens", "file"
@@ -28,8 +29,6 @@ MISSING = {
     "host": "the address of the camera system's computer is missing",
 }
 """Messages for texts that are missing; others are addresses."""
-
-MOST_PORTS = 65536
 
 
 def live_offer(workspace: Workspace, session: str) -> dict[str, object]:
@@ -125,9 +124,7 @@ def _port(wanted: Mapping[str, object]) -> str:
         InvalidInput: It is not one.
     """
     text = _text(wanted, "port")
-    if text and not (text.isascii() and text.isdigit() and 0 < int(text) < MOST_PORTS):
-        raise InvalidInput(f"'{text}' is not a port; write a number from 1 to {MOST_PORTS - 1}")
-    return f":{text}" if text else ""
+    return f":{port_number(text)}" if text else ""
 
 
 def _needed(wanted: Mapping[str, object], key: str) -> str:

@@ -11,7 +11,7 @@ from mbkf.errors import InvalidInput, MbkfError
 from mbkf.stream.found import FoundStream
 from mbkf.stream.loopback import LOOPBACK
 
-MOST_PORTS = 65536
+LAST_PORT = 65535
 
 LOOK_S = 1.5
 """Streams of other computers answer within a second."""
@@ -78,14 +78,18 @@ def _host_port(place: str, default: int) -> tuple[str, int]:
 
 
 def _port(text: str, default: int) -> int:
-    """The port of a text, the default for an empty one.
+    return port_number(text) if text else default
+
+
+def port_number(text: str) -> int:
+    """The port that a text states.
 
     Raises:
         InvalidInput: It is not one.
     """
-    if text and not (text.isascii() and text.isdigit() and 0 < int(text[:6]) < MOST_PORTS):
-        raise InvalidInput(f"port '{text}' is not a number from 1 to {MOST_PORTS - 1}")
-    return int(text or default)
+    if not (text.isascii() and text.isdigit() and len(text) <= 5 and 0 < int(text) <= LAST_PORT):
+        raise InvalidInput(f"'{text}' is not a port; write a number from 1 to {LAST_PORT}")
+    return int(text)
 
 
 Search = Callable[[str, float, str], list[FoundStream]]
