@@ -199,15 +199,16 @@ def run(args: argparse.Namespace) -> int:
 
 def _imus(args: argparse.Namespace) -> ImuOnBody | None:
     """The sensors that ``--imu`` names."""
-    from mbkf.errors import InvalidInput
+    if not args.imu:
+        from mbkf.errors import InvalidInput
+
+        if args.imu_mounts is not None:
+            raise InvalidInput("--imu-mounts needs the readings; name them with --imu")
+        return None
     from mbkf.io.imu.files import read_imu
     from mbkf.io.imu.mount import read_mounts
     from mbkf.trial.inertial.on_body import ImuOnBody
 
-    if not args.imu:
-        if args.imu_mounts is not None:
-            raise InvalidInput("--imu-mounts needs the readings; name them with --imu")
-        return None
     readings = tuple(one for path in args.imu for one in read_imu(path))
     return ImuOnBody(readings, () if args.imu_mounts is None else read_mounts(args.imu_mounts))
 

@@ -31,7 +31,7 @@ def test_a_reconstruction_loads_nothing_that_it_does_not_use(person, tmp_path):
     words = ["reconstruct", person.trial, "--subject", person.subject, "--out", tmp_path / "out"]
     loaded = loaded_by(code, *words)
     assert {"mbkf.io.c3d", "h5py", "pinocchio", "rich.table"} <= loaded, "it was looked after the work"
-    assert not (UNUSED | {"mbkf.model.urdf_body"}) & loaded
+    assert not (UNUSED | {"mbkf.io.imu.files", "mbkf.model.urdf_body"}) & loaded
 
 
 LISTENING = """\
