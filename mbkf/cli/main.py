@@ -41,7 +41,7 @@ TRACEBACK_VARIABLE = "MBKF_TRACEBACK"
 
 _PYTHONS_FORMAT = warnings.formatwarning
 
-GARBAGE_AFTER = 50_000
+GARBAGE_AFTER = 100_000
 """New objects after which Python looks for circles among them. Its own 700 suit programs whose objects come and go;
 what a command's libraries make while they load stays."""
 

@@ -25,7 +25,7 @@ BEAT_S = 1.0
 PROGRESS_S = 0.2
 """Shortest time between two messages about a stage."""
 
-GARBAGE_AFTER = 50_000
+GARBAGE_AFTER = 100_000
 """New objects after which Python looks for circles among them, as in a command: what libraries make stays."""
 
 BEAT = None
