@@ -26,9 +26,6 @@ class Transition(Protocol):
     def forward(self, vector: Array) -> Array:
         """(N,) Φ times a tangent vector (N,)."""
 
-    def backward(self, gradient: Array) -> Array:
-        """(N,) Φᵀ times a gradient (N,)."""
-
 
 class DenseTransition(NamedTuple):
     """Φ (N, N) as a matrix."""
@@ -42,10 +39,6 @@ class DenseTransition(NamedTuple):
     def forward(self, vector: Array) -> Array:
         """(N,) Φ times a tangent vector (N,)."""
         return self.phi @ vector
-
-    def backward(self, gradient: Array) -> Array:
-        """(N,) Φᵀ times a gradient (N,)."""
-        return gradient @ self.phi
 
 
 class RateTransition(NamedTuple):
@@ -84,15 +77,6 @@ class RateTransition(NamedTuple):
         q[:] = self.A @ position + self.B @ (self.push @ rates)
         v[:] = self.rates @ rates
         return moved
-
-    def backward(self, gradient: Array) -> Array:
-        """(N,) Φᵀ times a gradient (N,)."""
-        before = gradient.copy()
-        position, rates = self._parts(gradient)
-        q, v = self._parts(before)
-        q[:] = position @ self.A
-        v[:] = np.multiply.outer(self.push, position @ self.B) + self.rates.T @ rates
-        return before
 
     def _parts(self, vector: Array) -> tuple[Array, Array]:
         """Views: (nv,) positions and (k, nv) rates of a vector (N,)."""
