@@ -37,19 +37,24 @@ def plausible(estimate: Posterior, model: Body) -> bool:
     return not any(abs(force) > most for force in estimate.wrench[:, :3].ravel().tolist())
 
 
-def moved_away(filtered: Posterior, smoothed: Posterior, model: Body) -> bool:
+def moved_away(filtered: Sequence[Posterior], smoothed: Sequence[Posterior], model: Body) -> bool:
     """True where smoothing moves most joints further than a track may be off, though markers showed the body at once.
 
     Args:
-        filtered: The filter's own estimate.
-        smoothed: The same in the light of later frames.
+        filtered: The filter's own estimates.
+        smoothed: The estimates in the light of later frames, as many.
         model: The body.
     """
-    if not (filtered.tracked and filtered.placed) or filtered.started:
+    pairs = [
+        (own, later)
+        for own, later in zip(filtered, smoothed, strict=True)
+        if own.tracked and own.placed and not own.started
+    ]
+    if not pairs:
         return False
-    places = (model.placements(one.q)[1] for one in (filtered, smoothed))
-    moved = np.linalg.norm(np.subtract(*places), axis=1)
-    return bool(2 * np.count_nonzero(moved > TRACK_LOSS_M) > len(moved))
+    places = np.array([[model.placements(one.q)[1] for one in pair] for pair in pairs])
+    moved = np.linalg.norm(places[:, 0] - places[:, 1], axis=-1) > TRACK_LOSS_M
+    return bool((2 * np.count_nonzero(moved, axis=1) > moved.shape[1]).any())
 
 
 def smoothed_or_filtered(
@@ -65,8 +70,7 @@ def smoothed_or_filtered(
     try:
         with np.errstate(all="ignore"):  # the result is checked
             found = list(smooth())
-            pairs = zip(filtered, found, strict=True)
-            if all(plausible(b, model) and not moved_away(a, b, model) for a, b in pairs):
+            if all(plausible(one, model) for one in found) and not moved_away(filtered, found, model):
                 return found
     except np.linalg.LinAlgError:
         pass

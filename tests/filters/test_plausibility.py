@@ -53,12 +53,19 @@ def test_a_body_is_elsewhere_when_most_joints_are_though_markers_showed_it():
     away, arm = estimate.q.copy(), estimate.q.copy()
     away[1] += 0.11
     arm[model.joint("left_upper_arm").q] = [1.0, 0.0, 0.0, 0.0]
-    assert moved_away(estimate, estimate._replace(q=away), model)
-    assert not moved_away(estimate, estimate._replace(q=arm), model)
-    assert not moved_away(estimate._replace(tracked=False), estimate._replace(q=away), model)
-    assert not moved_away(estimate._replace(placed=False), estimate._replace(q=away), model)
+
+    def astray(q, **known):
+        """In the second of three frames."""
+        own, later = estimate._replace(**known), estimate._replace(q=q)
+        return moved_away([estimate, own, estimate], [estimate, later, estimate], model)
+
+    assert astray(away)
+    assert not astray(arm)
+    for known in ({"tracked": False}, {"placed": False}, {"started": True}):
+        assert not astray(away, **known)
+        assert not moved_away([estimate._replace(**known)], [estimate._replace(q=away)], model)
     away[1] -= 0.02
-    assert not moved_away(estimate, estimate._replace(q=away), model)
+    assert not astray(away)
 
 
 def test_all_of_a_window_is_the_filter_s_own_where_one_frame_is_implausible():
