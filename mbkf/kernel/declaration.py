@@ -25,7 +25,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-FILES = ("body_functions.py", "contact_functions.py", "force_functions.py", "state_functions.py")
+FILES = (
+    "body_functions.py",
+    "contact_functions.py",
+    "force_functions.py",
+    "smoothing_functions.py",
+    "state_functions.py",
+)
 """The declarations, in the kernel's folder, in the order in which they use one another."""
 
 Declared = TypeVar("Declared", bound=Callable[..., object])

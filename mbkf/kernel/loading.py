@@ -13,6 +13,7 @@ from mbkf.kernel.body_functions import BodyFunctions
 from mbkf.kernel.contact_functions import ContactFunctions
 from mbkf.kernel.declaration import fingerprint
 from mbkf.kernel.force_functions import ForceFunctions
+from mbkf.kernel.smoothing_functions import SmoothingFunctions
 from mbkf.kernel.state_functions import StateFunctions
 
 SWITCH = "MBKF_KERNEL"
@@ -21,7 +22,7 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(BodyFunctions, ContactFunctions, ForceFunctions, StateFunctions, Protocol):
+class Library(BodyFunctions, ContactFunctions, ForceFunctions, SmoothingFunctions, StateFunctions, Protocol):
     """The functions of the compiled kernel."""
 
 

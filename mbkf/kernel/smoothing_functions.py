@@ -1,0 +1,102 @@
+"""Functions of the compiled kernel on a smoother's backward pass (grammar: ``declaration.py``)."""
+
+from __future__ import annotations
+
+from typing import Annotated as In
+from typing import Annotated as Made
+from typing import Annotated as Out
+from typing import Protocol
+
+from mbkf.conventions import Array, Int32Array
+from mbkf.kernel.declaration import requires
+
+
+class SmoothingFunctions(Protocol):
+    """Gradient and curvature of later readings (``smoothing.c``)."""
+
+    @requires("nv + orders*nv <= N")
+    def curvature_before_motion(
+        self,
+        L: In[Array, "N N symmetric"],
+        A: In[Array, "nv nv"],
+        B: In[Array, "nv nv"],
+        joints: In[Int32Array, "J 2 in 0:nv+1"],
+        push: In[Array, "orders"],
+        rates: In[Array, "orders orders"],
+        before: Out[Array, "N N symmetric"],
+        /,
+    ) -> None:
+        """Writes Φᵀ L Φ with the transition Φ of :mod:`mbkf.numerics.transition`.
+
+        Args:
+            L: Curvature after the step.
+            A, B: Derivatives of the next configuration by this one and by the step.
+            joints: First dof and end of each joint.
+            push: Step's share of each order of rates.
+            rates: Transition of the rates of a dof.
+            before: Curvature before the step.
+        """
+
+    @requires("nv + orders*nv <= N", "n <= N")
+    def gradient_before(
+        self,
+        P: In[Array, "N N symmetric"],
+        gradient: In[Array, "N"],
+        vector: In[Array, "N"],
+        information: In[Array, "n n symmetric"],
+        rows: In[Array, "m N"],
+        A: In[Array, "nv nv"],
+        B: In[Array, "nv nv"],
+        joints: In[Int32Array, "J 2 in 0:nv+1"],
+        push: In[Array, "orders"],
+        rates: In[Array, "orders orders"],
+        /,
+    ) -> tuple[Made[Array, "step: N"], Made[Array, "before: N"]]:
+        """−P g and Φᵀ (g − λ − Λ P (g − λ)) for a gradient g of later readings.
+
+        Args:
+            P: Posterior covariance.
+            gradient: g after the readings.
+            vector: λ of the readings.
+            information: Part of Λ on the first n components.
+            rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
+            A, B, joints, push, rates: Φ, as :meth:`curvature_before_motion` takes it.
+        """
+
+    def smoothed_covariance(
+        self,
+        P: In[Array, "N N symmetric"],
+        L: In[Array, "N N symmetric"],
+        smoothed: Out[Array, "N N symmetric"],
+        PL: Out[Array, "N N"],
+        /,
+    ) -> None:
+        """Writes P − P L P and P L.
+
+        Args:
+            P: Posterior covariance.
+            L: Curvature of later readings.
+            smoothed: Smoothed covariance.
+            PL: Product that :meth:`curvature_before_readings` takes.
+        """
+
+    @requires("n <= N")
+    def curvature_before_readings(
+        self,
+        L: In[Array, "N N symmetric"],
+        smoothed: In[Array, "N N symmetric"],
+        PL: In[Array, "N N"],
+        information: In[Array, "n n symmetric"],
+        rows: In[Array, "m N"],
+        before: Out[Array, "N N symmetric"],
+        /,
+    ) -> None:
+        """Writes L + Λ − Z Λ − (Z Λ)ᵀ with Z = L P + Λ S / 2, S the smoothed covariance.
+
+        Args:
+            L: Curvature after the readings.
+            smoothed, PL: Those of :meth:`smoothed_covariance`.
+            information: Part of Λ on the first n components.
+            rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
+            before: Curvature before the readings.
+        """
