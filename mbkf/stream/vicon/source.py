@@ -53,7 +53,7 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
         """
         super().__init__("Vicon")
         rotation_to_world(up or "z")
-        self._place, self._pull = (host, port, answer_s), pull
+        self._place, self._answer_s, self._pull = (host, port), answer_s, pull
         self._up, self._person = up, person
         self._objects: dict[int, list[bytes]] = {}
         self._forces: dict[int, int] = {}
@@ -116,7 +116,7 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
                 return None
 
     def _open(self) -> ViconClient:
-        return ViconClient(*self._place)
+        return ViconClient(*self._place, self._answer_s)
 
     def _resume(self, client: ViconClient) -> None:
         """Asks for all frames; where each one is asked for, that happens when it is waited for."""
