@@ -47,6 +47,7 @@ from mbkf.cli.options import (
 from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
+    from mbkf.io.capture_pieces import CapturePieces
     from mbkf.io.results_folder import Summary
     from mbkf.io.verdict import VerdictTold
     from mbkf.trial.inertial.on_body import ImuOnBody
@@ -155,6 +156,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
+    from mbkf.trial.long.reconstruct import reconstruct_long
     from mbkf.trial.preparation.settings import ReconstructSettings
     from mbkf.trial.reconstruct import reconstruct
     from mbkf.trial.results.summary import summarise
@@ -163,15 +165,17 @@ def run(args: argparse.Namespace) -> int:
     hide = tuple(parse_hide(text) for text in args.hide)
     subject = read_subject(args.subject)
     without = tuple(args.without_plate)
-    capture = read_capture(
-        args.trial,
-        forces=args.forces,
-        unneeded_plates=without,
-        emg=args.emg,
-        emg_offset_s=args.emg_offset,
-        **axes_options(args),
-    )
     truth = truth_beside(args.trial)
+    pieces = _pieces(args) if truth is None else None
+    if pieces is None:
+        capture = read_capture(
+            args.trial,
+            forces=args.forces,
+            unneeded_plates=without,
+            emg=args.emg,
+            emg_offset_s=args.emg_offset,
+            **axes_options(args),
+        )
     folder, imus = check_folder(args.out, RESULT_FILES), _imus(args)
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
@@ -190,11 +194,24 @@ def run(args: argparse.Namespace) -> int:
     )
     settings = with_chosen(settings, args)
     with stages() as report:
-        result = reconstruct(capture, subject, settings=settings, imus=imus, progress=report)
-    summary = summarise(result, truth)
-    write_reconstruction(result, summary, folder)
+        if pieces is not None:
+            summary = reconstruct_long(pieces, subject, folder, settings=settings, progress=report)
+        else:
+            result = reconstruct(capture, subject, settings=settings, imus=imus, progress=report)
+    if pieces is None:
+        summary = summarise(result, truth)
+        write_reconstruction(result, summary, folder)
     print_summary(summary, folder)
     return strict_exit(args, summary["verdict"])
+
+
+def _pieces(args: argparse.Namespace) -> CapturePieces | None:
+    """The capture as one that is reconstructed in pieces; None for one that is reconstructed whole."""
+    from mbkf.trial.long.choice import long_capture
+
+    if args.forces is not None or args.emg is not None or args.imu:
+        return None
+    return long_capture(args.trial, tuple(args.without_plate), **axes_options(args))
 
 
 def _imus(args: argparse.Namespace) -> ImuOnBody | None:

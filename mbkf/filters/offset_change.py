@@ -50,20 +50,23 @@ CHANGES = tuple(f"{name}_change" for name in ReadRoots._fields)
 class OffsetChanges:
     """Changes of the offsets of a trial."""
 
-    def __init__(self, body: BodyErrors, clinical: ClinicalAngles, dt_s: float) -> None:
+    def __init__(
+        self, body: BodyErrors, clinical: ClinicalAngles, dt_s: float, room: int = KEPT_BYTES
+    ) -> None:
         """Makes it.
 
         Args:
             body: The errors by the body.
             clinical: The clinical coordinates.
             dt_s: Time between frames.
+            room: Memory for roots; others are worked out twice.
         """
         self._body, self._clinical, self._dt_s = body, clinical, dt_s
         self._latest: BodyErrorRoots | None = None
         self._begins: list[int] = []
         self._sums: list[Array] = []
         self._kept: dict[int, ReadRoots] = {}
-        self._room = KEPT_BYTES
+        self._room = room
 
     def follow(self, number: int, q: Array, roots: BodyErrorRoots) -> None:
         """Takes the roots of a frame; frames of a stretch share one object, and its first one counts.
@@ -92,20 +95,24 @@ class OffsetChanges:
             if stretches.begins(int(rows["number"][t]), bool(rows["started"][t])):
                 self.follow(int(t), rows["q"][t], roots_again(self._body, rows[t]))
 
-    def added_to(self, track: Track, rows: NDArray) -> Track:
-        """The trial with the standard deviations of changes about their mean; NaN in frames without an estimate.
+    def added_to(self, track: Track, rows: NDArray, begin: int = 0) -> Track:
+        """The trial, or a part of it, with the standard deviations of changes about their mean over the trial.
+
+        They are NaN in frames without an estimate, and at the beginning of a part until the next roots.
 
         Args:
-            track: The trial; it is not changed.
+            track: The trial or the part; it is not changed.
             rows: (T,) records of all its frames, with those that were followed (:mod:`mbkf.filters.record`).
+            begin: Number of the part's first frame.
         """
-        if not self._begins:
+        begins = [one - begin for one in self._begins if 0 <= one - begin < len(rows)]
+        if not begins:
             return track
         means = [(total / len(self._begins)).astype(np.float32) for total in self._sums]
         found = [np.full((len(rows), len(mean)), np.nan, np.float32) for mean in means]
-        for first, end in zip(self._begins, [*self._begins[1:], len(rows)], strict=True):
+        for first, end in zip(begins, [*begins[1:], len(rows)], strict=True):
             stretch = first + np.flatnonzero(rows["known"][first:end])
-            roots = self._kept.get(first) or self._read(
+            roots = self._kept.get(begin + first) or self._read(
                 rows["q"][first], roots_again(self._body, rows[first])
             )
             for changes, root, mean in zip(found, roots, means, strict=True):

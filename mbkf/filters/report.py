@@ -121,6 +121,14 @@ class StateReport(ABC, Generic[StateT]):
         befores = [None, *states]
         return [self.moved(*one) for one in zip(run, states, befores, strict=False)]
 
+    def kept(self, estimate: Posterior) -> Posterior:
+        """An estimate that waits for later frames, without what neither smoothing nor going on from it reads.
+
+        Args:
+            estimate: The filter's own.
+        """
+        return estimate
+
     def smoothed_states(self, run: Sequence[Posterior], wanted: int, back: BackwardPass) -> list[StateT]:
         """The first ``wanted`` states of a run by one linear pass from its end.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,13 @@ from mbkf.filters.contact_opening import ContactWatch
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
-from mbkf.filters.offset_change import OffsetChanges
+from mbkf.filters.offset_change import KEPT_BYTES, OffsetChanges
 from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import TrackingLoop, followed
+from mbkf.io.limb_doubts import LimbDoubt
+from mbkf.io.paged import PagedArray
 from mbkf.io.quantities import LATER, quantities, unknown
 
 
@@ -53,13 +55,77 @@ def track(
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    recorder = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads, levels=True)
-    frames = len(recording)
-    changes = None if body is None else OffsetChanges(body, filter.clinical, filter.dt_s)
-    rows = blank(recorder.dtype, frames)
-    rows["number"] = np.arange(frames)
-    size = 2 * filter.model.nv
+    frames, size = len(recording), 2 * filter.model.nv
     covariance = np.full((frames, size, size), np.nan) if keep_covariance else None
+    recorder = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads, levels=True)
+    rows = numbered_rows(recorder.dtype, 0, frames)
+    settled = fill(
+        rows,
+        recorder,
+        recording,
+        smoothing=smoothing,
+        lag_s=lag_s,
+        body=body,
+        progress=progress,
+        contacts=contacts,
+        covariance=covariance,
+    )
+    found = track_of(rows, smoothed=smoothing is not None, covariance=covariance)
+    found = replace(found, limb_doubts=settled.limb_doubts)
+    return found if settled.changes is None else settled.changes.added_to(found, rows)
+
+
+class Settled(NamedTuple):
+    """Findings on a trial that are complete when its last frame is.
+
+    Attributes:
+        limb_doubts: Stretches in which a limb was in doubt.
+        changes: Roots of the errors by the body; None where these are not known.
+    """
+
+    limb_doubts: tuple[LimbDoubt, ...]
+    changes: OffsetChanges | None
+
+
+def numbered_rows(dtype: np.dtype, first: int, after: int) -> NDArray:
+    """Blank records of the frames ``first`` to ``after``, that one excluded."""
+    rows = blank(dtype, after - first)
+    rows["number"] = np.arange(first, after)
+    return rows
+
+
+def fill(
+    rows: NDArray | PagedArray,
+    recorder: FrameRecorder,
+    recording: Recording,
+    *,
+    smoothing: SmoothingSettings | None,
+    lag_s: float,
+    body: BodyErrors | None,
+    progress: Callable[[int, int], None] | None,
+    contacts: ContactWatch | None,
+    covariance: Array | None = None,
+    kept_bytes: int = KEPT_BYTES,
+) -> Settled:
+    """Runs a filter over all frames and fills their records.
+
+    Args:
+        rows: (T,) blank records of the recorder's type with the frames' numbers; they are filled.
+        recorder: Fills a record, and knows the filter.
+        recording: What the instruments read; its arrays may be paged (:class:`mbkf.io.paged.PagedArray`).
+        smoothing: How to smooth; None for the filter alone.
+        lag_s: Without smoothing, how far later readings may correct a frame.
+        body: What estimates err by because the person's body is not known exactly; None where that is not known.
+        progress: Called with frames done and frames in all.
+        contacts: Without smoothing, opens contacts of other parts than the feet on the way.
+        covariance: (T, 2 nv, 2 nv) receives the full covariances; None: they are not kept.
+        kept_bytes: Memory for roots of the errors by the body; others are worked out twice.
+
+    Raises:
+        NotObservable: In no frame do the markers fit the body.
+    """
+    filter, frames, started = recorder.filter, len(recording), False
+    changes = None if body is None else OffsetChanges(body, filter.clinical, filter.dt_s, kept_bytes)
 
     def keep(found: Sequence[tuple[int, Posterior]]) -> None:
         for t, posterior in found:
@@ -79,28 +145,29 @@ def track(
         row = rows[t : t + 1]
         recorder.step(row, fresh, seconds)
         recorder.innovation(row, fresh)
+        started = started or fresh.started
         keep(later.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
-    if not rows["started"].any():
+    if not started:
         raise NotObservable(
             "in no frame do the markers fit the scaled body; is this the subject's protocol, "
             "and are unit and axes right (--unit, --up)?"
         )
     keep(later.finish())
-    found = track_of(rows, smoothed=smoothing is not None, covariance=covariance)
-    if loop.watch is not None:
-        found = replace(found, limb_doubts=tuple(loop.watch.doubts))
-    return found if changes is None else changes.added_to(found, rows)
+    return Settled(() if loop.watch is None else tuple(loop.watch.doubts), changes)
 
 
-def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = None) -> Track:
+def track_of(
+    rows: NDArray, smoothed: bool = False, covariance: Array | None = None, decides: bool | None = None
+) -> Track:
     """The trial of a table of records.
 
     Args:
         rows: (T,) records of its frames (:mod:`mbkf.filters.record`).
         smoothed: Whether it was smoothed.
         covariance: (T, 2 nv, 2 nv) full covariances, where they were kept.
+        decides: Whether the filter decides what the feet stand on; None: the records show it.
     """
     logged = {name: one for name, one in quantities(Track).items() if one.key in (rows.dtype.names or ())}
     values: dict[str, Any] = {name: np.array(rows[one.key]) for name, one in logged.items()}
@@ -114,7 +181,8 @@ def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = N
         if one.change_of:
             values[name] = np.where(np.isnan(values[one.change_of]), np.nan, np.float32(0.0))
     asked = rows["footing"][:, 0] != UNASKED
-    values["foot_contact"] = np.where(asked[:, None], rows["footing"], 0) if asked.any() else None
+    decides = bool(asked.any()) if decides is None else decides
+    values["foot_contact"] = np.where(asked[:, None], rows["footing"], 0) if decides else None
     values.setdefault("uncorrected", np.zeros(len(rows), dtype=bool))  # older logs lack it
     return Track(
         **values,

@@ -182,6 +182,10 @@ class TrackingFilter:
         a[mend.dofs] = 0.0
         return found._replace(a=a, started=True, tracked=True, lost=False)
 
+    def kept(self, estimate: Posterior) -> Posterior:
+        """An estimate that waits for later frames, without what neither smoothing nor going on from it reads."""
+        return self.report_of(estimate).kept(estimate)
+
     def innovations(self, estimate: Posterior) -> Innovations | None:
         """Innovations of an estimate's frame against their expected spread; None at a start."""
         step = estimate.record.step

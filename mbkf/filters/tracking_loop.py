@@ -201,6 +201,7 @@ def followed(
             while kept and kept[0][0] < min(earliest(), t) - 1:
                 kept.popleft()
             if fresh is not None:
+                fresh = loop.filter.kept(fresh)
                 kept.append((t, fresh))
         if fresh is not None:
             yield t, fresh, time.perf_counter() - begin

@@ -15,7 +15,7 @@ from mbkf.io.axes import (
     up_axis,
 )
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
-from mbkf.io.c3d_decode import decode
+from mbkf.io.c3d_decode import C3dContent, decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_person import stated_mass
@@ -43,11 +43,27 @@ def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
         UnknownName: Unknown axis or unit.
     """
     path = Path(path)
-    content = decode(path, check_layout(path))
+    return capture_of(path, decode(path, check_layout(path)), options)
+
+
+def capture_of(path: Path, content: C3dContent, options: CaptureOptions, first: int = 0) -> Capture:
+    """The capture that a decoded file, or a part of one, makes.
+
+    Args:
+        path: The file.
+        content: Its content.
+        options: Options of the reader.
+        first: The part's first frame, counted from 0; it begins later by so much.
+
+    Raises:
+        FileFormatError: The file states no frame rate.
+        InvalidInput: The length unit cannot be right.
+        UnknownName: Unknown axis or unit.
+    """
     parameters = content.parameters
     mass_kg = stated_mass(parameters)
     rate_hz = single_precision(content.rate_hz)
-    start_s = max(content.first_frame - 1, 0) / rate_hz
+    start_s = (max(content.first_frame - 1, 0) + first) / rate_hz
 
     notes = list(content.notes)
     stated = StatedUnit("POINT:UNITS", parameters.text("POINT", "UNITS"), "mm")

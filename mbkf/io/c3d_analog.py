@@ -18,7 +18,7 @@ from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.plate_table import plate_with_corners
 from mbkf.io.readable_plates import NO_CHANNELS, readable_plates
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
-from mbkf.io.wrench import require_finite
+from mbkf.io.wrench import PlateWay, require_finite
 from mbkf.numerics.printed import percent
 
 _NO_ORIGIN = (
@@ -172,7 +172,7 @@ def plate_readings(
         unit: The file's length unit.
         up: Axis of the file that points up.
         start_time_s: Time of the first sample in s.
-        options: Removal of the offset, and threshold of the centre of pressure.
+        options: Removal of the offset, and threshold of the centre of pressure; knows or receives the plate's way.
         notes: Receives offsets removed and doubts about the plate.
 
     Raises:
@@ -180,13 +180,16 @@ def plate_readings(
     """
     rotation = rotation_to_world(up)
     corners = (rotation @ plate.corners * METRES_PER_UNIT[unit]).T
+    known = None if options.ways is None else options.ways.get(str(plate.number))
     with np.errstate(all="ignore"):  # numbers that overflow are refused below
-        wrench = wrench_at_surface(plate, unit, notes)
+        wrench, origin, factor = wrench_at_surface(plate, unit, notes, known)
         wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
     name = f"force plate {plate.number}"
     require_finite(wrench[:, :3], wrench[:, 3:], plate.rate_hz, start_time_s, f"{path}, {name}")
     record = str(plate.number), plate.rate_hz, start_time_s
-    found, tare = plate_with_corners(*record, corners, wrench, options)
+    found, tare = plate_with_corners(*record, corners, wrench, options, None if known is None else known.tare)
+    if options.ways is not None:
+        options.ways[str(plate.number)] = PlateWay(origin, factor, tare)
     if options.tare and not tare.found:
         notes.append(f"{name} is loaded all the time; no offset removed")
     elif abs(tare.offset[2]) >= 0.5:

@@ -101,23 +101,24 @@ class C3dContent:
     notes: tuple[str, ...] = ()
 
 
-def decode(path: Path, layout: C3dLayout) -> C3dContent:
+def decode(path: Path, layout: C3dLayout, stretches: Sequence[tuple[int, int]] | None = None) -> C3dContent:
     """Decodes a file whose layout was checked.
+
+    Args:
+        path: The file.
+        layout: The header's counts.
+        stretches: First frame and the one after the last, from 0, of the stretches to decode, one after the other; None
+            for the whole file.
 
     Raises:
         FileFormatError: The data do not fit the layout.
     """
     processor = Processor(layout.processor)
-    values = values_of(layout.section.groups, layout.section.records, processor)
-    without_plates = bool(values.get(_PLATES)) and layout.section.may_lack(_PLATES, PLATE_GEOMETRY)
-    parameters = C3dParameters(values | {_PLATES: {}} if without_plates else values)
+    parameters, without_plates = _parameters(layout, processor)
     shape = data_layout(path, layout, parameters)
-    frames, width = shape.frames, 4 * layout.points + shape.analog_per_frame
-    with opened(path) as file:
-        header = file.read(BLOCK_BYTES)
-        file.seek((layout.data_block - 1) * BLOCK_BYTES)
-        data = file.read(frames * width * layout.bytes_per_number)
-        rest = file.read()
+    width = 4 * layout.points + shape.analog_per_frame
+    header, data, rest = _bytes(path, layout, stretches or ((0, shape.frames),), width, stretches is None)
+    frames = shape.frames if stretches is None else sum(after - first for first, after in stretches)
     whole = layout.bytes_per_number == 2
     numbers = (processor.integers(data) if whole else processor.floats(data)).reshape(frames, width)
     corners = numbers[:, : 4 * layout.points].reshape(frames, layout.points, 4)
@@ -136,7 +137,7 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         corners[:, :, 3],
         analogs,
         rate_hz,
-        _first_frame(layout, parameters, frames),
+        _first_frame(layout, parameters, shape.frames),
         _header_events(header, processor),
         (
             *layout.notes,
@@ -147,6 +148,39 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
             *([_NO_PLATES] if without_plates else []),
         ),
     )
+
+
+def frames_stated(path: Path, layout: C3dLayout) -> int | None:
+    """Number of frames of a file, from its header, parameters and size; None where its data have to show it.
+
+    Raises:
+        FileFormatError: The data do not fit the layout.
+    """
+    parameters, _ = _parameters(layout, Processor(layout.processor))
+    shape = data_layout(path, layout, parameters)
+    return None if shape.guessed else shape.frames
+
+
+def _parameters(layout: C3dLayout, processor: Processor) -> tuple[C3dParameters, bool]:
+    """The parameters, and True where those of force plates are left out, since damage may have taken some."""
+    values = values_of(layout.section.groups, layout.section.records, processor)
+    without_plates = bool(values.get(_PLATES)) and layout.section.may_lack(_PLATES, PLATE_GEOMETRY)
+    return C3dParameters(values | {_PLATES: {}} if without_plates else values), without_plates
+
+
+def _bytes(
+    path: Path, layout: C3dLayout, stretches: Sequence[tuple[int, int]], width: int, to_end: bool
+) -> tuple[bytes, bytes, bytes]:
+    """The header, the frames of stretches, and what follows the last one if it is read ``to_end``."""
+    size = width * layout.bytes_per_number
+    begin = (layout.data_block - 1) * BLOCK_BYTES
+    with opened(path) as file:
+        header, data = file.read(BLOCK_BYTES), []
+        for first, after in stretches:
+            file.seek(begin + first * size)
+            data.append(file.read((after - first) * size))
+        rest = file.read() if to_end else b""
+    return header, data[0] if len(data) == 1 else b"".join(data), rest
 
 
 def _unread(rest: bytes, frame_bytes: int) -> Iterator[str]:

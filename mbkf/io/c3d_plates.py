@@ -20,6 +20,7 @@ Types 11, 12 and 21 are stairs and treadmills of single makers, of which no desc
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,6 +38,7 @@ from mbkf.io.c3d_origin import (
     turned_by_pressure,
 )
 from mbkf.io.plate_corners import has_area, plate_axes, plate_sides
+from mbkf.io.wrench import PlateWay
 
 CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6, 5: 8, 6: 12, 7: 8}
 """Number of analog channels of each plate type that can be read."""
@@ -113,17 +115,34 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
         )
 
 
-def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str]) -> Array:
-    """(S, 6) force in N and moment in N m of a plate on the body, about the centre of its surface, in the file's axes.
+class SurfaceWrench(NamedTuple):
+    """Readings about the middle of a plate's surface, in the file's axes, and the way to them.
+
+    Attributes:
+        wrench: (S, 6) force in N and moment in N m on the body.
+        origin_m: (3,) ORIGIN with the signs that were used.
+        factor: Factor of the moments.
+    """
+
+    wrench: Array
+    origin_m: Array
+    factor: float
+
+
+def wrench_at_surface(
+    plate: RawPlate, unit: str, notes: list[str], known: PlateWay | None = None
+) -> SurfaceWrench:
+    """Force and moment of a plate on the body, about the centre of its surface.
 
     Args:
         plate: The plate, checked.
         unit: The file's length unit, in which moments are N times that unit unless they state their own.
         notes: Receives remarks on moments in another unit, which is known by where they would press, and on an ORIGIN
             of another sign.
+        known: Signs of ORIGIN and factor of the moments, where they are known; None: the readings show them.
     """
-    metre, name = METRES_PER_UNIT[unit], f"force plate {plate.number}"
-    origin = turned_by_depth(plate.origin * metre, name, notes)
+    metre, name, factor = METRES_PER_UNIT[unit], f"force plate {plate.number}", 1.0
+    origin = turned_by_depth(plate.origin * metre, name, notes) if known is None else known.origin_m
     values, units = plate.readings, plate.units
     if plate.kind in CALIBRATION_OF_TYPE:
         assert plate.calibration is not None  # check_geometry has seen to it
@@ -142,9 +161,10 @@ def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str]) -> Array:
         force = values[:, :3] * _forces(units[:3])
         moment = values[:, 3:] * _moments(units[3:], metre)
         half_sides_m = 0.25 * metre * np.linalg.norm(plate_sides(plate.corners.T), axis=1)
-        origin = turned_by_pressure(origin, force, moment, half_sides_m, name, notes)
+        if known is None:
+            origin = turned_by_pressure(origin, force, moment, half_sides_m, name, notes)
         shift = np.cross(force, origin)
-        factor = _unit_factor(force, moment, shift, half_sides_m)
+        factor = _unit_factor(force, moment, shift, half_sides_m) if known is None else known.factor
         if factor != 1.0:
             notes.append(
                 f"{name}: moments are taken {factor:g} times as large as their unit says, since the centre of "
@@ -152,7 +172,7 @@ def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str]) -> Array:
             )
         moment = factor * moment + shift
     axes = plate_axes(plate.corners.T)
-    return np.hstack([force @ axes.T, moment @ axes.T])
+    return SurfaceWrench(np.hstack([force @ axes.T, moment @ axes.T]), origin, factor)
 
 
 def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, PlateWay
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +22,8 @@ class CaptureOptions:
         shared_up: Axis with which markers were read that share their axes with the ground reactions; None otherwise.
         notes: Receives the remarks of a reader of ground reactions.
         left_out: Receives the plates that cannot be read, with the reason.
+        ways: Ways to read the plates of a C3D file, by their names; receives those that it lacks, so that all parts of
+            a file are read alike. None: the readings show them.
     """
 
     up: str | None = None
@@ -34,3 +36,4 @@ class CaptureOptions:
     shared_up: str | None = None
     notes: list[str] = field(default_factory=list, compare=False)
     left_out: dict[str, str] = field(default_factory=dict, compare=False)
+    ways: dict[str, PlateWay] | None = field(default=None, compare=False)

@@ -76,18 +76,28 @@ class Loads:
     wrench_sd: Array
     point_m: Array
 
-    def intervals(self, times_s: Array, rate_hz: float) -> tuple[ContactInterval, ...]:
-        """The stretches in which the parts bear load, in order of time; split where the source changes."""
-        found = [one for k in range(len(self.names)) for one in self._of_part(k, times_s, rate_hz)]
+    def intervals(
+        self, times_s: Array, rate_hz: float, inner: slice | None = None
+    ) -> tuple[ContactInterval, ...]:
+        """The stretches in which the parts bear load, in order of time; split where the source changes.
+
+        Args:
+            times_s: (T,) times of the frames.
+            rate_hz: Frame rate.
+            inner: Frames to which stretches are cut; None: all.
+        """
+        within = inner or slice(0, len(times_s))
+        found = [one for k in range(len(self.names)) for one in self._of_part(k, times_s, rate_hz, within)]
         return tuple(sorted(found, key=lambda one: one.from_s))
 
-    def _of_part(self, k: int, times_s: Array, rate_hz: float) -> Iterator[ContactInterval]:
+    def _of_part(self, k: int, times_s: Array, rate_hz: float, within: slice) -> Iterator[ContactInterval]:
         force, sd = self.wrench[:, k, :3], self.wrench_sd[:, k, :3]
         size = np.nan_to_num(np.linalg.norm(force, axis=1))
         direction = force / np.where(size > 0.0, size, np.nan)[:, None]
         along = np.sqrt(((direction * sd) ** 2).sum(axis=1))
-        for kind, frames in _stretches(self.source[:, k], INSTANT_S * rate_hz):
-            if kind != Source.NONE:
+        for kind, whole in _stretches(self.source[:, k], INSTANT_S * rate_hz):
+            frames = slice(max(whole.start, within.start), min(whole.stop, within.stop))
+            if kind != Source.NONE and frames.stop > frames.start:
                 known = along[frames][np.isfinite(along[frames])]
                 yield ContactInterval(
                     self.names[k],

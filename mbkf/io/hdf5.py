@@ -9,12 +9,12 @@ from __future__ import annotations
 import zlib
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.io.files_read import opened, read_bytes
+from mbkf.io.files_read import PIECE_BYTES, opened
 
 if TYPE_CHECKING:
     import h5py
@@ -58,9 +58,39 @@ def sealed(made: BytesIO, run_id: str = "") -> memoryview:
     """A file, made with ``userblock_size=USER_BLOCK``, with its seal and the run that it belongs to; in place."""
     content = made.getbuffer()
     body = content[USER_BLOCK:]
-    run = RUN + run_id.encode() + b"\n" if run_id else b""
-    content[:USER_BLOCK] = (SEAL % (len(body), zlib.crc32(body)) + run).ljust(USER_BLOCK, b"\0")
+    content[:USER_BLOCK] = _block(len(body), zlib.crc32(body), run_id)
     return content
+
+
+def seal_file(path: Path, run_id: str = "") -> None:
+    """Seals a file as :func:`sealed` does, in place and without reading it into memory.
+
+    Args:
+        path: The file, made with ``userblock_size=USER_BLOCK``.
+        run_id: Number that the files of one run share.
+
+    Raises:
+        OSError: It cannot be read or written.
+    """
+    with path.open("r+b") as file:
+        size, checksum = _checked(file)
+        file.seek(0)
+        file.write(_block(size, checksum, run_id))
+
+
+def _block(size: int, checksum: int, run_id: str) -> bytes:
+    """The user block of a body of so many bytes."""
+    run = RUN + run_id.encode() + b"\n" if run_id else b""
+    return (SEAL % (size, checksum) + run).ljust(USER_BLOCK, b"\0")
+
+
+def _checked(file: BinaryIO) -> tuple[int, int]:
+    """Size and checksum of an open file's body."""
+    file.seek(USER_BLOCK)
+    size = checksum = 0
+    while piece := file.read(PIECE_BYTES):
+        size, checksum = size + len(piece), zlib.crc32(piece, checksum)
+    return size, checksum
 
 
 def run_of(path: Path) -> str:
@@ -82,11 +112,12 @@ def check_seal(path: Path) -> None:
         ValueError: It is not.
         OSError: It cannot be read.
     """
-    content = read_bytes(path)
-    body = content[USER_BLOCK:]
-    if content.startswith(HDF5) or (content.startswith(bytes(USER_BLOCK)) and body.startswith(HDF5)):
-        return  # written before there were seals, or by another program
-    if not body.startswith(HDF5) or not content.startswith(SEAL % (len(body), zlib.crc32(body))):
+    with opened(path) as file:
+        block, begin = file.read(USER_BLOCK), file.read(len(HDF5))
+        if block.startswith(HDF5) or (block == bytes(USER_BLOCK) and begin == HDF5):
+            return  # written before there were seals, or by another program
+        whole = begin == HDF5 and block.startswith(SEAL % _checked(file))
+    if not whole:
         raise ValueError(
             "its checksum does not fit; it was cut short or changed after it was written; make it again"
         )

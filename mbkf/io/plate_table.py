@@ -107,7 +107,13 @@ def plates_with_corners(
 
 
 def plate_with_corners(
-    name: str, rate_hz: float, start_time_s: float, corners_m: Array, wrench: Array, options: CaptureOptions
+    name: str,
+    rate_hz: float,
+    start_time_s: float,
+    corners_m: Array,
+    wrench: Array,
+    options: CaptureOptions,
+    tare: Tare | None = None,
 ) -> tuple[PlateReadings, Tare]:
     """A plate with corners, about the middle of its surface, and the offset found if one is to be removed.
 
@@ -118,8 +124,10 @@ def plate_with_corners(
         corners_m: (4, 3) corners in world axes.
         wrench: (S, 6) force in N and moment in N m about the middle of the corners, world axes.
         options: Removal of the offset, and threshold of the centre of pressure.
+        tare: The offset, where it is known; None: it is sought.
     """
-    tare = find_tare(wrench, rate_hz) if options.tare else Tare(np.zeros(6), 0.0)
+    if tare is None:
+        tare = find_tare(wrench, rate_hz) if options.tare else Tare(np.zeros(6), 0.0)
     if options.tare:
         wrench = remove_tare(wrench, tare)
     centre, force, moment = corners_m.mean(axis=0), wrench[:, :3], wrench[:, 3:]

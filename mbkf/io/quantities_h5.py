@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -30,30 +30,99 @@ Fields: TypeAlias = dict[str, Any]
 PLAIN = (str, bool, int, float)
 """Attributes that HDF5 holds as they are; others are JSON."""
 
+TIME = "time"
+"""Name of the axis of frames."""
+
 _PACKED_FROM = 256
 """Arrays of more numbers are compressed."""
 
 
 def write_record(file: h5py.File, record: object) -> None:
     """Writes declared attributes, names and arrays of a record."""
+    write_attributes(file, record)
+    write_texts(file, record, _texts(record))
+    write_arrays(file, record)
+
+
+def write_attributes(file: h5py.File, record: object) -> None:
+    """Writes the declared attributes of a record."""
     kind: type = type(record)
     for kept in attributes(kind):
         value = getattr(record, kept.name)
         plain = value if kept.read in PLAIN else plain_json(value)
         file.attrs[kept.name] = without_noughts(plain) if isinstance(plain, str) else plain
-    declared = [one for one in quantities(kind).values() if one.written]
+
+
+def write_texts(file: h5py.File, record: object, declared: Iterable[Quantity]) -> None:
+    """Writes lists of names or remarks of a record."""
     for one in declared:
-        if one.is_text:
-            write_labels(file, one.key, getattr(record, one.name), one.meaning)
+        write_labels(file, one.key, getattr(record, one.name), one.meaning)
+
+
+def write_arrays(file: h5py.File, record: object, frames: int | None = None) -> None:
+    """Writes the declared arrays of a record, whose names are there already.
+
+    Args:
+        file: The file.
+        record: The record, or the first piece of one.
+        frames: Frames of the whole record, of which more are to come; None: the record is whole.
+    """
     spreads: dict[str, list[str]] = {}
-    for one in declared:
-        value = getattr(record, one.name)
-        if not one.is_text and value is not None:
-            write_array(file, one, value)
-            if one.beside:
-                spreads.setdefault(one.beside, []).append(one.key)
+    for one in _arrays(record):
+        write_array(file, one, getattr(record, one.name), frames)
+        if one.beside:
+            spreads.setdefault(one.beside, []).append(one.key)
     for key, beside in spreads.items():
         _describe(file[key], ancillary_variables=" ".join(beside))
+
+
+class RecordPieces:
+    """A record that is written in pieces along its frames; its attributes and remarks come last."""
+
+    def __init__(self, file: h5py.File, first: object, frames: int) -> None:
+        """Writes the names of axes and the first piece's arrays, with room for the others.
+
+        Args:
+            file: The file.
+            first: The first piece.
+            frames: Frames of all pieces.
+        """
+        self._file, self._frames = file, frames
+        write_texts(file, first, [one for one in _texts(first) if one.axes])
+        write_arrays(file, first, frames)
+
+    def add(self, record: object, begin: int) -> None:
+        """Writes the arrays of a further piece.
+
+        Args:
+            record: The piece.
+            begin: Its first frame.
+        """
+        for one in _arrays(record):
+            if one.axes[0] == TIME:
+                value = getattr(record, one.name)
+                self._file[one.key][begin : begin + len(value)] = value
+
+    def finish(self, record: object) -> None:
+        """Writes attributes and remarks.
+
+        Args:
+            record: A record that holds those of all pieces.
+        """
+        write_attributes(self._file, record)
+        write_texts(self._file, record, [one for one in _texts(record) if not one.axes])
+
+
+def _texts(record: object) -> list[Quantity]:
+    kind: type = type(record)
+    return [one for one in quantities(kind).values() if one.written and one.is_text]
+
+
+def _arrays(record: object) -> list[Quantity]:
+    """The arrays that a record has."""
+    kind: type = type(record)
+    declared = (one for one in quantities(kind).values() if one.written and not one.is_text)
+    return [one for one in declared if getattr(record, one.name) is not None]
 
 
 def read_record(file: h5py.File, record: type) -> Fields:
@@ -90,18 +159,25 @@ def write_labels(file: h5py.File, key: str, labels: Sequence[str], meaning: str)
     dataset.make_scale(key)
 
 
-def write_array(file: h5py.File, one: Quantity, value: Array) -> None:
+def write_array(file: h5py.File, one: Quantity, value: Array, frames: int | None = None) -> None:
     """Writes an array with unit, meaning, codes and labelled axes; labels that a trial decides on are there already.
 
     Args:
         file: The file.
         one: Declaration of the array.
-        value: The array.
+        value: The array, or its first frames.
+        frames: Frames of the whole array, if it has an axis of time; None: the array is whole.
     """
     packed: dict[str, Any] = {}
     if value.size > _PACKED_FROM:
         packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-    dataset = file.create_dataset(one.key, data=value, **packed)
+    if frames is None or one.axes[0] != TIME or len(value) == frames:
+        dataset = file.create_dataset(one.key, data=value, **packed)
+    else:
+        shape = (frames, *value.shape[1:])
+        chunks = value.shape if value.size else None  # a piece is compressed once
+        dataset = file.create_dataset(one.key, shape, value.dtype, chunks=chunks, **packed if chunks else {})
+        dataset[: len(value)] = value
     unit = one.unit.text
     _describe(dataset, unit=unit, units=unit, long_name=one.meaning, axes=axes_text(one.axes))
     if one.codes:

@@ -256,6 +256,20 @@ def write_result_files(reconstruction: Reconstruction, summary: Mapping[str, obj
     run_id = uuid.uuid4().hex
     write_h5(reconstruction, folder / MOTION_FILE, run_id)
     write_opensim(reconstruction, folder, run_id)
+    write_summary(summary, folder, run_id)
+
+
+def write_summary(summary: Mapping[str, object], folder: Path, run_id: str) -> None:
+    """Writes summary.json into a folder that is not in use yet.
+
+    Args:
+        summary: Plain data; NaN becomes null.
+        folder: The folder; it exists.
+        run_id: Number that the files of one run share.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
     plain = _without_nan({RUN_ID: run_id, **summary})
     text = json.dumps(plain, indent=2, allow_nan=False, ensure_ascii=False)
     write_text(folder / SUMMARY_FILE, text + "\n")

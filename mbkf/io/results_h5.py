@@ -17,10 +17,17 @@ from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
 from mbkf.io.dimensions import AXES, WORLD, Unit, numbered
 from mbkf.io.files_read import check_input
-from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
+from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, seal_file, sealed
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.quantities import Quantity
-from mbkf.io.quantities_h5 import plain_json, read_record, write_array, write_labels, write_record
+from mbkf.io.quantities_h5 import (
+    RecordPieces,
+    plain_json,
+    read_record,
+    write_array,
+    write_labels,
+    write_record,
+)
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
 
@@ -53,20 +60,88 @@ def write_h5(reconstruction: Reconstruction, path: str | Path, run_id: str = "")
 
     made = io.BytesIO()  # HDF5 itself does not survive a disk that is full
     with h5py.File(made, "w", userblock_size=USER_BLOCK) as file:
-        file.attrs["format"] = FORMAT
-        file.attrs["format_version"] = FORMAT_VERSION
-        file.attrs["missing"] = "NaN where not known"
-        file.attrs["axes"] = (
-            f"{WORLD}; forces are those of the ground on the body; moments of joints are internal: "
-            "positive turns the joint towards positive angles"
-        )
+        _write_format(file)
         write_record(file, reconstruction)
-        file.attrs["later_frames"] = reconstruction.later_frames  # for readers; it follows from the rest
-        subject = dataclasses.replace(reconstruction.subject, covariance=None)
-        file.attrs["subject"] = plain_json(dataclasses.asdict(subject))
-        _write_covariance(file, reconstruction.subject.covariance)
+        _write_subject(file, reconstruction)
     with replacing(path) as partial:
         partial.write_bytes(sealed(made, run_id))
+
+
+class ResultPieces:
+    """A result that is written in pieces, in a file that has no name yet: it is not sealed until it is whole."""
+
+    def __init__(self, path: Path, frames: int) -> None:
+        """Makes the file.
+
+        Args:
+            path: The file, in an unfinished folder.
+            frames: Frames of the whole result.
+
+        Raises:
+            OSError: It cannot be made.
+        """
+        import h5py
+
+        self._path, self._frames, self._begin = path, frames, 0
+        self._file = h5py.File(path, "w", userblock_size=USER_BLOCK)
+        self._pieces: RecordPieces | None = None
+        _write_format(self._file)
+
+    def add(self, piece: Reconstruction) -> None:
+        """Writes the arrays of the next piece.
+
+        Args:
+            piece: The piece, without margins.
+
+        Raises:
+            OSError: It cannot be written.
+        """
+        if self._pieces is None:
+            self._pieces = RecordPieces(self._file, piece, self._frames)
+        else:
+            self._pieces.add(piece, self._begin)
+        self._begin += piece.frames
+        self._file.flush()
+
+    def finish(self, last: Reconstruction, run_id: str, valid: bool) -> None:
+        """Writes what holds for the whole trial, and seals the file.
+
+        Args:
+            last: The last piece, with the attributes and remarks of the whole trial.
+            run_id: Number that the files of one run share.
+            valid: False: no frame is valid, whatever the pieces hold.
+
+        Raises:
+            OSError: It cannot be written.
+        """
+        assert self._pieces is not None
+        self._pieces.finish(last)
+        if not valid:
+            self._file["valid"][:] = False
+        _write_subject(self._file, last)
+        self.close()
+        seal_file(self._path, run_id)
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._file.close()
+
+
+def _write_format(file: h5py.File) -> None:
+    file.attrs["format"] = FORMAT
+    file.attrs["format_version"] = FORMAT_VERSION
+    file.attrs["missing"] = "NaN where not known"
+    file.attrs["axes"] = (
+        f"{WORLD}; forces are those of the ground on the body; moments of joints are internal: "
+        "positive turns the joint towards positive angles"
+    )
+
+
+def _write_subject(file: h5py.File, reconstruction: Reconstruction) -> None:
+    file.attrs["later_frames"] = reconstruction.later_frames  # for readers; it follows from the rest
+    subject = dataclasses.replace(reconstruction.subject, covariance=None)
+    file.attrs["subject"] = plain_json(dataclasses.asdict(subject))
+    _write_covariance(file, reconstruction.subject.covariance)
 
 
 def read_h5(path: str | Path) -> Reconstruction:

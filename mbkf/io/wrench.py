@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -43,6 +44,20 @@ class Tare:
     def found(self) -> bool:
         """True where the plate was without load for long enough."""
         return self.unloaded_s > 0.0
+
+
+class PlateWay(NamedTuple):
+    """What the readings of a whole plate show, and a part of them is read with.
+
+    Attributes:
+        origin_m: (3,) vector from the point that the channels refer to, to the middle of the surface, plate axes.
+        factor: Factor of the moments, 1 where their unit is right.
+        tare: The offset.
+    """
+
+    origin_m: Array
+    factor: float
+    tare: Tare
 
 
 def centre_of_pressure(

@@ -10,7 +10,6 @@ import numpy as np
 
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.filters.estimate import Recording
 from mbkf.filters.plant import PlantMaker
 from mbkf.filters.tracking import track
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -32,7 +31,7 @@ from mbkf.trial.preparation.entering import without_entering
 from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, renamed_by_filter
 from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.preparation.markers_alone import Motion, markers_alone
+from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
 from mbkf.trial.preparation.selection import hidden_samples, subject_markers, without_plates
 from mbkf.trial.preparation.settings import ReconstructSettings
@@ -77,24 +76,25 @@ def reconstruct(
             does not exist.
     """
     settings = settings or ReconstructSettings()
-    _check_names(settings, imus is not None)
+    check_names(settings, imus is not None)
     zero_posture(settings.angles_zero, subject)
     with single_threaded():
         capture = checked_for_subject(capture, subject, settings.without_plates)
-        measured, exchanged, put_right = _put_right(capture, subject, settings)
+        measured, exchanged, remarks = put_right(capture.markers, subject, settings)
         use = use_by_subject(capture.markers, subject)
-        notes = [*capture.notes, *put_right, *([use.warning] if use.warning else [])]
+        notes = [*capture.notes, *remarks, *([use.warning] if use.warning else [])]
         hidden = hidden_samples(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = without_plates(capture, settings.without_plates).plates
         notes += plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
-        subject, before, lengths = _for_trial(subject, shown, settings)
+        subject, before, lengths = for_trial(subject, shown, settings)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
-            inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
-            notes += remarks
+            inputs, recording, of_imus = with_imus(inputs, recording, shown.times_s, imus)
+            notes += of_imus
         recording = replace(recording, readings=readings) if readings else recording
-        alone = _markers_alone(settings, inputs, recording, progress)
+        followed = None if progress is None else partial(progress, "Following markers alone")
+        alone = markers_alone(inputs, recording, followed) if needs_motion(settings, inputs) else None
         if alone is not None and settings.other_contacts and settings.filter == "dynamic":
             inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone, settings.smooths)
         result = track(
@@ -126,19 +126,37 @@ def reconstruct(
         )
 
 
-def _put_right(
-    capture: Capture, subject: Subject, settings: ReconstructSettings
+def put_right(
+    markers: MarkerTrajectories, subject: Subject, settings: ReconstructSettings
 ) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...], list[str]]:
-    """The subject's markers under their right names, without mixtures and entering frames; the exchanges, and notes."""
-    named, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
+    """The subject's markers under their right names, without mixtures and entering frames; the exchanges, and notes.
+
+    Args:
+        markers: All markers of the capture.
+        subject: The person.
+        settings: Settings of the reconstruction.
+
+    Raises:
+        NotObservable: Too few of them are the subject's.
+    """
+    named, exchanged = names_put_right(subject_markers(markers, subject), subject)
     own, shrunken = without_shrunken(named, subject)
     start = settings.kinematic
     measured, entering = without_entering(own, subject, start.min_markers, start.restart_after_s)
     return measured, exchanged, [*exchange_notes(exchanged), *shrunken, *entering]
 
 
-def _check_names(settings: ReconstructSettings, sensors: bool) -> None:
-    """Refuses a filter, a frame or a reading that does not exist, and ``sensors`` for a filter that reads none."""
+def check_names(settings: ReconstructSettings, sensors: bool) -> None:
+    """Refuses a filter, a frame or a reading that does not exist, and ``sensors`` for a filter that reads none.
+
+    Args:
+        settings: Settings of the reconstruction.
+        sensors: Inertial sensors are given.
+
+    Raises:
+        UnknownName: The filter, the frame of the pelvis or the reading of angles does not exist.
+        InvalidInput: The filter reads no inertial sensors.
+    """
     if settings.filter not in FILTERS:
         raise UnknownName("filter", settings.filter, FILTERS)
     if settings.pelvis not in PELVIS_FRAMES:
@@ -150,26 +168,32 @@ def _check_names(settings: ReconstructSettings, sensors: bool) -> None:
         raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
 
 
-def _for_trial(
+def for_trial(
     subject: Subject, shown: MarkerTrajectories, settings: ReconstructSettings
 ) -> tuple[Subject, Subject | None, LengthEvidence | None]:
-    """The subject as it is tracked, the one before and the trial's lengths, both None without a correction."""
+    """The subject as it is tracked, the one before and the trial's lengths, both None without a correction.
+
+    Args:
+        subject: The person.
+        shown: The markers that are used.
+        settings: Settings of the reconstruction.
+
+    Raises:
+        NotConverged: The markers do not fit the subject's body.
+    """
     if not settings.correct_markers:
         return subject.in_neutral_posture(), None, None
     found = correction(subject, shown)
     return found.subject, subject, found.lengths
 
 
-def _markers_alone(
-    settings: ReconstructSettings,
-    inputs: FilterInputs,
-    recording: Recording,
-    progress: StageCallback | None,
-) -> Motion | None:
-    """The motion of markers alone, where checks of plates or the search for other contacts need it."""
+def needs_motion(settings: ReconstructSettings, inputs: FilterInputs) -> bool:
+    """True where checks of plates or the search for other contacts need the motion of markers alone.
+
+    Args:
+        settings: Settings of the reconstruction.
+        inputs: Inputs of the filters.
+    """
     judges_plates = settings.checks and len(inputs.plates) > 0
     searches = settings.other_contacts and settings.filter == "dynamic"
-    if not judges_plates and not (searches and inputs.sensor.model.description.bearings):
-        return None
-    followed = None if progress is None else partial(progress, "Following markers alone")
-    return markers_alone(inputs, recording, followed)
+    return judges_plates or (searches and bool(inputs.sensor.model.description.bearings))

@@ -98,7 +98,7 @@ def test_wrench_of_each_type(kind, flipped, force, place, torque):
     arm = PLATE_AXES @ np.array([*place, 0.0]) * 1e-3
     moment = np.cross(arm, world_force) + PLATE_AXES @ [0.0, 0.0, torque * 1e-3]
     check_geometry(plate, "file", "mm")
-    found = wrench_at_surface(plate, "mm", [])
+    found = wrench_at_surface(plate, "mm", []).wrench
     np.testing.assert_allclose(found, [np.concatenate([world_force, moment])], atol=1e-8)
 
 
@@ -111,14 +111,14 @@ def test_units_of_moments(unit, moment_unit, factor):
     readings = np.array([[0.0, 0.0, -100.0, 7.0, 0.0, 0.0]])
     plate = plate_of(2, readings, units=("N",) * 3 + (moment_unit,) * 3)
     np.testing.assert_allclose(
-        wrench_at_surface(plate, unit, [])[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12
+        wrench_at_surface(plate, unit, []).wrench[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12
     )
 
 
 def test_kilonewtons_are_newtons_times_a_thousand():
     plate = plate_of(2, np.array([[0.0, 0.0, -0.7, 0.002, 0.0, 0.0]]), units=("kN",) * 3 + ("kNm",) * 3)
     expected = np.concatenate([[0.0, 0.0, 700.0], 2.0 * PLATE_AXES[:, 0]])
-    np.testing.assert_allclose(wrench_at_surface(plate, "mm", [])[0], expected)
+    np.testing.assert_allclose(wrench_at_surface(plate, "mm", []).wrench[0], expected)
 
 
 @pytest.mark.parametrize("kind", [3, 7])
@@ -138,7 +138,7 @@ def test_each_channel_of_four_sensors_pulls_where_they_stand(kind):
         ]
     )
     plate = plate_of(kind, np.eye(8), (A_MM, B_MM, -DEPTH_MM), ("N",) * 8, calibration=np.eye(8))
-    found = wrench_at_surface(plate, "mm", [])
+    found = wrench_at_surface(plate, "mm", []).wrench
     np.testing.assert_allclose(found[:, :3] @ PLATE_AXES, expected[:, :3], atol=1e-12)
     np.testing.assert_allclose(found[:, 3:] @ PLATE_AXES, expected[:, 3:], atol=1e-12)
 
@@ -155,7 +155,7 @@ def standing_readings(spread_mm: float) -> tuple[np.ndarray, np.ndarray]:
 def test_moments_in_another_unit_than_stated_are_recognised_by_the_pressure(stored, factor):
     readings, places_m = standing_readings(80.0)
     notes = []
-    wrench = wrench_at_surface(plate_of(2, readings * [1, 1, 1, stored, stored, stored]), "mm", notes)
+    wrench = wrench_at_surface(plate_of(2, readings * [1, 1, 1, stored, stored, stored]), "mm", notes).wrench
     moment = wrench[:, 3:] @ PLATE_AXES
     pressed = np.column_stack([-moment[:, 1], moment[:, 0]]) / readings[:, 2:3]
     np.testing.assert_allclose(pressed, places_m, atol=1e-9)

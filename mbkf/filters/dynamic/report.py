@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple, cast
@@ -17,6 +18,7 @@ from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.dynamic.support_loads import SupportLoads
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.estimate import Posterior, Record
+from mbkf.filters.filter import Prior
 from mbkf.filters.report import FirstMotion, StateReport
 from mbkf.filters.spread import ConfigurationParts, Spread, root
 from mbkf.filters.state_variances import StateVariances, state_variances
@@ -35,6 +37,10 @@ OF_WHITE_NOISE = 6.0**0.5
 
 ROUNDS = 2
 """Linearisations of a smoothed window; a third round changes the residual by less than 0.1 N."""
+
+
+_NOTHING = np.zeros((0, 0))
+"""In place of a covariance that is not kept."""
 
 
 class Changes(NamedTuple):
@@ -153,6 +159,14 @@ class DynamicReport(StateReport[DynamicState]):
             record=estimate.record._replace(state=state, detail=changes),
             support=self.loads.wrench(self.loads.of(notes.supports, state)),
         )
+
+    def kept(self, estimate: Posterior) -> Posterior:
+        """An estimate without the covariance of its prediction, a quarter megabyte that nobody reads any more."""
+        step = estimate.record.step
+        if step is None:
+            return estimate
+        prior = Prior(replace(step.prior.state, P=_NOTHING), step.prior.noise, ())
+        return estimate._replace(record=estimate.record._replace(step=step._replace(prior=prior)))
 
     def smooth(self, run: Sequence[Posterior], wanted: int) -> list[Posterior]:
         """By an iterated smoother (:mod:`mbkf.filters.dynamic.smoother`).

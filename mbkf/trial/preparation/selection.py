@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.conventions import BoolArray
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.io.persons import named_persons, several_persons
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -38,18 +38,26 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
     return replace(markers.select(tuple(found)), names=tuple(marker.name for marker in found.values()))
 
 
-def hidden_samples(markers: MarkerTrajectories, hide: Sequence[Hidden]) -> BoolArray:
+def hidden_samples(
+    markers: MarkerTrajectories, hide: Sequence[Hidden], times_s: Array | None = None
+) -> BoolArray:
     """(T, M) measured samples that are hidden on request.
+
+    Args:
+        markers: The subject's markers.
+        hide: Markers to hide.
+        times_s: (T,) times of the frames; None: those of the markers.
 
     Raises:
         InvalidInput: A time window ends before it begins.
         UnknownName: The subject has no marker of that name.
     """
     hidden = np.zeros(markers.present.shape, dtype=bool)
+    times_s = markers.times_s if times_s is None else times_s
     for one in hide:
         if one.to_s < one.from_s:
             raise InvalidInput(f"--hide: the time window {one.from_s}:{one.to_s} ends before it begins")
-        frames = (markers.times_s >= one.from_s) & (markers.times_s <= one.to_s)
+        frames = (times_s >= one.from_s) & (times_s <= one.to_s)
         for name in one.names:
             if name not in markers.names:
                 raise UnknownName("marker", name, markers.names, "--hide")

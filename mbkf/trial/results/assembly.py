@@ -28,13 +28,13 @@ from mbkf.trial.loads.unexplained import unexplained_loads
 from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.settings import ReconstructSettings, recorded
 from mbkf.trial.results.clinical import clinical_motion
-from mbkf.trial.results.progression import pelvis_frame
+from mbkf.trial.results.progression import Progression, pelvis_frame
 from mbkf.trial.results.reactions import GroundReactions, ground_reactions
 from mbkf.trial.results.readings import angle_reading, zero_posture
 from mbkf.trial.results.summary import ROOT_DOFS
 from mbkf.trial.results.trunk import trunk_moments
 from mbkf.trial.results.validity import torques_known, torques_possible
-from mbkf.trial.results.warnings import track_warnings
+from mbkf.trial.results.warnings import TrackCounts, track_warnings
 from mbkf.version import __version__
 
 FOOT_SD_M = 0.03
@@ -54,6 +54,7 @@ def assemble(
     inputs: FilterInputs,
     result: Track,
     wrench: Array | None = None,
+    frame: Progression | None = None,
 ) -> Reconstruction:
     """Reactions, torques and clinical coordinates of a tracked trial, put together.
 
@@ -66,11 +67,13 @@ def assemble(
         inputs: Inputs of the filter, with the plates it read.
         result: The track.
         wrench: (T, P, 6) wrenches of the plates over the frames, where they are known.
+        frame: Of a part of a trial, the frame of the pelvis's angles by the whole one, whose track has remarks of its
+            own; None: the motion shows it.
     """
-    model, times_s = inputs.sensor.model, measured.times_s
+    model, times_s, whole = inputs.sensor.model, measured.times_s, frame is None
     given = settings.filter == "torque" and settings.torque.plates == "inputs"
     ground = ground_reactions(model, result, times_s, measured.rate_hz, inputs.plates, given, wrench)
-    torques, frame = ground.torques, pelvis_frame(settings.pelvis, model, result.q, times_s)
+    torques, frame = ground.torques, frame or pelvis_frame(settings.pelvis, model, result.q, times_s)
     reading = angle_reading(settings.angles, model, subject, capture.processing)
     zero_q = zero_posture(settings.angles_zero, subject)
     motion, moments = clinical_motion(model, result, torques, frame, reading, zero_q)
@@ -82,7 +85,8 @@ def assemble(
     judged = unexplained_loads(balance, times_s, inputs.contradictions, causal=not result.smoothed)
     muscles, of_emg = muscles_of(capture.analog, capture.markers.start_time_s, times_s, settings.emg)
     instrument = "marker" if measured.names else "sensor"
-    of_track = track_warnings(result, motion.dof_names, inputs.unobservable, instrument)
+    counts = TrackCounts.of(result)
+    of_track = track_warnings(counts, motion.dof_names, inputs.unobservable, instrument) if whole else []
     return Reconstruction.of(
         Provenance(
             trial=storable(Path(capture.path).stem) or "capture",

@@ -101,14 +101,29 @@ def progression_of(model: Body, q: Array, times_s: Array) -> Progression:
         q: (T, nq) configurations; NaN where untracked.
         times_s: (T,) times, s.
     """
+    return frame_of(*path_and_facing(model, q), times_s, standing_height(model))
+
+
+def path_and_facing(model: Body, q: Array) -> tuple[Array, Array]:
+    """(T, 2) horizontal positions of the pelvis, m, and (T, 2) horizontal vectors along pelvis and feet.
+
+    Args:
+        model: The body.
+        q: (T, nq) configurations; NaN where untracked.
+    """
     place = slice(model.root.q.start, model.root.q.start + 3)
     soles = sole_points(model, q)
     feet = soles[:, :, 2] - soles[:, :, 0]
     feet = feet / np.linalg.norm(feet, axis=2, keepdims=True)
     pelvis = quaternion_matrices(q[:, place.stop : place.stop + 4])[:, :, 0]
+    return q[:, place][:, :2], (pelvis + feet.mean(axis=1))[:, :2]
+
+
+def standing_height(model: Body) -> float:
+    """Height of the pelvis above the soles in the neutral posture, m."""
     neutral = model.neutral()
-    height_m = float(neutral[place][2] - sole_points(model, neutral[None])[..., 2].min())
-    return frame_of(q[:, place][:, :2], (pelvis + feet.mean(axis=1))[:, :2], times_s, height_m)
+    place = model.root.q.start + 2
+    return float(neutral[place] - sole_points(model, neutral[None])[..., 2].min())
 
 
 def frame_of(path_m: Array, facing: Array, times_s: Array, height_m: float) -> Progression:

@@ -45,7 +45,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
     """
     r = reconstruction
     missing = ~r.present
-    seen_mm, hidden_mm = _marker_errors(r)
+    seen_mm, hidden_mm = marker_errors(r)
     change = np.full((0, 1, 6), np.nan) if r.plate_change is None else r.plate_change
     peaks, sd, sd_offset, sd_varying = _torques(r)
     computing = float(np.nansum(r.step_seconds))
@@ -60,7 +60,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "later_frames": r.later_frames,
         "version": r.version,
         "direction": r.direction,
-        "progression": progression_summary(r),
+        "progression": progression_summary(r.direction, r.heading_rad),
         "mass_kg": float(r.subject.mass_kg),
         "frames": r.frames,
         "rate_hz": float(r.rate_hz),
@@ -94,8 +94,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "nis_per_dof": innovations.per_reading(r),
         "nis": innovations.by_kind(r),
         "marker_noise_mm_by_name": innovations.marker_noise_mm(r),
-        "step_seconds_median": _quantile(r.step_seconds, 50),
-        "step_seconds_p99": _quantile(r.step_seconds, 99),
+        "step_seconds_median": quantile(r.step_seconds, 50),
+        "step_seconds_p99": quantile(r.step_seconds, 99),
         "realtime_factor": r.frames / float(r.rate_hz) / computing if computing > 0 else None,
         "truth": None if truth is None else compare_with_truth(r, truth),
         "axes": stated_axes(r.file_axes, r.file_axes_source),
@@ -179,18 +179,23 @@ def stated_axes(axes: str, source: str) -> StatedAxes:
     return {"up": up, "forward": forward, "mirrored": mirrored, "source": source}
 
 
-def progression_summary(r: Reconstruction) -> dict[str, str | float]:
-    """Kind of the frame of the pelvis's angles, its mean heading in −180…180°, and how far it turns in all."""
-    heading = np.zeros(1) if r.heading_rad is None or not r.frames else r.heading_rad
+def progression_summary(direction: str, heading_rad: Array | None) -> dict[str, str | float]:
+    """Kind of the frame of the pelvis's angles, its mean heading in −180…180°, and how far it turns in all.
+
+    Args:
+        direction: Reference of the frame.
+        heading_rad: (T,) its heading; None where it is not known.
+    """
+    heading = np.zeros(1) if heading_rad is None or not len(heading_rad) else heading_rad
     mean = np.arctan2(np.sin(heading).mean(), np.cos(heading).mean())
     return {
-        "kind": kind_of(r.direction, heading),
+        "kind": kind_of(direction, heading),
         "heading_deg": float(np.rad2deg(mean)),
         "turned_deg": float(np.rad2deg(heading[-1] - heading[0])),
     }
 
 
-def _marker_errors(r: Reconstruction) -> tuple[Array, Array]:
+def marker_errors(r: Reconstruction) -> tuple[Array, Array]:
     """(T, M) distances in mm of markers seen while the body was tracked, and of hidden ones; NaN for the others."""
     distance = _MM * np.linalg.norm(r.measured_m - r.predicted_m, axis=2)
     return np.where(r.present & r.tracked[:, None], distance, np.nan), np.where(r.hidden, distance, np.nan)
@@ -198,11 +203,7 @@ def _marker_errors(r: Reconstruction) -> tuple[Array, Array]:
 
 def _torques(r: Reconstruction) -> list[dict[str, float | None]]:
     """Flexion torque of every joint but the root by the joint's name: peak in N m/kg; mean deviations in N m."""
-    main = {
-        j.name: j.main
-        for j in reference_body(r.subject).clinical_joints
-        if j.proximal != "world" and j.main in r.coordinate_names
-    }
+    main = main_coordinates(r)
     peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
     parts: tuple[SdPart, ...] = ("total", "offset", "varying")
     spreads = [
@@ -210,6 +211,15 @@ def _torques(r: Reconstruction) -> list[dict[str, float | None]]:
     ]
     per_kg = {joint: None if peak is None else peak / r.subject.mass_kg for joint, peak in peaks.items()}
     return [per_kg, *spreads]
+
+
+def main_coordinates(r: Reconstruction) -> dict[str, str]:
+    """The coordinate of flexion of every joint but the root, by the joint's name."""
+    return {
+        j.name: j.main
+        for j in reference_body(r.subject).clinical_joints
+        if j.proximal != "world" and j.main in r.coordinate_names
+    }
 
 
 def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str, float | None]:
@@ -304,6 +314,7 @@ def _mean(values: Array) -> float | None:
     return float(known.mean()) if known.size else None
 
 
-def _quantile(values: Array, percent: float) -> float | None:
+def quantile(values: Array, percent: float) -> float | None:
+    """A percentile of the finite values; None without any."""
     known = _finite(values)
     return float(np.percentile(known, percent)) if known.size else None

@@ -99,11 +99,8 @@ class TrialSums:
         Args:
             r: The result.
         """
-        squared = ((r.measured_m - r.predicted_m) ** 2).sum(axis=2)
-        markers = MarkerFrames(r.present, squared, r.tracked, r.rejected, r.marker_nis, settled(r))
-        acts = acting(r)
         sums = cls(Followed.of(r))
-        sums.add(Frames(r.q, markers, r.angles_sd, r.valid | acts, acts))
+        sums.add(frames_of(r, settled(r)))
         return sums
 
     def add(self, frames: Frames) -> None:
@@ -142,6 +139,19 @@ class TrialSums:
             for k, (name, n) in enumerate(zip(names, self._sd_frames, strict=True))
             if n
         }
+
+
+def frames_of(r: Reconstruction, settled: BoolArray) -> Frames:
+    """The frames of a result, or of a part of one.
+
+    Args:
+        r: The result or the part.
+        settled: (T,) frames in which innovations count.
+    """
+    squared = ((r.measured_m - r.predicted_m) ** 2).sum(axis=2)
+    markers = MarkerFrames(r.present, squared, r.tracked, r.rejected, r.marker_nis, settled)
+    acts = acting(r)
+    return Frames(r.q, markers, r.angles_sd, r.valid | acts, acts)
 
 
 def acting(r: Reconstruction) -> BoolArray:

@@ -156,7 +156,7 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
 
 def _pelvis_frame(r: Reconstruction) -> str:
     """The axes of the pelvis's angles, in words."""
-    frame = progression_summary(r)
+    frame = progression_summary(r.direction, r.heading_rad)
     if r.direction == LABORATORY:
         return "the laboratory's axes"
     return f"frame of progression ({frame['kind']}, {frame['heading_deg']:z.0f}° from the x axis)"

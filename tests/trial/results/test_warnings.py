@@ -10,7 +10,13 @@ from mbkf.io.unexplained import UnexplainedLoad
 from mbkf.model.clinical import dof_names
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.preparation.coverage import INFERRED_KEY
-from mbkf.trial.results.warnings import MOST_LISTED, all_warnings, track_warnings, unexplained_remarks
+from mbkf.trial.results.warnings import (
+    MOST_LISTED,
+    TrackCounts,
+    all_warnings,
+    track_warnings,
+    unexplained_remarks,
+)
 from tests.io.reconstructions import made_up
 from tests.motions import random_model, subject_of, track_of
 
@@ -26,7 +32,7 @@ def track(**known):
 
 def warnings(unobservable=(), **known):
     flags = np.isin(NAMES, list(unobservable))
-    return track_warnings(track(**known), NAMES, flags, "marker")
+    return track_warnings(TrackCounts.of(track(**known)), NAMES, flags, "marker")
 
 
 def frames(*which):
