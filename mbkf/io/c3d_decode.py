@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,7 +17,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout
+from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout, Processor
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_rate import frame_rate
 from mbkf.io.c3d_records import ParameterRecord
@@ -45,35 +44,6 @@ PLATE_GEOMETRY = ("TYPE", "CHANNEL", "CORNERS", "ORIGIN")
 _NO_PLATES = (
     "force plates are left out: damage may have taken their parameters; give their readings with --forces"
 )
-
-
-class Processor(Enum):
-    """Processor that wrote a file's numbers."""
-
-    INTEL = 84
-    DEC = 85
-    MIPS = 86
-
-    @property
-    def order(self) -> str:
-        """Byte order of integers."""
-        return ">" if self is Processor.MIPS else "<"
-
-    def integers(self, data: bytes) -> Array:
-        """16-bit integers with a sign."""
-        return np.frombuffer(data, dtype=f"{self.order}i2").astype(np.float64)
-
-    def floats(self, data: bytes) -> Array:
-        """32-bit floats; DEC's have their words exchanged and an exponent that is greater by two (VAX F)."""
-        if self is not Processor.DEC:
-            with np.errstate(invalid="ignore"):  # NaN stays NaN
-                return np.frombuffer(data, dtype=f"{self.order}f4").astype(np.float64)
-        words = np.frombuffer(data, dtype="<u2").reshape(-1, 2)
-        joined = (words[:, 0].astype(np.uint32) << 16) | words[:, 1]
-        exponent = (joined >> 23) & 0xFF
-        # Exponents of 1 and 2 lie below the normal numbers of IEEE, and that of 255 is a number as the others.
-        values = np.where(exponent > 2, joined - np.uint32(2 << 23), 0).astype(np.uint32).view(np.float32)
-        return values.astype(np.float64)
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,12 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from pathlib import Path
 
+import numpy as np
+
+from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d_records import ParameterSection, walk_parameters
 from mbkf.io.files_read import check_input, opened
@@ -25,6 +29,35 @@ _SIGN_BYTES = {84: 3, 85: 1, 86: 0}
 _MOST_NAMED = 4
 LAST_FRAME_OF_HEADER = 65535
 """The header's 16-bit words cannot count further; longer files count in TRIAL:ACTUAL_END_FIELD."""
+
+
+class Processor(Enum):
+    """Processor that wrote a file's numbers."""
+
+    INTEL = 84
+    DEC = 85
+    MIPS = 86
+
+    @property
+    def order(self) -> str:
+        """Byte order of integers."""
+        return ">" if self is Processor.MIPS else "<"
+
+    def integers(self, data: bytes) -> Array:
+        """16-bit integers with a sign."""
+        return np.frombuffer(data, dtype=f"{self.order}i2").astype(np.float64)
+
+    def floats(self, data: bytes) -> Array:
+        """32-bit floats; DEC's have their words exchanged and an exponent that is greater by two (VAX F)."""
+        if self is not Processor.DEC:
+            with np.errstate(invalid="ignore"):  # NaN stays NaN
+                return np.frombuffer(data, dtype=f"{self.order}f4").astype(np.float64)
+        words = np.frombuffer(data, dtype="<u2").reshape(-1, 2)
+        joined = (words[:, 0].astype(np.uint32) << 16) | words[:, 1]
+        exponent = (joined >> 23) & 0xFF
+        # Exponents of 1 and 2 lie below the normal numbers of IEEE, and that of 255 is a number as the others.
+        values = np.where(exponent > 2, joined - np.uint32(2 << 23), 0).astype(np.uint32).view(np.float32)
+        return values.astype(np.float64)
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from itertools import islice
 from pathlib import Path
 
 from mbkf.errors import MbkfError
-from mbkf.io.c3d_decode import Processor, values_of
-from mbkf.io.c3d_layout import check_layout
+from mbkf.io.c3d_decode import values_of
+from mbkf.io.c3d_layout import Processor, check_layout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.files_read import opened
 from mbkf.io.labels import without_subject

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from mbkf.errors import MbkfError
 from mbkf.io.c3d import read_c3d
-from mbkf.io.c3d_decode import Processor, decode
-from mbkf.io.c3d_layout import check_layout
+from mbkf.io.c3d_decode import decode
+from mbkf.io.c3d_layout import Processor, check_layout
 from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import standing_points
 from tests.io.c3d_bytes import DEC, INTEL, MIPS, c3d_bytes, floats, integers

@@ -129,9 +129,8 @@ def _result(
         turning_rad_s=survey.frame.turning_rad_s[piece.whole],
     )
     inputs, model = replace(trial.inputs, plates=plates), trial.inputs.sensor.model
-    found = assemble(
-        capture, trial.subject, trial.settings, measured, hidden, inputs, track, frame=frame
-    )
+    asked = trial.subject, trial.settings, measured, hidden, inputs, track
+    found = assemble(capture, *asked, trial.recording.plates[piece.whole], frame)
     found = with_contacts(found, model, trial.subject, measured, others_of(capture, trial.use.used))
     return replace(found, markers_ignored=dict(trial.use.ignored), markers_explained=trial.use.share)
 

@@ -46,10 +46,9 @@ class Remarks:
             if len({one for *_, one in each}) == 1 and len(each) == self._pieces:
                 told.append(text)
                 continue
-            number = (
-                f"one of {self._pieces} parts" if len(each) == 1 else f"{len(each)} of {self._pieces} parts"
+            told.append(
+                f"in {len(each)} of {self._pieces} parts of the trial, such as {from_s:.0f} to {to_s:.0f} s: {text}"
             )
-            told.append(f"in {number} of the trial, such as {from_s:.0f} to {to_s:.0f} s: {text}")
         return tuple(told)
 
 

@@ -21,7 +21,7 @@ class PieceSettings:
     """
 
     frames: int = 2000
-    margin_s: float = 2.0
+    margin_s: float = 1.0
     look_frames: int = 6000
 
 

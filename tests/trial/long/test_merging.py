@@ -65,5 +65,5 @@ def test_remarks_of_one_kind_are_one():
     assert remarks.texts() == (
         "no plates",
         "in 2 of 3 parts of the trial, such as 0 to 10 s: 3 of 100 frames were lost",
-        "in one of 3 parts of the trial, such as 20 to 30 s: a thing",
+        "in 1 of 3 parts of the trial, such as 20 to 30 s: a thing",
     )
