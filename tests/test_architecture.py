@@ -247,6 +247,8 @@ DOORS = {
     "mbkf/io/files_read.py": "the door of everything that is read",
     "mbkf/io/written.py": "looks at a file before it is replaced",
     "mbkf/io/leftovers.py": "holds a lock",
+    "mbkf/io/hdf5.py": "seals a file that its writer has just made",
+    "mbkf/io/paged.py": "pages of an array in an unfinished folder",
     "mbkf/kernel/declaration.py": "files of the package",
     "mbkf/viz/page.py": "files of installed packages",
     "mbkf/viz/language.py": "files of the package",

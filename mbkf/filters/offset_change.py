@@ -51,7 +51,7 @@ class OffsetChanges:
     """Changes of the offsets of a trial."""
 
     def __init__(
-        self, body: BodyErrors, clinical: ClinicalAngles, dt_s: float, room: int = KEPT_BYTES
+        self, body: BodyErrors, clinical: ClinicalAngles, dt_s: float, room: int | None = None
     ) -> None:
         """Makes it.
 
@@ -59,14 +59,14 @@ class OffsetChanges:
             body: The errors by the body.
             clinical: The clinical coordinates.
             dt_s: Time between frames.
-            room: Memory for roots; others are worked out twice.
+            room: Memory for roots, bytes; others are worked out twice. None: :data:`KEPT_BYTES`.
         """
         self._body, self._clinical, self._dt_s = body, clinical, dt_s
         self._latest: BodyErrorRoots | None = None
         self._begins: list[int] = []
         self._sums: list[Array] = []
         self._kept: dict[int, ReadRoots] = {}
-        self._room = room
+        self._room = KEPT_BYTES if room is None else room
 
     def follow(self, number: int, q: Array, roots: BodyErrorRoots) -> None:
         """Takes the roots of a frame; frames of a stretch share one object, and its first one counts.

@@ -16,7 +16,7 @@ from mbkf.filters.contact_opening import ContactWatch
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
-from mbkf.filters.offset_change import KEPT_BYTES, OffsetChanges
+from mbkf.filters.offset_change import OffsetChanges
 from mbkf.filters.record import UNASKED, FrameRecorder, Track, blank
 from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_filter import TrackingFilter
@@ -88,7 +88,13 @@ class Settled(NamedTuple):
 
 
 def numbered_rows(dtype: np.dtype, first: int, after: int) -> NDArray:
-    """Blank records of the frames ``first`` to ``after``, that one excluded."""
+    """Blank records of frames.
+
+    Args:
+        dtype: Their type.
+        first: Number of the first frame.
+        after: Number of the one after the last.
+    """
     rows = blank(dtype, after - first)
     rows["number"] = np.arange(first, after)
     return rows
@@ -105,7 +111,7 @@ def fill(
     progress: Callable[[int, int], None] | None,
     contacts: ContactWatch | None,
     covariance: Array | None = None,
-    kept_bytes: int = KEPT_BYTES,
+    kept_bytes: int | None = None,
 ) -> Settled:
     """Runs a filter over all frames and fills their records.
 
@@ -119,7 +125,7 @@ def fill(
         progress: Called with frames done and frames in all.
         contacts: Without smoothing, opens contacts of other parts than the feet on the way.
         covariance: (T, 2 nv, 2 nv) receives the full covariances; None: they are not kept.
-        kept_bytes: Memory for roots of the errors by the body; others are worked out twice.
+        kept_bytes: Memory for roots of the errors by the body (:class:`~mbkf.filters.offset_change.OffsetChanges`).
 
     Raises:
         NotObservable: In no frame do the markers fit the body.

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 PAGES = 3
 """Pages in memory: work that goes forward looks back a little, and ahead."""
+
+
+Columns: TypeAlias = tuple[slice, Sequence[int] | NDArray[np.intp]]
+"""A colon and numbers of columns."""
 
 
 class PagedArray:
@@ -62,13 +66,20 @@ class PagedArray:
     def __len__(self) -> int:
         return self.shape[0]
 
-    def __getitem__(self, key: Any) -> Any:
+    @overload
+    def __getitem__(self, key: int | slice) -> NDArray: ...
+
+    @overload
+    def __getitem__(self, key: Columns) -> PagedColumns: ...
+
+    def __getitem__(self, key: int | slice | Columns) -> NDArray | PagedColumns:
         """A row by its number, rows of a slice, or, with a colon first, a view of some columns."""
         if isinstance(key, tuple):
-            return PagedColumns(self, key)
+            return PagedColumns(self, key[1])
         if not isinstance(key, slice):
             number = range(len(self))[int(key)]
-            return self._at(number // self._page)[number % self._page]
+            row: NDArray = self._at(number // self._page)[number % self._page]
+            return row
         first, after, step = key.indices(len(self))
         if step != 1:
             raise IndexError(f"rows are read one after the other, not every {step}")
@@ -135,14 +146,13 @@ class PagedArray:
 class PagedColumns:
     """Columns of a paged array, to be read."""
 
-    def __init__(self, rows: PagedArray, key: tuple[Any, ...]) -> None:
-        """Args: the array, and a colon followed by the columns."""
-        self._rows, self._columns = rows, key[1:]
+    def __init__(self, rows: PagedArray, columns: Sequence[int] | NDArray[np.intp]) -> None:
+        """Args: the array, and numbers of its columns."""
+        self._rows, self._columns = rows, columns
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def __getitem__(self, key: int | slice) -> NDArray:
-        found: NDArray = self._rows[key]
-        whole = (slice(None),) if isinstance(key, slice) else ()
-        return np.asarray(found[(*whole, *self._columns)])
+        found = self._rows[key]
+        return np.asarray(found[:, self._columns] if isinstance(key, slice) else found[self._columns])

@@ -54,7 +54,13 @@ def write_attributes(file: h5py.File, record: object) -> None:
 
 
 def write_texts(file: h5py.File, record: object, declared: Iterable[Quantity]) -> None:
-    """Writes lists of names or remarks of a record."""
+    """Writes lists of names or remarks of a record.
+
+    Args:
+        file: The file.
+        record: The record.
+        declared: The lists.
+    """
     for one in declared:
         write_labels(file, one.key, getattr(record, one.name), one.meaning)
 

@@ -76,8 +76,7 @@ def reconstruct(
             does not exist.
     """
     settings = settings or ReconstructSettings()
-    check_names(settings, imus is not None)
-    zero_posture(settings.angles_zero, subject)
+    check_names(settings, subject, imus is not None)
     with single_threaded():
         capture = checked_for_subject(capture, subject, settings.without_plates)
         measured, exchanged, remarks = put_right(capture.markers, subject, settings)
@@ -146,16 +145,18 @@ def put_right(
     return measured, exchanged, [*exchange_notes(exchanged), *shrunken, *entering]
 
 
-def check_names(settings: ReconstructSettings, sensors: bool) -> None:
+def check_names(settings: ReconstructSettings, subject: Subject, sensors: bool) -> None:
     """Refuses a filter, a frame or a reading that does not exist, and ``sensors`` for a filter that reads none.
 
     Args:
         settings: Settings of the reconstruction.
+        subject: The person.
         sensors: Inertial sensors are given.
 
     Raises:
         UnknownName: The filter, the frame of the pelvis or the reading of angles does not exist.
-        InvalidInput: The filter reads no inertial sensors.
+        InvalidInput: The filter reads no inertial sensors, or the person was not scaled with a static trial whose
+            posture angles count from.
     """
     if settings.filter not in FILTERS:
         raise UnknownName("filter", settings.filter, FILTERS)
@@ -164,6 +165,7 @@ def check_names(settings: ReconstructSettings, sensors: bool) -> None:
     if settings.angles not in ANGLES:
         raise UnknownName("reading of angles", settings.angles, ANGLES)
     convention_of(settings.convention)
+    zero_posture(settings.angles_zero, subject)
     if sensors and settings.filter != "dynamic":
         raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
 

@@ -38,7 +38,6 @@ from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.other_contacts import contact_opener
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import check_names
-from mbkf.trial.results.readings import zero_posture
 
 RECORD_PAGES = 2
 """Pages of the filter's records in memory: the one that is filled, and the one that is smoothed."""
@@ -75,8 +74,7 @@ def reconstruct_long(
         OSError: The folder cannot be written to.
     """
     settings, lengths = settings or ReconstructSettings(), lengths or PieceSettings()
-    check_names(settings, sensors=False)
-    zero_posture(settings.angles_zero, subject)
+    check_names(settings, subject, sensors=False)
     source = in_axes_of(source, subject, settings)
     with single_threaded(), _unfinished_beside(folder) as pages:
         trial = prepared(source, subject, settings, lengths, pages, progress)

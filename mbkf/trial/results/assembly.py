@@ -87,23 +87,9 @@ def assemble(
     instrument = "marker" if measured.names else "sensor"
     counts = TrackCounts.of(result)
     of_track = track_warnings(counts, motion.dof_names, inputs.unobservable, instrument) if whole else []
+    warnings = (*capture.notes, *inputs.remarks, *ground.warnings, *of_track, *of_emg)
     return Reconstruction.of(
-        Provenance(
-            trial=storable(Path(capture.path).stem) or "capture",
-            protocol=subject.protocol,
-            filter=settings.filter,
-            version=__version__,
-            rate_hz=measured.rate_hz,
-            times_s=times_s,
-            smoothed=result.smoothed,
-            uncorrected=int(result.uncorrected.sum()),
-            subject=subject,
-            settings=recorded(settings),
-            processing=dict(capture.processing),
-            file_axes=capture.axes,
-            file_axes_source=capture.axes_source.value,
-            warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *of_track, *of_emg),
-        ),
+        _provenance(capture, subject, settings, measured, result, warnings),
         Measurements(
             marker_names=measured.names,
             measured_m=measured.positions_m,
@@ -128,6 +114,32 @@ def assemble(
             unexplained=judged.loads if result.smoothed else before_contacts(judged.loads, bears, times_s),
             limb_doubts=in_time(result.limb_doubts, times_s),
         ),
+    )
+
+
+def _provenance(
+    capture: Capture,
+    subject: Subject,
+    settings: ReconstructSettings,
+    measured: MarkerTrajectories,
+    result: Track,
+    warnings: tuple[str, ...],
+) -> Provenance:
+    return Provenance(
+        trial=storable(Path(capture.path).stem) or "capture",
+        protocol=subject.protocol,
+        filter=settings.filter,
+        version=__version__,
+        rate_hz=measured.rate_hz,
+        times_s=measured.times_s,
+        smoothed=result.smoothed,
+        uncorrected=int(result.uncorrected.sum()),
+        subject=subject,
+        settings=recorded(settings),
+        processing=dict(capture.processing),
+        file_axes=capture.axes,
+        file_axes_source=capture.axes_source.value,
+        warnings=warnings,
     )
 
 
