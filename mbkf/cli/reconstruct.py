@@ -156,7 +156,6 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
-    from mbkf.trial.long.reconstruct import reconstruct_long
     from mbkf.trial.preparation.settings import ReconstructSettings
     from mbkf.trial.reconstruct import reconstruct
     from mbkf.trial.results.summary import summarise
@@ -195,6 +194,8 @@ def run(args: argparse.Namespace) -> int:
     settings = with_chosen(settings, args)
     with stages() as report:
         if pieces is not None:
+            from mbkf.trial.long.reconstruct import reconstruct_long
+
             summary = reconstruct_long(pieces, subject, folder, settings=settings, progress=report)
         else:
             result = reconstruct(capture, subject, settings=settings, imus=imus, progress=report)
