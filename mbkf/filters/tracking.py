@@ -58,7 +58,7 @@ def track(
     frames, size = len(recording), 2 * filter.model.nv
     covariance = np.full((frames, size, size), np.nan) if keep_covariance else None
     recorder = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads, levels=True)
-    rows = numbered_rows(recorder.dtype, 0, frames)
+    rows = blank_records(recorder.dtype, 0, frames)
     settled = fill(
         rows,
         recorder,
@@ -87,7 +87,7 @@ class Settled(NamedTuple):
     changes: OffsetChanges | None
 
 
-def numbered_rows(dtype: np.dtype, first: int, after: int) -> NDArray:
+def blank_records(dtype: np.dtype, first: int, after: int) -> NDArray:
     """Blank records of frames.
 
     Args:

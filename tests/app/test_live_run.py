@@ -12,13 +12,16 @@ from mbkf.errors import InvalidInput
 from mbkf.stream.run.folder import LOG_FOLDER
 from tests.waiting import until
 
+PORT = 21234
+"""Below the ports that systems give to sockets of their own choice."""
+
 SAYS = """
 import json, pathlib, sys
 pathlib.Path("{words}").write_text(json.dumps(sys.argv[1:]))
 def say(text):
     print(text, file=sys.stderr, flush=True)
 say("waiting for lsl …")
-say("page: http://127.0.0.1:51234/")
+say("page: http://127.0.0.1:{port}/")
 say("following walk: 36 markers at 100 Hz")
 {end}
 """
@@ -35,7 +38,7 @@ def begun(tmp_path):
 
     def begin(end, session="P1"):
         script = tmp_path / "program.py"
-        script.write_text(SAYS.format(words=(tmp_path / "words.json").as_posix(), end=end))
+        script.write_text(SAYS.format(words=(tmp_path / "words.json").as_posix(), port=PORT, end=end))
         run = LiveRun((sys.executable, str(script)))
         runs.append(run)
         run.start(session, ["--from=lsl"], tmp_path / "live-1")
@@ -59,7 +62,7 @@ def said(run, text):
 def test_what_it_says_is_told_and_it_ends_when_asked(begun, tmp_path):
     run = begun(FOLLOWS)
     now = said(run, "following walk")
-    assert (now.state, now.port, now.session, now.name) == ("running", 51234, "P1", "live-1") and now.goes_on
+    assert (now.state, now.port, now.session, now.name) == ("running", PORT, "P1", "live-1") and now.goes_on
     with pytest.raises(InvalidInput, match="a live run of session 'P1' goes on already"):
         run.start("P2", [], tmp_path / "other")
     run.stop()
@@ -127,5 +130,5 @@ def test_the_next_page_has_the_address_of_the_one_before(begun, tmp_path):
     once(run, "ended")
     run.start("P2", [], Path(tmp_path / "live-2"))
     said(run, "following")
-    assert "--view-port=51234" in json.loads((tmp_path / "words.json").read_text())
+    assert f"--view-port={PORT}" in json.loads((tmp_path / "words.json").read_text())
     assert run.state().name == "live-2"

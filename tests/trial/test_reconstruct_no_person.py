@@ -18,7 +18,7 @@ from mbkf.trial.synth import synthesise
 pytestmark = pytest.mark.slow
 
 KINDS = {
-    "forces x 30": lambda force, moment, rng: (30.0 * force, moment),
+    "forces x 30, moments x 100": lambda force, moment, rng: (30.0 * force, 100.0 * moment),
     "both x 20": lambda force, moment, rng: (20.0 * force, 20.0 * moment),
     "moments in N mm": lambda force, moment, rng: (force, 1e3 * moment),
     "moments of 1e4 N m at random": lambda force, moment, rng: (force, rng.normal(0.0, 1e4, moment.shape)),
@@ -41,7 +41,7 @@ def spoilt(kind):
 
 
 SMOOTHED = {"smooth": True}
-REFUSED = "forces x 30"
+REFUSED = "forces x 30, moments x 100"
 """Plates of which some frames cannot be smoothed."""
 
 ASKED = [

@@ -18,7 +18,7 @@ import numpy as np
 
 from mbkf.conventions import StageCallback
 from mbkf.filters.record import FrameRecorder
-from mbkf.filters.tracking import Settled, fill, numbered_rows
+from mbkf.filters.tracking import Settled, blank_records, fill
 from mbkf.io.atomic import remove_file
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.axes import axes_matrix
@@ -125,7 +125,7 @@ def _filtered(trial: LongTrial, folder: Path, progress: StageCallback | None) ->
     settings, inputs = trial.settings, trial.inputs
     filter = tracking_filter(settings.filter, inputs)
     recorder = FrameRecorder(filter, len(inputs.names), inputs.body, settings.spreads, levels=True)
-    blank = partial(numbered_rows, recorder.dtype)
+    blank = partial(blank_records, recorder.dtype)
     rows = PagedArray(folder / "records", blank, trial.source.frames, trial.lengths.frames, RECORD_PAGES)
     settled = fill(
         rows,
