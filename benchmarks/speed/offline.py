@@ -106,18 +106,20 @@ def repeated(capture: Capture, frames: int) -> Capture:
         frames: Number of frames wanted.
     """
     markers = capture.markers
-    laps = int(np.ceil(frames / markers.frames))
 
-    def laid(values: Array, count: int) -> Array:
-        return np.concatenate([values[:: -1 if lap % 2 else 1] for lap in range(laps)])[:count]
+    def laid(values: Array, count: int, lap: int) -> Array:
+        """``count`` values; a lap is the number of steps from one turn to the next."""
+        step = np.arange(count) % (2 * lap)
+        return np.asarray(values[np.minimum(step, 2 * lap - step)])
 
     plates = []
     for plate in capture.plates:
-        count = round(frames * plate.rate_hz / markers.rate_hz)
-        force_n, moment_nm = laid(plate.force_n, count), laid(plate.moment_nm, count)
-        pressed_m = laid(plate.centre_of_pressure_m, count)
+        ratio = plate.rate_hz / markers.rate_hz
+        count, lap = round(frames * ratio), round((markers.frames - 1) * ratio)
+        force_n, moment_nm = laid(plate.force_n, count, lap), laid(plate.moment_nm, count, lap)
+        pressed_m = laid(plate.centre_of_pressure_m, count, lap)
         plates.append(replace(plate, force_n=force_n, moment_nm=moment_nm, centre_of_pressure_m=pressed_m))
-    positions = laid(markers.positions_m, frames)
+    positions = laid(markers.positions_m, frames, markers.frames - 1)
     return Capture("", replace(markers, positions_m=positions), tuple(plates))
 
 

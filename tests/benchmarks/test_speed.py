@@ -85,14 +85,17 @@ def test_further_plates_read_nothing(walk):
 
 
 def test_a_long_trial_is_a_short_one_forwards_and_backwards(walk):
+    """Plates and markers turn at the same time in every lap."""
     own = walk.capture.markers.positions_m
-    frames = 2 * len(own) + 5
-    long = repeated(walk.capture, frames)
-    np.testing.assert_array_equal(long.markers.positions_m, np.concatenate([own, own[::-1], own[:5]]))
+    last = len(own) - 1
+    long = repeated(walk.capture, 3 * last + 1)
+    expected = np.concatenate([own, own[-2::-1], own[1:]])
+    np.testing.assert_array_equal(long.markers.positions_m, expected)
     plate, again = walk.capture.plates[0], long.plates[0]
-    samples = round(frames * plate.rate_hz / long.markers.rate_hz)
-    assert len(again.force_n) == samples
-    np.testing.assert_array_equal(again.force_n[len(plate.force_n)], plate.force_n[-1])
+    ratio = round(plate.rate_hz / long.markers.rate_hz)
+    assert len(again.force_n) == ratio * (3 * last + 1)
+    for frame, seen in ((last, last), (2 * last, 0), (2 * last + 7, 7)):
+        np.testing.assert_array_equal(again.force_n[ratio * frame], plate.force_n[ratio * seen])
 
 
 def test_memory_of_an_hour_is_that_of_its_frames(tmp_path, monkeypatch):
