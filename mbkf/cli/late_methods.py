@@ -2,13 +2,14 @@
 
 Python 3.11 and 3.12 compile each method by itself, six for a frozen class, which takes 0.6 ms a class; a command loads
 some two hundred classes, and calls few of their methods. Later versions compile those of a class together and are left
-as they are.
+as they are. Until its first call a method's signature reads ``(*values, **named)``.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 PACKAGE = "mbkf."
@@ -20,41 +21,22 @@ def compile_late() -> None:
     """From here on, dataclasses of mbkf's modules get methods that compile themselves at the first call."""
     create = getattr(dataclasses, COMPILER, None)
     if create is not None:
-        setattr(dataclasses, COMPILER, _late(create))
+        setattr(dataclasses, COMPILER, partial(_create_late, create))
 
 
-def _late(create: Callable[..., Any]) -> Callable[..., Any]:
-    def create_late(name: str, *text: Any, **options: Any) -> Any:
-        module = (options.get("globals") or {}).get("__name__", "")
-        if not module.startswith(PACKAGE):
-            return create(name, *text, **options)
-        return _Method(create, name, text, options).first_call()
+def _create_late(create: Callable[..., Any], name: str, *text: Any, **options: Any) -> Any:
+    """A function that stands in the class until it is called: it compiles the method, which takes its place."""
+    if not (options.get("globals") or {}).get("__name__", "").startswith(PACKAGE):
+        return create(name, *text, **options)
+    compiled = cache(partial(create, name, *text, **options))
 
-    return create_late
+    def method(self_: object, /, *values: object, **named: object) -> object:
+        found = compiled()
+        found.__qualname__ = method.__qualname__
+        for owner in type(self_).__mro__:
+            if owner.__dict__.get(name) is method:
+                type.__setattr__(owner, name, found)
+        return found(self_, *values, **named)
 
-
-class _Method:
-    """A method that is not compiled yet."""
-
-    def __init__(
-        self, create: Callable[..., Any], name: str, text: tuple[Any, ...], options: dict[str, Any]
-    ) -> None:
-        self._create, self._name, self._text, self._options = create, name, text, options
-        self._compiled: Callable[..., Any] | None = None
-
-    def first_call(self) -> Callable[..., Any]:
-        """The function that stands in the class until it is called: it compiles the method and takes its place."""
-
-        def method(self_: object, /, *values: object, **named: object) -> object:
-            compiled = self._compiled or self._compile()
-            for owner in type(self_).__mro__:
-                if owner.__dict__.get(self._name) is method:
-                    type.__setattr__(owner, self._name, compiled)
-            return compiled(self_, *values, **named)
-
-        method.__name__ = self._name
-        return method
-
-    def _compile(self) -> Callable[..., Any]:
-        self._compiled = self._create(self._name, *self._text, **self._options)
-        return self._compiled
+    method.__name__ = method.__qualname__ = name
+    return method
