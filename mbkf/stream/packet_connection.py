@@ -6,6 +6,8 @@ import select
 import socket
 from contextlib import suppress
 
+from mbkf.errors import InvalidInput
+
 CONNECT_S, ANSWER_S = 0.5, 3.0
 """Longest wait for a connection, and for an answer or for room to send."""
 
@@ -31,10 +33,16 @@ class PacketConnection:
 
         Raises:
             OSError: The server is not there.
+            InvalidInput: No computer can have this name.
         """
         self._ended = ended
         self.received = bytearray()
-        self.socket = socket.create_connection((host, port), CONNECT_S)
+        try:
+            self.socket = socket.create_connection((host, port), CONNECT_S)
+        except UnicodeError as error:
+            raise InvalidInput(
+                f"'{host}' is neither an address nor a computer's name; write it as in 192.168.1.10"
+            ) from error
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.socket.setblocking(False)
 

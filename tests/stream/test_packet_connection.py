@@ -4,6 +4,7 @@ import socket
 
 import pytest
 
+from mbkf.errors import InvalidInput
 from mbkf.stream.packet_connection import PacketConnection
 
 HERE = "127.0.0.1"
@@ -54,3 +55,9 @@ def test_a_server_that_is_not_there_is_an_error():
         port = listener.getsockname()[1]
     with pytest.raises(OSError):
         PacketConnection(HERE, port, "")
+
+
+@pytest.mark.parametrize("host", ["a..b", "x" * 64])
+def test_a_name_that_no_computer_can_have_is_refused(host):
+    with pytest.raises(InvalidInput, match="neither an address nor a computer's name"):
+        PacketConnection(host, 801, "ended")
