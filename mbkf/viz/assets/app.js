@@ -143,7 +143,7 @@ function draw(data, turn) {
   drawn = turn;
   shown = data;
   document.title = `${titleOf(data.id)} · mbkf`;
-  keepingFocus(() => drawParts(place("session"), data, act));
+  keepingFocus(() => { if (shown === data) drawParts(place("session"), data, act); }); // a drawing that waits may be an old one
 }
 
 const titleOf = (session) => (session === "." ? "·" : session);

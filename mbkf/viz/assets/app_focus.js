@@ -39,7 +39,8 @@ function release() {
 const afterClick = () => { if (waiting) setTimeout(release); };
 addEventListener("pointerdown", hold, true);
 addEventListener("keydown", (event) => { if (event.key === " ") hold(); }, true);
-for (const end of ["pointerup", "pointercancel", "keyup", "blur"]) addEventListener(end, afterClick, true);
+for (const end of ["pointerup", "pointercancel", "keyup"]) addEventListener(end, afterClick, true);
+addEventListener("blur", afterClick); // the window's own: a press takes the focus from another control
 addEventListener("pointermove", (event) => { if (!event.buttons) afterClick(); }, true); // released over an open list or another window
 
 // Draws, and gives focus, open and closed menus back to the controls of the same keys.
