@@ -104,6 +104,7 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
         until = time.perf_counter() + timeout_s
         if not self.receiving:
             self.receiving = True
+            self._heard_s = time.perf_counter()
             if self._client is not None:
                 self._resume(self._client)
         while True:

@@ -135,6 +135,17 @@ def test_silence_ends_a_connection(laboratory, monkeypatch):
     assert "it is silent" in one.event("connection")
 
 
+def test_silence_counts_from_the_first_read_on():
+    server = ViconServer(played(CAPTURE))
+    source = ViconSource(HERE, server.port)
+    connected(source)
+    source._heard_s = float("-inf")  # the filter was loaded meanwhile
+    source.read(0.0)
+    assert source.connected
+    source.close()
+    server.close()
+
+
 def test_packets_that_cannot_be_read_are_left_out(laboratory):
     one = laboratory()
     for data in (b"", b"\1" * 9, block(5, b""), block(6, struct.pack("<I", 10**6)), block(10, b"\0" * 11)):
