@@ -144,9 +144,8 @@ def upright(R: Array, felt: Array, up: Array) -> Array:
 
 def _rotation(vector_rad: Array) -> Array:
     """(3, 3) the turn about a vector by its length."""
-    from scipy.spatial.transform import (
-        Rotation,
-    )  # loads slowly; all trials import this file
+    # loads slowly, and every trial imports this file
+    from scipy.spatial.transform import Rotation
 
     return np.asarray(Rotation.from_rotvec(vector_rad).as_matrix())
 

@@ -141,9 +141,8 @@ def prepare(
 
 def _sought(subject: Subject) -> tuple[str, ...]:
     """Names of the markers that are looked for among points without names."""
-    from mbkf.trial.live.labels import (
-        live_body,
-    )  # labelling loads slowly, and streams with names do not need it
+    # labelling loads slowly, and streams with names do not need it
+    from mbkf.trial.live.labels import live_body
 
     return live_body(subject).names
 
