@@ -48,6 +48,7 @@ from mbkf.numerics.printed import percent
 
 if TYPE_CHECKING:
     from mbkf.io.capture_pieces import CapturePieces
+    from mbkf.io.records import Capture
     from mbkf.io.results_folder import Summary
     from mbkf.io.verdict import VerdictTold
     from mbkf.trial.inertial.on_body import ImuOnBody
@@ -153,7 +154,7 @@ def run(args: argparse.Namespace) -> int:
     """Reconstructs the trial, writes the folder and prints the key numbers."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
-    from mbkf.io.capture import read_capture
+    from mbkf.io.records import Capture
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
     from mbkf.trial.preparation.settings import ReconstructSettings
@@ -165,16 +166,7 @@ def run(args: argparse.Namespace) -> int:
     subject = read_subject(args.subject)
     without = tuple(args.without_plate)
     truth = truth_beside(args.trial)
-    pieces = _pieces(args) if truth is None else None
-    if pieces is None:
-        capture = read_capture(
-            args.trial,
-            forces=args.forces,
-            unneeded_plates=without,
-            emg=args.emg,
-            emg_offset_s=args.emg_offset,
-            **axes_options(args),
-        )
+    trial = _trial(args, whole=truth is not None)
     folder, imus = check_folder(args.out, RESULT_FILES), _imus(args)
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
@@ -192,27 +184,38 @@ def run(args: argparse.Namespace) -> int:
         keep_covariance=truth is not None,
     )
     settings = with_chosen(settings, args)
-    with stages() as report:
-        if pieces is not None:
-            from mbkf.trial.long.reconstruct import reconstruct_long
-
-            summary = reconstruct_long(pieces, subject, folder, settings=settings, progress=report)
-        else:
-            result = reconstruct(capture, subject, settings=settings, imus=imus, progress=report)
-    if pieces is None:
+    if isinstance(trial, Capture):
+        with stages() as report:
+            result = reconstruct(trial, subject, settings=settings, imus=imus, progress=report)
         summary = summarise(result, truth)
         write_reconstruction(result, summary, folder)
+    else:
+        from mbkf.trial.long.reconstruct import reconstruct_long
+
+        with stages() as report:
+            summary = reconstruct_long(trial, subject, folder, settings=settings, progress=report)
     print_summary(summary, folder)
     return strict_exit(args, summary["verdict"])
 
 
-def _pieces(args: argparse.Namespace) -> CapturePieces | None:
-    """The capture as one that is reconstructed in pieces; None for one that is reconstructed whole."""
+def _trial(args: argparse.Namespace, whole: bool) -> Capture | CapturePieces:
+    """The trial: read, or to be read in pieces where it is long and neither options nor ``whole`` need all of it."""
+    from mbkf.io.capture import read_capture
     from mbkf.trial.long.choice import long_capture
 
-    if args.forces is not None or args.emg is not None or args.imu:
-        return None
-    return long_capture(args.trial, tuple(args.without_plate), **axes_options(args))
+    without, axes = tuple(args.without_plate), axes_options(args)
+    if not whole and args.forces is None and args.emg is None and not args.imu:
+        pieces = long_capture(args.trial, without, **axes)
+        if pieces is not None:
+            return pieces
+    return read_capture(
+        args.trial,
+        forces=args.forces,
+        unneeded_plates=without,
+        emg=args.emg,
+        emg_offset_s=args.emg_offset,
+        **axes,
+    )
 
 
 def _imus(args: argparse.Namespace) -> ImuOnBody | None:
