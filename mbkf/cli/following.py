@@ -236,7 +236,7 @@ def report_outcome(outcome: LiveOutcome, folder: Path) -> int:
             failed.append(f"'mbkf live --recover {folder}' makes results of the {logged} frames in its log")
         raise InvalidInput("; ".join(failed))
     if failed:
-        say(f"mbkf: error: {'; '.join(failed)}; {folder} holds the results of {logged} frames")
+        say(f"mbkf: error: {'; '.join(failed)}; the results of {logged} frames are in {folder}")
     return 1 if failed else 0
 
 

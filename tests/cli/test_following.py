@@ -6,6 +6,7 @@ from mbkf.cli.following import SaidVerdict, report_outcome
 from mbkf.io.verdict import Reason, Verdict
 from mbkf.stream.results.judgement import Judgement
 from mbkf.stream.run.session import LiveOutcome
+from mbkf.viz.sentences import said
 
 
 def test_a_failed_run_exits_with_1_and_says_why(tmp_path, capsys):
@@ -29,11 +30,20 @@ def test_a_failed_run_exits_with_1_and_says_why(tmp_path, capsys):
         == 1
     )
     assert "writing the report failed: full" in capsys.readouterr().err
+    lost = lacking | {"recording": "r.c3d", "frames_recorded": 0, "recording_problem": "full"}
+    assert report_outcome(LiveOutcome(lost, None, None, "cut"), tmp_path) == 1
+    line = capsys.readouterr().err.strip().removeprefix("mbkf: error: ")
+    assert "--recover" in line and said(line, "en").count("folder") == 2
+    assert said(line, "es") == (
+        "la sesión en vivo terminó antes de tiempo: cut; 5 fotogramas no se grabaron y se han perdido; no se pudo "
+        "escribir la grabación: full; los marcadores y las fuerzas grabados se conservan en la carpeta "
+        f"{tmp_path.name}; los resultados de 4 fotogramas están en la carpeta {tmp_path.name}"
+    )
 
 
 def test_the_running_verdict_is_said_when_the_word_on_a_part_changes():
-    said = []
-    sink = SaidVerdict(said.append)
+    spoken = []
+    sink = SaidVerdict(spoken.append)
 
     def frame(judgement):
         return SimpleNamespace(judgement=judgement)
@@ -47,4 +57,4 @@ def test_the_running_verdict_is_said_when_the_word_on_a_part_changes():
         sink.take(frame(judgement))
     sink.take(frame(Judgement(Verdict(), 2.5)))
     sink.close()
-    assert said == ["1.0 s: use", "1.5 s: look: trunk; 9 mm off: it may be loose; look at it", "2.5 s: use"]
+    assert spoken == ["1.0 s: use", "1.5 s: look: trunk; 9 mm off: it may be loose; look at it", "2.5 s: use"]
