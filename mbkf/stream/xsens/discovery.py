@@ -22,21 +22,23 @@ def xsens_streams(local: str, timeout_s: float, port: int = DEFAULT_PORT) -> lis
     """
 
     def listen(address: str) -> FoundStream | None:
-        stream = None
-        with (
-            suppress(MbkfError),
-            closing(XsensSource(port, address)) as source,
-        ):  # another program listens there
-            with suppress(MbkfError):  # data of other types only
-                stream = source.connect(timeout_s)
-            if source.sender is None:
-                return None
-            place = "" if port == DEFAULT_PORT else str(port)
-            found = FoundStream("xsens", "MVN", source.sender, place, {"local": address})
-            if stream is None:
-                return found
-            found, count = replace(found, rate_hz=stream.rate_hz), len(stream.sensors)
-            return replace(found, segments=count) if source.kind == POSES else replace(found, sensors=count)
-        return None
+        with suppress(MbkfError), closing(XsensSource(port, address)) as source:
+            return _heard(source, port, address, timeout_s)
+        return None  # another program listens there
 
     return at_own_addresses(listen, local)
+
+
+def _heard(source: XsensSource, port: int, address: str, timeout_s: float) -> FoundStream | None:
+    """The streamer that a source hears in time; None where none sends."""
+    stream = None
+    with suppress(MbkfError):  # data of other types only
+        stream = source.connect(timeout_s)
+    if source.sender is None:
+        return None
+    place = "" if port == DEFAULT_PORT else str(port)
+    found = FoundStream("xsens", "MVN", source.sender, place, {"local": address})
+    if stream is None:
+        return found
+    found, count = replace(found, rate_hz=stream.rate_hz), len(stream.sensors)
+    return replace(found, segments=count) if source.kind == POSES else replace(found, sensors=count)
