@@ -145,7 +145,8 @@ def console(*, stderr: bool = False) -> Console:
     stream = sys.stderr if stderr else sys.stdout
     below = stream.stream if isinstance(stream, Guarded) else stream
     terminal = below.isatty()
-    return Door(file=below, highlight=False, markup=False, width=None if terminal or stderr else PIPED_WIDTH)
+    width = None if terminal or stderr else PIPED_WIDTH
+    return Door(file=below, highlight=False, markup=False, emoji=False, width=width)
 
 
 def _encoded_as_codes(stream: TextIO) -> str | None:

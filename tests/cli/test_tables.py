@@ -6,12 +6,12 @@ from mbkf.cli.terminal import PIPED_WIDTH
 
 def test_markers_named_like_markup_are_printed_as_they_are(capsys):
     shown = table("Markers [bold]", "name of the marker", "mm")
-    shown.add_row("[x]", "5")
+    shown.add_row("[x]:a:", "5")
     console = terminal()
     console.print(shown)
-    console.print("[red]")
+    console.print("[red] udp:a:")
     out = capsys.readouterr().out
-    assert all(text in out for text in ("Markers [bold]", "[x]", "[red]"))
+    assert all(text in out for text in ("Markers [bold]", "[x]:a:", "[red] udp:a:"))
 
 
 def test_words_are_left_and_numbers_right():
