@@ -7,7 +7,9 @@ line may hold the run that wrote the file. Older files have neither and are read
 from __future__ import annotations
 
 import zlib
-from io import BytesIO
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO, FileIO
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -18,6 +20,7 @@ from mbkf.io.files_read import PIECE_BYTES, opened
 
 if TYPE_CHECKING:
     import h5py
+    from _typeshed import ReadableBuffer
 
 DAMAGED = (
     OSError, RuntimeError, KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError, MemoryError,
@@ -60,6 +63,55 @@ def sealed(made: BytesIO, run_id: str = "") -> memoryview:
     body = content[USER_BLOCK:]
     content[:USER_BLOCK] = _block(len(body), zlib.crc32(body), run_id)
     return content
+
+
+class WrittenFile(FileIO):
+    """A file for HDF5 to write, which keeps the system's refusals: HDF5 ends the process where it meets one."""
+
+    def __init__(self, path: Path) -> None:
+        """Makes the file.
+
+        Args:
+            path: The file.
+
+        Raises:
+            OSError: It cannot be made.
+        """
+        super().__init__(path, "w+")
+        self._path = path
+        self._error: OSError | None = None
+
+    def write(self, data: ReadableBuffer, /) -> int:
+        """Writes all data, or none after a refusal; the size is that of the data in either case."""
+        rest = memoryview(data).cast("B")
+        size = len(rest)
+        while rest and self._error is None:
+            try:
+                rest = rest[super().write(rest) or 0 :]
+            except OSError as error:
+                self._error = error
+        return size
+
+    def truncate(self, size: int | None = None, /) -> int:
+        """Sets the size."""
+        try:
+            return super().truncate(size)
+        except OSError as error:
+            self._error = self._error or error
+            return size or 0
+
+    @contextmanager
+    def checked(self) -> Iterator[None]:
+        """Reports a refusal at the end of the block, in place of HDF5's errors that follow from it.
+
+        Raises:
+            OSError: A write was refused, for example on a full disk.
+        """
+        try:
+            yield
+        finally:
+            if self._error is not None:
+                raise OSError(self._error.errno, self._error.strerror, str(self._path))
 
 
 def seal_file(path: Path, run_id: str = "") -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
 from mbkf.io.dimensions import AXES, WORLD, Unit, numbered
 from mbkf.io.files_read import check_input
-from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, seal_file, sealed
+from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, WrittenFile, array, check_seal, seal_file, sealed
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.quantities import Quantity
 from mbkf.io.quantities_h5 import (
@@ -83,7 +84,8 @@ class ResultPieces:
         import h5py
 
         self._path, self._frames, self._begin = path, frames, 0
-        self._file = h5py.File(path, "w", userblock_size=USER_BLOCK)
+        self._written = WrittenFile(path)
+        self._file = h5py.File(self._written, "w", userblock_size=USER_BLOCK)
         self._pieces: RecordPieces | None = None
         _write_format(self._file)
 
@@ -96,12 +98,13 @@ class ResultPieces:
         Raises:
             OSError: It cannot be written.
         """
-        if self._pieces is None:
-            self._pieces = RecordPieces(self._file, piece, self._frames)
-        else:
-            self._pieces.add(piece, self._begin)
+        with self._written.checked():
+            if self._pieces is None:
+                self._pieces = RecordPieces(self._file, piece, self._frames)
+            else:
+                self._pieces.add(piece, self._begin)
+            self._file.flush()
         self._begin += piece.frames
-        self._file.flush()
 
     def finish(self, last: Reconstruction, run_id: str, valid: bool) -> None:
         """Writes what holds for the whole trial, and seals the file.
@@ -115,16 +118,19 @@ class ResultPieces:
             OSError: It cannot be written.
         """
         assert self._pieces is not None
-        self._pieces.finish(last)
-        if not valid:
-            self._file["valid"][:] = False
-        _write_subject(self._file, last)
-        self.close()
+        with self._written.checked():
+            self._pieces.finish(last)
+            if not valid:
+                self._file["valid"][:] = False
+            _write_subject(self._file, last)
+            self.close()
         seal_file(self._path, run_id)
 
     def close(self) -> None:
-        """Closes the file."""
-        self._file.close()
+        """Closes the file; one that could not be written, too."""
+        with suppress(OSError, RuntimeError):
+            self._file.close()
+        self._written.close()
 
 
 def _write_format(file: h5py.File) -> None:

@@ -1,6 +1,8 @@
 """motion.h5: what is written is read back, with units; anything else is refused with one clear line."""
 
 import dataclasses
+import errno
+import resource
 
 import h5py
 import numpy as np
@@ -12,7 +14,7 @@ from mbkf.io.findings import Finding, not_judged
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.results import ARRAYS, QUANTITIES, Reconstruction
-from mbkf.io.results_h5 import read_h5, write_h5
+from mbkf.io.results_h5 import ResultPieces, read_h5, write_h5
 from mbkf.io.unexplained import UnexplainedLoad
 from tests.io.reconstructions import made_up, made_up_whole
 from tests.sealed import unsealed
@@ -216,3 +218,17 @@ def test_the_inertia_of_a_persons_segments_comes_back(tmp_path):
     assert (found.mass_factor, found.mass_factor_sd) == (1.2, 0.1)
     np.testing.assert_array_equal(found.centre_shift_m, own.centre_shift_m)
     np.testing.assert_array_equal(found.centre_shift_sd_m, own.centre_shift_sd_m)
+
+
+def test_a_file_too_large_for_the_system_is_its_error_and_closes(tmp_path):
+    r = made_up_whole(400)
+    written = ResultPieces(tmp_path / "motion.h5", 800)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, limits[1]))
+    try:
+        with pytest.raises(OSError, match="motion") as refused:
+            written.add(r)
+        written.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert refused.value.errno == errno.EFBIG and refused.value.filename == str(tmp_path / "motion.h5")
