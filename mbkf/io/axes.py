@@ -92,6 +92,23 @@ def nearest_axis(direction: Array) -> str:
     return ("-" if direction[axis] < 0.0 else "") + "xyz"[axis]
 
 
+def vertical_of(up: str | None, axes: str | None) -> str | None:
+    """Axis of a file that points up, as ``up`` or ``axes`` name it; None where neither does.
+
+    Raises:
+        InvalidInput: They contradict each other, or ``axes`` name no axes.
+        UnknownName: ``up`` names no axis.
+    """
+    if axes is None:
+        return up
+    vertical = nearest_axis(axes_matrix(axes)[2])
+    if up is not None and up_axis(up) != vertical:
+        raise InvalidInput(
+            f"up axis '{up}' contradicts axes '{axes}', in which {vertical} points up; give one"
+        )
+    return vertical
+
+
 def length_unit(name: str) -> str:
     """The canonical short name of a length unit, ``"mm"`` for ``"Millimeters"``.
 

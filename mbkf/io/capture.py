@@ -12,9 +12,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.errors import FileFormatError
 from mbkf.io.atomic import check_file
-from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
+from mbkf.io.axes import axes_matrix, axes_text, rotation_to_world, vertical_of
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.emg_file import read_emg
 from mbkf.io.emg_on_capture import emg_beside, with_emg
@@ -169,13 +169,7 @@ def read_capture(
     path = _input(Path(path))
     kind = CAPTURES.format_of(path)
     matrix = None if axes is None else axes_matrix(axes)
-    if matrix is not None:
-        vertical = nearest_axis(matrix[2])
-        if up is not None and up_axis(up) != vertical:
-            raise InvalidInput(
-                f"up axis '{up}' contradicts axes '{axes}', in which {vertical} points up; give one"
-            )
-        up = vertical
+    up = vertical_of(up, axes)
     options = CaptureOptions(
         up=up,
         unit=unit,

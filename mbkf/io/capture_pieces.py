@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.io.axes import axes_matrix, nearest_axis
+from mbkf.io.axes import axes_matrix, vertical_of
 from mbkf.io.c3d import capture_of
 from mbkf.io.c3d_decode import decode, frames_stated
 from mbkf.io.c3d_layout import C3dLayout, check_layout
@@ -21,7 +21,7 @@ from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.persons import one_person
 from mbkf.io.plausible import plausible
 from mbkf.io.readable_plates import left_out_notes
-from mbkf.io.records import AxesSource, Capture
+from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.turning import turned
 
 LOOK_STRETCHES = 12
@@ -71,12 +71,14 @@ class CapturePieces:
         if frames is None:
             return None
         matrix = None if axes is None else axes_matrix(axes)
-        up = options.get("up") if matrix is None else nearest_axis(matrix[2])
+        up = vertical_of(options.get("up"), axes)
         given = CaptureOptions(up=up, unit=options.get("unit"), unneeded_plates=unneeded_plates, ways={})
         stretches = spread_stretches(frames, look_frames)
         look = capture_of(path, decode(path, layout, stretches), given)
         notes = (*look.notes, *left_out_notes(given.left_out))
+        far = plausible(replace(look, plates=(), notes=())).notes  # counted in all pieces later
         look = plausible(replace(look, plates_left_out=dict(given.left_out), notes=notes))
+        look = replace(look, notes=tuple(note for note in look.notes if note not in far))
         if one_person(look, None) is not look:
             return None
         settled = replace(given, up=look.up_axis, unit=look.length_unit)
@@ -101,7 +103,8 @@ class CapturePieces:
     def piece(self, first: int, after: int) -> Capture:
         """The capture's frames ``first`` to ``after``, that one excluded, without electromyograms and derived points.
 
-        Plates are those of the look. Remarks are the look's.
+        Plates are those of the look; one that cannot be read here is not recorded here (NaN). Remarks are those on the
+        samples of these frames.
 
         Args:
             first: First frame, counted from 0.
@@ -109,22 +112,30 @@ class CapturePieces:
 
         Raises:
             FileFormatError: The file changed since it was opened.
-            InvalidInput: A plate reads what no plate can.
         """
         options = replace(self._options, left_out={})
         read = capture_of(self.path, decode(self.path, self._layout, [(first, after)]), options, first)
-        wanted = {plate.name for plate in self.look.plates}
-        plates = tuple(plate for plate in read.plates if plate.name in wanted)
-        read = replace(plausible(replace(read, plates=())), plates=plates, derived=(), analog=())
+        plates = read.plates
+        read = replace(plausible(replace(read, plates=(), notes=())), plates=plates, derived=(), analog=())
         read = turned(read, self.turn, self.look.axes_source)
+        by_name = {plate.name: plate for plate in read.plates}
         return replace(
             read,
+            plates=tuple(
+                by_name.get(plate.name) or _not_recorded(plate, read.markers) for plate in self.look.plates
+            ),
             axes=self.look.axes,
             up_axis=self.look.up_axis,
             axes_source=self.look.axes_source,
-            notes=self.look.notes,
             plates_left_out=self.look.plates_left_out,
         )
+
+
+def _not_recorded(plate: PlateReadings, markers: MarkerTrajectories) -> PlateReadings:
+    """A plate during the frames of markers, without a reading."""
+    unknown = np.full((round(plate.rate_hz / markers.rate_hz) * markers.frames, 3), np.nan)
+    readings = {"force_n": unknown, "moment_nm": unknown, "centre_of_pressure_m": unknown}
+    return replace(plate, start_time_s=markers.start_time_s, **readings)
 
 
 def spread_stretches(frames: int, wanted: int, count: int = LOOK_STRETCHES) -> list[tuple[int, int]]:

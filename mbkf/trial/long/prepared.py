@@ -219,7 +219,7 @@ def _read(
             shown[piece.own] = trial.shown(piece).positions_m[piece.inner]
         plates, remarks = trial.plates(capture)
         wrenches[piece.own] = plate_wrenches(plates, times_s, trial.rate_hz)[piece.inner]
-        trial.remarks.add([*notes, *remarks], *times_s[piece.inner][[0, -1]].tolist())
+        trial.remarks.add([*capture.notes, *notes, *remarks], *times_s[piece.inner][[0, -1]].tolist())
         raw = subject_markers(capture.markers, subject)
         for a, b, _ in exchanged:
             count = _taken_from(own, raw, a, b, piece.inner) + trial.exchanged.get((a, b), 0)
