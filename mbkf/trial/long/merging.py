@@ -15,7 +15,8 @@ from mbkf.io.unexplained import UnexplainedLoad
 GRAVITY_OF = {"not judged": 0, "inside": 1, "doubtful": 2, "outside": 3}
 """Verdicts of checks, the gravest last."""
 
-_NUMBERS = re.compile(r"[\d.,–:]+")
+_NUMBERS = re.compile(r"(?<![\w'])\d[\d.,–:]*")
+"""Numbers that differ among remarks of one kind; those of names, such as LTHI1 and plate '2', are part of the kind."""
 
 
 class Remarks:
@@ -40,16 +41,13 @@ class Remarks:
 
     def texts(self) -> tuple[str, ...]:
         """A remark of each kind: the first one, with its time where not all pieces have it word by word."""
-        told = []
-        for each in self._found.values():
-            from_s, to_s, text = each[0]
-            if len({one for *_, one in each}) == 1 and len(each) == self._pieces:
-                told.append(text)
-                continue
-            told.append(
-                f"in {len(each)} of {self._pieces} parts of the trial, such as {from_s:.0f} to {to_s:.0f} s: {text}"
-            )
-        return tuple(told)
+        return tuple(self._text(each) for each in self._found.values())
+
+    def _text(self, each: Sequence[tuple[float, float, str]]) -> str:
+        from_s, to_s, text = each[0]
+        if len({one for *_, one in each}) == 1 and len(each) == self._pieces:
+            return text
+        return f"in {len(each)} of {self._pieces} parts of the trial, such as {from_s:.0f} to {to_s:.0f} s: {text}"
 
 
 def usual_checks(found: Sequence[Sequence[Finding]]) -> tuple[Finding, ...]:
@@ -70,16 +68,17 @@ def unusual_checks(found: Sequence[Sequence[Finding]]) -> tuple[str, ...]:
     Args:
         found: The checks of each piece.
     """
-    told = []
+    remarks = []
     for each in _by_check(found):
         outside = [one for one in each if one.verdict == "outside"]
         if outside and each[len(each) // 2].verdict != "outside":
             worst = outside[-1]
-            told.append(
-                f"{worst.name}: outside its bound in {len(outside)} of {len(each)} parts of the trial, by up to "
-                f"{abs(worst.value or 0.0):.3g} {worst.unit}; look at the loads of these parts"
+            of_segment = f" of the {worst.segment.replace('_', ' ')}" if worst.segment else ""
+            remarks.append(
+                f"{worst.name}{of_segment}: outside its bound of {worst.bound:g} {worst.unit} in {len(outside)} of "
+                f"{len(each)} parts of the trial, up to {abs(worst.value or 0.0):.3g} {worst.unit}; {worst.hint}"
             )
-    return tuple(told)
+    return tuple(remarks)
 
 
 def _by_check(found: Sequence[Sequence[Finding]]) -> list[list[Finding]]:

@@ -58,7 +58,7 @@ def reconstruct_long(
         source: The capture.
         subject: The scaled person.
         folder: Where to write; made where missing. Its files take their places when all of them are whole.
-        settings: The filter and its settings.
+        settings: The filter and its settings; covariances are not kept.
         lengths: Lengths of the pieces.
         progress: Called with the stage, items done and items in all.
 

@@ -22,7 +22,7 @@ def test_the_usual_finding_counts_and_others_are_said():
     (found,) = usual_checks(pieces)
     assert (found.value, found.verdict) == (1.5, "inside")
     (told,) = unusual_checks(pieces)
-    assert told.startswith("mass: outside its bound in 1 of 5 parts of the trial, by up to 9 %")
+    assert told == "mass: outside its bound of 5 % in 1 of 5 parts of the trial, up to 9 %; -9.0"
 
 
 def test_a_check_that_is_mostly_outside_is_outside_and_said_once():
@@ -55,6 +55,17 @@ def test_a_contact_across_a_border_is_one():
     assert other == left
     assert len(joined_contacts([FOOT, replace(after, how="estimated")], 0.01)) == 2
     assert len(joined_contacts([FOOT, replace(after, from_s=1.2)], 0.01)) == 2
+
+
+def test_remarks_on_different_names_are_different():
+    remarks = Remarks()
+    remarks.add(
+        ["plate '1': 3 of 9 samples are refused", "names LTHI1 and LTHI2 exchanged in 5 frames"], 0.0, 10.0
+    )
+    remarks.add(
+        ["plate '2': 4 of 9 samples are refused", "names LTHI1 and LTHI3 exchanged in 5 frames"], 10.0, 20.0
+    )
+    assert len(remarks.texts()) == 4
 
 
 def test_remarks_of_one_kind_are_one():
