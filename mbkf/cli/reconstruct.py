@@ -194,6 +194,10 @@ def run(args: argparse.Namespace) -> int:
 
         with stages() as report:
             summary = reconstruct_long(trial, subject, folder, settings=settings, progress=report)
+        tables = (
+            f"OpenSim's tables of this long trial are made by: mbkf export {folder} --to opensim --out DIR"
+        )
+        summary["warnings"] = [*summary["warnings"], tables]
     print_summary(summary, folder)
     return strict_exit(args, summary["verdict"])
 

@@ -134,8 +134,13 @@ class CapturePieces:
 def _not_recorded(plate: PlateReadings, markers: MarkerTrajectories) -> PlateReadings:
     """A plate during the frames of markers, without a reading."""
     unknown = np.full((round(plate.rate_hz / markers.rate_hz) * markers.frames, 3), np.nan)
-    readings = {"force_n": unknown, "moment_nm": unknown, "centre_of_pressure_m": unknown}
-    return replace(plate, start_time_s=markers.start_time_s, **readings)
+    return replace(
+        plate,
+        start_time_s=markers.start_time_s,
+        force_n=unknown,
+        moment_nm=unknown,
+        centre_of_pressure_m=unknown,
+    )
 
 
 def spread_stretches(frames: int, wanted: int, count: int = LOOK_STRETCHES) -> list[tuple[int, int]]:

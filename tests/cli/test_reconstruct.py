@@ -4,7 +4,7 @@ import json
 import math
 import re
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import h5py
 import numpy as np
@@ -19,6 +19,7 @@ from mbkf.io.results import ARRAYS
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
+from mbkf.trial.long import choice
 from mbkf.trial.preparation.settings import Hidden
 from tests.captures import made_capture
 
@@ -204,6 +205,28 @@ def test_hidden_markers_are_predicted(person, causal):
     )
     assert summary["missing_fraction"] == pytest.approx((2 * 21 + 11) / (60 * 36))
     assert 0.0 < summary["hidden_marker_rms_mm"] <= summary["hidden_marker_max_mm"] < 20.0
+
+
+def test_a_long_trial_is_reconstructed_in_pieces_with_all_options(person, causal, capsys, monkeypatch):
+    words = ["--without-plate", "1", "--hide", "RASI@0.1:0.2"]
+    whole = causal(person.trial, *words)
+    numbers = read_summary(whole)
+    monkeypatch.setattr(choice, "long_capture", partial(choice.long_capture, longer_than=10))
+    out = causal(person.trial, *words)
+    assert {path.name for path in out.iterdir()} == {"motion.h5", "summary.json"}
+    found, shown = read_summary(out), capsys.readouterr().out
+    assert f"mbkf export {out} --to opensim --out DIR" in shown and shown.splitlines()[-1] == str(out)
+    for key in (
+        "settings",
+        "verdict",
+        "contacts",
+        "valid_frames",
+        "markers_used",
+        "missing_fraction",
+        "axes",
+    ):
+        assert found[key] == numbers[key], key
+    assert found["hidden_marker_rms_mm"] == pytest.approx(numbers["hidden_marker_rms_mm"], rel=1e-9)
 
 
 def test_withheld_plate(person, causal, plain):
