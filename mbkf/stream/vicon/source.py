@@ -71,8 +71,7 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
         """
         until = time.perf_counter() + timeout_s
         while True:
-            left = until - time.perf_counter()
-            found = self._take(max(0.0, left))
+            found = self._take(max(0.0, until - time.perf_counter()))
             if found is not None:
                 self._keep(found)
                 described = self._describable()
@@ -81,7 +80,7 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
                     self._frame(found)  # the person may stand on a plate, which decides its convention
                     self._before = None
                     return described.stream
-            if left <= 0.0:
+            if time.perf_counter() >= until:
                 return None
 
     def _describable(self) -> ViconDescription | None:

@@ -3,6 +3,7 @@
 import socket
 import struct
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from benchmarks.streams.vicon_server import PlateConvention, ViconServer, block
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.stream import reconnecting
 from mbkf.stream.played import played
+from mbkf.stream.vicon import source as vicon
 from mbkf.stream.vicon.client import Packet
 from mbkf.stream.vicon.source import ViconSource
 from tests.captures import made_capture
@@ -187,6 +189,19 @@ def test_packets_without_end_that_describe_nothing_end_no_later_than_asked(monke
     source = ViconSource(HERE, 801)
     monkeypatch.setattr(source, "_take", lambda _: waiting.pop())
     assert source.connect(0.0) is None and len(waiting) == 4
+
+
+def test_an_attempt_that_outlasts_the_time_is_the_last_one(monkeypatch):
+    clock, attempts = [0.0], []
+
+    def slow(timeout_s):
+        attempts.append(timeout_s)
+        clock[0] += 2.0
+
+    source = ViconSource(HERE, 801)
+    monkeypatch.setattr(source, "_take", slow)
+    monkeypatch.setattr(vicon, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    assert source.connect(1.5) is None and attempts == [1.5]
 
 
 def test_another_server_is_refused():
