@@ -47,7 +47,7 @@ class Tare:
 
 
 class PlateWay(NamedTuple):
-    """What the readings of a whole plate show, and a part of them is read with.
+    """Signs, factor and offset that all readings of a plate show, with which a part of them is read.
 
     Attributes:
         origin_m: (3,) vector from the point that the channels refer to, to the middle of the surface, plate axes.

@@ -44,7 +44,7 @@ from mbkf.trial.verdict.sums import Followed, TrialSums, frames_of
 
 @dataclass(frozen=True)
 class Survey:
-    """What the records of all frames show together.
+    """Findings from the records of all frames.
 
     Attributes:
         frame: The frame of the pelvis's angles.
@@ -71,7 +71,7 @@ def assembled(
     Args:
         trial: The trial.
         rows: (T,) records of its frames.
-        settled: What the filter found besides.
+        settled: Findings of the filter that are complete at the last frame.
         write: Called with each piece, without margins, in order.
         progress: Called with the stage, items done and items in all.
 
@@ -95,7 +95,7 @@ def assembled(
 
 
 def _survey(trial: LongTrial, rows: PagedArray) -> Survey:
-    """What the records of all frames show, from one look at each of them."""
+    """Findings from the records of all frames, each of which is read once."""
     model, frames = trial.inputs.sensor.model, trial.source.frames
     path_m, facing = np.full((2, frames, 2), np.nan)
     counts, corrected, decides = TrackCounts(), 0, 0

@@ -1,4 +1,4 @@
-"""Which captures are reconstructed in pieces: long C3D files that hold one person."""
+"""Choice of the captures that are reconstructed in pieces: long C3D files that hold one person."""
 
 from __future__ import annotations
 
