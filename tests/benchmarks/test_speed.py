@@ -101,12 +101,19 @@ def test_a_long_trial_is_a_short_one_forwards_and_backwards(walk):
 def test_memory_of_an_hour_is_that_of_its_frames(tmp_path, monkeypatch):
     """A frame more costs as much in an hour as between the two lengths."""
     monkeypatch.setattr(offline, "_written", lambda folder, motion, rate_hz, minutes: minutes)
-    taken = {1.0: Taken(12.0, 100.0, 12_000), 3.0: Taken(54.0, 340.0, 36_000)}
+    taken = {
+        1.0: Taken(12.0, 100.0, 12_000),
+        3.0: Taken(54.0, 340.0, 36_000),
+        6.0: Taken(99.0, 700.0, 72_000),
+        60.0: Taken(720.0, 599.0, 720_000),
+    }
     monkeypatch.setattr(offline, "_reconstructed", lambda trial, option: taken[trial])
     pace, peak, more, hour = offline.rows(tmp_path, 3.0)
     assert pace.value == pytest.approx(1.5) and not pace.passed
     assert (peak.value, more.value) == (340.0, pytest.approx(10.0))
-    assert hour.value == pytest.approx(340.0 + 0.01 * (720_000 - 36_000)) and not hour.passed
+    assert hour.value == pytest.approx(700.0 + 0.01 * (720_000 - 72_000)) and not hour.passed
+    pace, _, hour = offline.rows(tmp_path, 60.0)
+    assert pace.passed and hour.value == 599.0 and hour.passed
     with pytest.raises(InvalidInput, match="more than 1"):
         offline.rows(tmp_path, 1.0)
 
