@@ -117,12 +117,18 @@ def test_names_of_streams_are_text_and_failures_are_told(opened, lab, monkeypatc
         page.keyboard.press("Escape")
 
 
-def test_the_dialog_speaks_spanish(opened, lab):
+def test_the_dialog_speaks_spanish_and_its_sentences_stay_within(opened, lab, monkeypatch):
+    monkeypatch.setattr(module, "find_streams", lambda: Found((), ()))
     with opened(lab.url) as page:
         page.select_option("#language select", "es")
         page.click("button.live")
         page.wait_for_selector("select[name=source]")
         assert page.text_content("dialog button.main") == "Iniciar"
+        page.locator("dialog p[role=status]:has-text('No se encontró')").wait_for()
+        wide, seen = page.evaluate(
+            "(({ scrollWidth, clientWidth }) => [scrollWidth, clientWidth])(document.querySelector('dialog .inside'))"
+        )
+        assert wide <= seen
         assert "undefined" not in page.text_content("dialog")
 
 

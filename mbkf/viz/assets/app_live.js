@@ -136,7 +136,7 @@ class LiveDialog {
   // The streams of the network, looked for now and at the press of a button; pick takes the chosen one, and the first one
   // while untouched() is true.
   search(pick, untouched) {
-    const choice = element("select", { className: "found" }), again = element("button", { type: "button" }, word("live_look"));
+    const choice = element("select", { className: "found" }), again = element("button", { type: "button" }, word("live_look")), said = element("p", { role: "status" });
     let streams = [];
     const look = () => this.trying(async () => {
       again.disabled = true;
@@ -144,9 +144,10 @@ class LiveDialog {
       try {
         ({ streams } = await askLive("live/streams"));
         if (!choice.isConnected) return;
-        choice.replaceChildren(element("option", { value: -1 }, streams.length ? word("live_choose") : word("live_none")),
+        choice.replaceChildren(element("option", { value: -1 }, streams.length ? word("live_choose") : "–"),
           ...streams.map((one, k) => element("option", { value: k }, streamText(one))));
-        this.tell(streams.length ? "" : word("live_none"));
+        said.textContent = streams.length ? "" : word("live_none");
+        this.tell("");
         if (streams.length && untouched()) {
           choice.value = 0;
           pick(streams[0]);
@@ -158,7 +159,7 @@ class LiveDialog {
     choice.onchange = () => { if (streams[choice.value]) pick(streams[choice.value]); };
     again.onclick = look;
     queueMicrotask(look);
-    return [field(word("live_found"), choice), again];
+    return [field(word("live_found"), choice), again, said];
   }
 
   start(wanted) {
