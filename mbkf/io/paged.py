@@ -82,7 +82,7 @@ class PagedArray:
             return row
         first, after, step = key.indices(len(self))
         if step != 1:
-            raise IndexError(f"rows are read one after the other, not every {step}")
+            raise IndexError(f"every {step}")
         parts = [self._at(page)[part] for page, part in self._parts(first, after)]
         return parts[0] if len(parts) == 1 else np.concatenate([self._blank(0, 0), *parts])
 

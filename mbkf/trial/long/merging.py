@@ -73,9 +73,9 @@ def unusual_checks(found: Sequence[Sequence[Finding]]) -> tuple[str, ...]:
         outside = [one for one in each if one.verdict == "outside"]
         if outside and each[len(each) // 2].verdict != "outside":
             worst = outside[-1]
-            of_segment = f" of the {worst.segment.replace('_', ' ')}" if worst.segment else ""
+            place = f" ({worst.segment.replace('_', ' ')})" if worst.segment else ""
             remarks.append(
-                f"{worst.name}{of_segment}: outside its bound of {worst.bound:g} {worst.unit} in {len(outside)} of "
+                f"{worst.name}{place}: outside its bound of {worst.bound:g} {worst.unit} in {len(outside)} of "
                 f"{len(each)} parts of the trial, up to {abs(worst.value or 0.0):.3g} {worst.unit}; {worst.hint}"
             )
     return tuple(remarks)
