@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.plant import PlantMaker
@@ -33,7 +31,12 @@ from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, trac
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
-from mbkf.trial.preparation.selection import hidden_samples, subject_markers, without_plates
+from mbkf.trial.preparation.selection import (
+    hidden_samples,
+    subject_markers,
+    without_plates,
+    without_samples,
+)
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.preparation.shrunken import without_shrunken
 from mbkf.trial.results.assembly import assemble
@@ -83,7 +86,7 @@ def reconstruct(
         use = use_by_subject(capture.markers, subject)
         notes = [*capture.notes, *remarks, *([use.warning] if use.warning else [])]
         hidden = hidden_samples(measured, settings.hide)
-        shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
+        shown = without_samples(measured, hidden)
         plates = without_plates(capture, settings.without_plates).plates
         notes += plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
         subject, before, lengths = for_trial(subject, shown, settings)

@@ -37,21 +37,3 @@ def answering(data):
         yield server.getsockname()[1]
         server.shutdown(socket.SHUT_RDWR)
     thread.join()
-
-
-@contextmanager
-def sending(step):
-    """Calls a function again and again in a thread, as a sender does."""
-    done = threading.Event()
-
-    def send():
-        while not done.wait(0.001):
-            step()
-
-    thread = threading.Thread(target=send)
-    thread.start()
-    try:
-        yield
-    finally:
-        done.set()
-        thread.join()

@@ -1,12 +1,13 @@
 """Frames of the made walk as a live stream, for tests of the live page."""
 
-import threading
+import itertools
 from contextlib import contextmanager
 
 import numpy as np
 
 from mbkf.stream.results.frame import LiveFrame
 from tests.recordings import walk
+from tests.waiting import repeating
 
 
 def frame(k, lost=0):
@@ -27,18 +28,6 @@ def frame(k, lost=0):
 @contextmanager
 def feeding(sink, period_s=0.01):
     """Gives a sink a new frame every so often, in a thread, until the block ends."""
-    done = threading.Event()
-
-    def feed():
-        k = 0
-        while not done.wait(period_s):
-            sink.take(frame(k, lost=3))
-            k += 1
-
-    thread = threading.Thread(target=feed)
-    thread.start()
-    try:
+    numbers = itertools.count()
+    with repeating(lambda: sink.take(frame(next(numbers), lost=3)), period_s):
         yield
-    finally:
-        done.set()
-        thread.join()

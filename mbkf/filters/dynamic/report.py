@@ -161,7 +161,7 @@ class DynamicReport(StateReport[DynamicState]):
         )
 
     def kept(self, estimate: Posterior) -> Posterior:
-        """An estimate without the covariance of its prediction, a quarter megabyte that nobody reads any more."""
+        """An estimate without the covariance of its prediction: smoothing does not read its quarter of a megabyte."""
         step = estimate.record.step
         if step is None:
             return estimate

@@ -37,7 +37,12 @@ from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import Motion, fill_motion
 from mbkf.trial.preparation.other_contacts import with_other_contacts
-from mbkf.trial.preparation.selection import hidden_samples, subject_markers, without_plates
+from mbkf.trial.preparation.selection import (
+    hidden_samples,
+    subject_markers,
+    without_plates,
+    without_samples,
+)
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import for_trial, needs_motion, put_right
 
@@ -120,10 +125,9 @@ class LongTrial:
         )
 
     def shown(self, piece: Piece) -> MarkerTrajectories:
-        """The same without hidden samples."""
+        """A piece's markers with its margins, without hidden samples."""
         own = self.markers(piece)
-        hidden = hidden_samples(own, self.settings.hide)
-        return replace(own, positions_m=np.where(hidden[:, :, None], np.nan, own.positions_m))
+        return without_samples(own, hidden_samples(own, self.settings.hide))
 
     def all_checks(self) -> tuple[Finding, ...]:
         """The usual finding of each check."""
@@ -161,8 +165,7 @@ def prepared(
     measured, _, _ = put_right(look.markers, subject, settings)
     use = use_by_subject(look.markers, subject)
     times_s = look.markers.start_time_s + source.look_frames / look.markers.rate_hz
-    hidden = hidden_samples(measured, settings.hide, times_s)
-    measured = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
+    measured = without_samples(measured, hidden_samples(measured, settings.hide, times_s))
     plates = without_plates(look, settings.without_plates).plates
     notes = (*look.notes, *([use.warning] if use.warning else []))
     if settings.checks:

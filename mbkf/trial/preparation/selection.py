@@ -65,6 +65,11 @@ def hidden_samples(
     return hidden & markers.present
 
 
+def without_samples(markers: MarkerTrajectories, hidden: BoolArray) -> MarkerTrajectories:
+    """The markers with NaN where ``hidden`` (T, M) is true."""
+    return replace(markers, positions_m=np.where(hidden[:, :, None], np.nan, markers.positions_m))
+
+
 def plate_names(capture: Capture) -> tuple[str, ...]:
     """Names of the capture's plates, and of those that the reader left out."""
     return (*(plate.name for plate in capture.plates), *capture.plates_left_out)

@@ -8,14 +8,15 @@ from mbkf.stream.udp.discovery import udp_streams
 from mbkf.stream.udp.player import UdpPlayer
 from mbkf.stream.udp.source import UdpSource
 from tests.captures import made_capture
-from tests.stream.discovering import HERE, sending
+from tests.stream.discovering import HERE
+from tests.waiting import repeating
 
 
 def test_a_sender_of_lines_is_heard(monkeypatch):
     monkeypatch.setattr(side_by_side, "own_addresses", lambda local: [local])
     with closing(UdpSource(0, HERE)) as one:
         port = one.port
-    with closing(UdpPlayer(played(made_capture(3)), HERE, port)) as player, sending(player.listening):
+    with closing(UdpPlayer(played(made_capture(3)), HERE, port)) as player, repeating(player.listening):
         (found,) = udp_streams(HERE, 30.0, port)
     assert (found.source, found.address, found.markers) == (f"udp:{port}", HERE, 36)
     assert found.options == {"local": HERE}

@@ -9,8 +9,9 @@ import pytest
 from mbkf.stream import side_by_side
 from mbkf.stream.xsens.discovery import xsens_streams
 from mbkf.stream.xsens.source import XsensSource
-from tests.stream.discovering import HERE, sending
+from tests.stream.discovering import HERE
 from tests.stream.xsens_datagrams import datagram, tracker, upright
+from tests.waiting import repeating
 
 
 def trackers(number):
@@ -32,7 +33,7 @@ def test_a_streamer_is_heard(monkeypatch, made, contents):
         port = one.port
     counted = itertools.count()
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    with sender, sending(lambda: sender.sendto(made(next(counted)), (HERE, port))):
+    with sender, repeating(lambda: sender.sendto(made(next(counted)), (HERE, port))):
         (found,) = xsens_streams(HERE, 30.0, port)
     assert (found.source, found.address, found.carries) == (f"xsens:{port}", HERE, contents)
     assert found.options == {"local": HERE}
