@@ -296,12 +296,13 @@ static int reduced_by_rows(int N, const double *P, int n, const double *K, const
     return half(N, m, W, Q);
 }
 
-int mbkf_add_information(int N, int n, int m, const double *P, const double *information, const double *rows,
-                         double *after)
+/* Numbers that `informed` works in. */
+static long room(long N, long n, long m) { return N * (n + m) + 4 * n * n + m * (n + m + N); }
+
+/* As mbkf_add_information, working in F. */
+static int informed(int N, int n, int m, const double *P, const double *information, const double *rows,
+                    double *after, double *F)
 {
-    double *F = workspace((long)N * (n + m) + 4L * n * n + (long)m * (n + m + N));
-    if (!F)
-        return 0;
     double *W = F + (long)N * n, *G = W + (long)N * m, *across = G + (long)n * n;
     double *T = across + (long)n * n, *S = T + (long)n * n, *Y = S + (long)n * n, *Q = Y + (long)m * n;
     if (square_root(n, information, G))
@@ -317,6 +318,57 @@ int mbkf_add_information(int N, int n, int m, const double *P, const double *inf
         return 3;
     product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, after, N);
     mirror(N, after);
+    return 0;
+}
+
+/* Numbers of the components whose rows of P are not zero: readings change no others. Returns their count. */
+static int uncertain(int N, const double *P, int *numbers)
+{
+    int count = 0;
+    for (int i = 0; i < N; i++) {
+        const double *row = P + (long)i * N;
+        int j = row[i] != 0.0 ? i : 0;
+        while (j < N && row[j] == 0.0)
+            j++;
+        if (j < N)
+            numbers[count++] = i;
+    }
+    return count;
+}
+
+/* of (rows x columns), row by row, from M with `length` numbers a row: some of its rows, all of them for NULL. */
+static void pick(int rows, const int *row, int columns, const int *column, int length, const double *M, double *of)
+{
+    for (int i = 0; i < rows; i++) {
+        const double *from = M + (long)(row ? row[i] : i) * length;
+        for (int j = 0; j < columns; j++)
+            *of++ = from[column[j]];
+    }
+}
+
+int mbkf_add_information(int N, int n, int m, const double *P, const double *information, const double *rows,
+                         double *after)
+{
+    const long square = (long)N * N;
+    double *F = workspace(room(N, n, m) + 2 * square + (long)n * n + (long)m * N + N);
+    if (!F)
+        return 0;
+    double *own = F + room(N, n, m), *found = own + square, *first = found + square, *others = first + (long)n * n;
+    int *known = (int *)(others + (long)m * N), count = uncertain(N, P, known), ahead = 0;
+    while (ahead < count && known[ahead] < n)
+        ahead++;
+    if (count == N || !ahead)
+        return informed(N, n, m, P, information, rows, after, F);
+    pick(count, known, count, known, N, P, own);
+    pick(ahead, known, ahead, known, n, information, first);
+    pick(m, NULL, count, known, N, rows, others);
+    const int failed = informed(count, ahead, m, own, first, others, found, F);
+    if (failed)
+        return failed;
+    memset(after, 0, sizeof *after * square);
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++)
+            after[(long)known[i] * N + known[j]] = found[(long)i * count + j];
     return 0;
 }
 

@@ -49,24 +49,32 @@ def banded_rows(rng, readings, size):
 @pytest.mark.usefixtures("products")
 @settings(max_examples=60, deadline=None)
 @given(
-    st.integers(0, 10**6), st.integers(1, 61), st.integers(0, 30), st.integers(0, 30), st.sampled_from("CF")
+    st.integers(0, 10**6),
+    st.integers(1, 61),
+    st.integers(0, 30),
+    st.integers(0, 30),
+    st.sampled_from("CF"),
+    st.sampled_from([0.0, 0.4]),
 )
-def test_the_update_is_the_textbook_s(seed, n, further, readings, order):
-    """Any sizes: those of tiles, less and more."""
+def test_the_update_is_the_textbook_s(seed, n, further, readings, order, held):
+    """Any sizes: those of tiles, less and more; components whose value is certain stay so."""
     rng = np.random.default_rng(seed)
     N = n + further
     P, matrix = np.array(covariance(rng, N), order=order), information(rng, n, n + 4)
+    certain = rng.random(N) < held
+    P[certain] = P[:, certain] = 0.0
     rows = banded_rows(rng, readings, N)
     kept = P.copy()
     found = informed_with_rows(P, matrix, rows)
     whole = rows.T @ rows
     whole[:n, :n] += matrix
     # P - P (I + L P)^-1 L P, which needs no inverse of P, in scaled components.
-    scale = np.sqrt(np.diag(P))
+    scale = np.where(certain, 1.0, np.sqrt(np.diag(P)))
     C, L = P / scale / scale[:, None], whole * scale * scale[:, None]
     expected = (C - C @ np.linalg.solve(np.eye(N) + L @ C, L @ C)) * scale * scale[:, None]
     bound = 1e-9 * np.outer(scale, scale)
     assert (np.abs(found - expected) <= bound).all()
+    assert not found[certain].any()
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_array_equal(P, kept)
 
