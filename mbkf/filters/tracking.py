@@ -37,6 +37,7 @@ def track(
     keep_covariance: bool = False,
     progress: Callable[[int, int], None] | None = None,
     contacts: ContactWatch | None = None,
+    filtered: Callable[[int, Posterior], None] | None = None,
 ) -> Track:
     """Runs the filter over all frames.
 
@@ -51,6 +52,7 @@ def track(
         progress: Called with frames done and frames in all.
         contacts: Without smoothing, opens contacts of other parts than the feet on the way; None: those of the
             recording.
+        filtered: Called with each frame and its filtered estimate; an error that it raises ends the run.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
@@ -69,6 +71,7 @@ def track(
         progress=progress,
         contacts=contacts,
         covariance=covariance,
+        filtered=filtered,
     )
     found = track_of(rows, smoothed=smoothing is not None, covariance=covariance)
     found = replace(found, limb_doubts=settled.limb_doubts)
@@ -112,6 +115,7 @@ def fill(
     contacts: ContactWatch | None,
     covariance: Array | None = None,
     kept_bytes: int | None = None,
+    filtered: Callable[[int, Posterior], None] | None = None,
 ) -> Settled:
     """Runs a filter over all frames and fills their records.
 
@@ -126,6 +130,7 @@ def fill(
         contacts: Without smoothing, opens contacts of other parts than the feet on the way.
         covariance: (T, 2 nv, 2 nv) receives the full covariances; None: they are not kept.
         kept_bytes: Memory for roots of the errors by the body (:class:`~mbkf.filters.offset_change.OffsetChanges`).
+        filtered: Called with each frame and its filtered estimate; an error that it raises ends the run.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
@@ -152,6 +157,8 @@ def fill(
         recorder.step(row, fresh, seconds)
         recorder.innovation(row, fresh)
         started = started or fresh.started
+        if filtered is not None:
+            filtered(t, fresh)
         keep(later.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Recording
+from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.tracking_filter import TrackingFilter
 from mbkf.filters.tracking_loop import TrackingLoop, followed
 from mbkf.sensors.block import AnyBlock, Rows
@@ -55,29 +55,55 @@ class _Squares:
         return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
 
 
+class Misfit:
+    """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand, frame by frame.
+
+    Attributes:
+        frames: Number of frames that are looked at, from the first on.
+    """
+
+    def __init__(self, filter: TrackingFilter, recording: Recording) -> None:
+        """Args: the filter and its readings."""
+        assert recording.imus is not None
+        self.frames = looked_at(recording)
+        self._filter, self._first, self._seen = filter, round(SETTLED_S / recording.dt_s), False
+        self._rates = _Squares(np.full(self.frames, 3 * recording.imus.shape[1]))
+        self._feet = _Squares(_most_rows(recording)[: self.frames])
+
+    def add(self, t: int, posterior: Posterior) -> None:
+        """Adds the filtered estimate of frame t; frames beyond :attr:`frames` do not count."""
+        if self._first <= t < self.frames:
+            assert posterior.record.step is not None
+            parts, self._seen = posterior.record.step.readings.parts, True
+            self._rates.add(_of(self._filter, parts, BodySensors).reshape(-1, 2, 3)[:, 0].ravel())
+            self._feet.add(_of(self._filter, parts, StandingFeet))
+
+    def least(self, t: int) -> float:
+        """Least value at the end, when the estimates up to frame t are in."""
+        return self._rates.least(t) * self._feet.least(t)
+
+    @property
+    def value(self) -> float:
+        """The misfit; inf without an estimate."""
+        return self._rates.rms() * (self._feet.rms() or 1.0) if self._seen else np.inf
+
+
 def misfit(filter: TrackingFilter, recording: Recording, beyond: float = np.inf) -> float:
-    """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand; inf: implausible.
+    """The value of :class:`Misfit`; inf: implausible.
 
     Args:
         filter: The filter.
         recording: Its readings; their beginning is looked at.
         beyond: The answer is inf, too, as soon as the misfit is certain to exceed this.
     """
-    assert recording.imus is not None
-    first, last = round(SETTLED_S / recording.dt_s), looked_at(recording)
-    rates, feet = _Squares(np.full(last, 3 * recording.imus.shape[1])), _Squares(_most_rows(recording)[:last])
-    seen = False
+    found = Misfit(filter, recording)
     for t, posterior, _ in followed(TrackingLoop(filter), recording):
-        if t >= last:
+        if t >= found.frames:
             break
-        if t >= first:
-            assert posterior.record.step is not None
-            parts, seen = posterior.record.step.readings.parts, True
-            rates.add(_of(filter, parts, BodySensors).reshape(-1, 2, 3)[:, 0].ravel())
-            feet.add(_of(filter, parts, StandingFeet))
-            if rates.least(t) * feet.least(t) > beyond:
-                return np.inf
-    return rates.rms() * (feet.rms() or 1.0) if seen else np.inf
+        found.add(t, posterior)
+        if found.least(t) > beyond:
+            return np.inf
+    return found.value
 
 
 def _most_rows(recording: Recording) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput
-from mbkf.filters.estimate import Recording
+from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.mount_errors import MountErrors
@@ -33,7 +33,7 @@ from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.inertial.fields import DisturbedField, disturbed_fields
-from mbkf.trial.inertial.misfit import misfit
+from mbkf.trial.inertial.misfit import Misfit, misfit
 from mbkf.trial.inertial.motion_inputs import (
     MotionSettings,
     carrier,
@@ -178,21 +178,7 @@ def inertial_motion(
         )
         if not plan.from_standing:
             plan = replace(plan, early=_early(plan))
-        found = mounted_reversed(
-            model,
-            segments,
-            lambda turned, names, beyond: misfit(*_filter(_renamed(plan, turned, names)), beyond),
-        )
-        plan = replace(plan, turned=found.turned)
-        worn = _worn(plan)
-        filter, recording = _filter(plan, worn)
-        tracked = track(
-            filter,
-            recording,
-            smoothing=chosen.smoothing if chosen.smooth else None,
-            body=MountErrors(model, segments, worn.turn_sd_rad),
-            progress=partial(report, "Filtering"),
-        )
+        plan, worn, found, tracked = _tracked(plan, partial(report, "Filtering"))
         notes = (*warnings, *worn.remarks, *found.remarks)
         disturbed = disturbed_fields(*_magnetometers(plan, worn, tracked))
         result = motion_result(
@@ -207,6 +193,59 @@ def inertial_motion(
     return InertialMotion(
         result, worn.mounts, worn.bias_rad_s, tuple(one.name for one in sensors), found, disturbed
     )
+
+
+class _Reversed(Exception):
+    """Ends a run when its sensors turn out to be mounted the other way round."""
+
+
+def _tracked(
+    plan: _Plan, progress: Callable[[int, int], None]
+) -> tuple[_Plan, SensorMounts, SensorPlacement, Track]:
+    """The motion, and the mounting it was found with: the usual one unless another explains the readings better.
+
+    Other mountings are looked at as soon as the run with the usual one has gone through the frames that count.
+
+    Args:
+        plan: Sensors as named.
+        progress: Called with frames done and frames in all.
+    """
+    worn = _worn(plan)
+    filter, recording = _filter(plan, worn)
+    named, found = Misfit(filter, recording), list[SensorPlacement]()
+
+    def judge(turned: frozenset[str], names: Mapping[str, str], beyond: float) -> float:
+        return misfit(*_filter(_renamed(plan, turned, names)), beyond)
+
+    def settle() -> None:
+        if not found:
+            found.append(mounted_reversed(plan.model, plan.segments, named.value, judge))
+            if found[0].turned:
+                raise _Reversed
+
+    def look(t: int, posterior: Posterior) -> None:
+        named.add(t, posterior)
+        if t >= named.frames - 1:
+            settle()
+
+    def run(filter: TrackingFilter, filtered: Callable[[int, Posterior], None] | None = None) -> Track:
+        return track(
+            filter,
+            recording,
+            smoothing=plan.settings.smoothing if plan.settings.smooth else None,
+            body=MountErrors(plan.model, plan.segments, worn.turn_sd_rad),
+            progress=progress,
+            filtered=filtered,
+        )
+
+    try:
+        tracked = run(filter, look)
+        settle()
+    except _Reversed:
+        plan = replace(plan, turned=found[0].turned)
+        worn = _worn(plan)
+        tracked = run(_filter(plan, worn)[0])
+    return plan, worn, found[0], tracked
 
 
 def _renamed(plan: _Plan, turned: frozenset[str], names: Mapping[str, str]) -> _Plan:

@@ -80,15 +80,18 @@ class SensorPlacement:
         return tuple(found)
 
 
-def mounted_reversed(model: HumanModel, segments: Sequence[str], judge: Judge) -> SensorPlacement:
+def mounted_reversed(
+    model: HumanModel, segments: Sequence[str], named: float, judge: Judge
+) -> SensorPlacement:
     """Mounting of the sensors: the change that lessens the misfit most comes first, as long as one does.
 
     Args:
         model: The body.
         segments: Segments that carry sensors.
-        judge: Misfit of a way in which they may be worn.
+        named: Misfit of the sensors as named, mounted as usual.
+        judge: Misfit of another way in which they may be worn.
     """
-    found, least = SensorPlacement(), judge(frozenset(), {}, np.inf)
+    found, least = SensorPlacement(), named
     if not np.isfinite(least):
         return found
     open_groups = list(groups(model, segments))

@@ -35,13 +35,13 @@ def judged(best_turned, best_names, seen=None):
 def test_what_is_turned_is_found_group_by_group_and_then_exchanges():
     legs = frozenset({"right_thigh", "left_thigh", "right_shank"})
     names = {"right_thigh": "left_thigh", "left_thigh": "right_thigh"}
-    found = mounted_reversed(worn().model, SEGMENTS, judged(legs | {"pelvis"}, names))
+    found = mounted_reversed(worn().model, SEGMENTS, 1.0 + 4 + 2, judged(legs | {"pelvis"}, names))
     assert found.turned == legs | {"pelvis"}
     assert found.exchange is not None and set(found.exchange.segments) == set(names)
     assert len(found.remarks) == 2 and "exchanged" in found.remarks[0] and "pelvis" in found.remarks[1]
 
 
 def test_sensors_worn_as_usual_are_not_accused():
-    assert mounted_reversed(worn().model, SEGMENTS, judged(frozenset(), {})) == SensorPlacement()
-    assert mounted_reversed(worn().model, SEGMENTS, lambda *_: np.inf) == SensorPlacement()
+    assert mounted_reversed(worn().model, SEGMENTS, 1.0, judged(frozenset(), {})) == SensorPlacement()
+    assert mounted_reversed(worn().model, SEGMENTS, np.inf, lambda *_: 0.0) == SensorPlacement()
     assert SensorPlacement().remarks == ()
