@@ -18,6 +18,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.dimensions import AXES, axes_text
 from mbkf.io.hdf5 import array
+from mbkf.io.packed_arrays import write_packed
 from mbkf.io.quantities import Quantity, attributes, quantities
 from mbkf.io.utf8 import without_noughts
 
@@ -174,14 +175,17 @@ def write_array(file: h5py.File, one: Quantity, value: Array, frames: int | None
         value: The array, or its first frames.
         frames: Frames of the whole array, if it has an axis of time; None: the array is whole.
     """
-    packed: dict[str, Any] = {}
-    if value.size > _PACKED_FROM:
-        packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-    if frames is None or one.axes[0] != TIME or len(value) == frames:
-        dataset = file.create_dataset(one.key, data=value, **packed)
+    whole = frames is None or one.axes[0] != TIME or len(value) == frames
+    if whole and value.size > _PACKED_FROM:
+        dataset = write_packed(file, one.key, value)
+    elif whole:
+        dataset = file.create_dataset(one.key, data=value)
     else:
         shape = (frames, *value.shape[1:])
-        chunks = value.shape if value.size else None  # a piece is compressed once
+        packed: dict[str, Any] = {}
+        if value.size > _PACKED_FROM:  # a piece is compressed once
+            packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+        chunks = value.shape if value.size else None
         dataset = file.create_dataset(one.key, shape, value.dtype, chunks=chunks, **packed if chunks else {})
         dataset[: len(value)] = value
     unit = one.unit.text
