@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.record import Track
 from mbkf.model.body import Body
+from mbkf.model.motion_frames import motion_frames
 from mbkf.model.newton_euler import NewtonEuler
 
 
@@ -40,6 +41,13 @@ def residual_in_world(model: Body, q: Array, tau: Array) -> tuple[Array, Array]:
     return R @ tau[root][:3], R @ tau[root][3:]
 
 
+def _residuals_in_world(model: Body, jacobians: Array, tau: Array) -> Array:
+    """(T, 2, 3) forces and moments of :func:`residual_in_world` by (T, 6, nv) spatial Jacobians and (T, nv) forces."""
+    root = model.root.v
+    R = jacobians[:, :3, root][:, :, :3]
+    return np.einsum("tij,tkj->tki", R, tau[:, root].reshape(-1, 2, 3))
+
+
 def support_torques(model: Body, q: Array, support: Array) -> Array:
     """(nv,) Σ J_pᵀ w_p: what wrenches on parts of the body besides the feet add to the generalised forces.
 
@@ -66,12 +74,15 @@ def inverse_dynamics(
         support: (T, B, 6) the same on the parts that may bear load besides the feet (``description.bearings``), 0 or
             NaN on one that bears none; None where the feet alone bear.
     """
-    a, balance = track.a, NewtonEuler(model)
-    tau = np.full_like(a, np.nan)
-    force, moment = np.full((len(a), 3), np.nan), np.full((len(a), 3), np.nan)
-    for t in np.flatnonzero(~np.isnan(a).any(axis=1)):
-        tau[t] = balance.tau(track.q[t], track.v[t], a[t], foot_wrench[t].ravel())
-        if support is not None and np.nan_to_num(support[t]).any():
+    a = track.a
+    known = np.flatnonzero(~np.isnan(a).any(axis=1))
+    tau, residual = np.full_like(a, np.nan), np.full((len(a), 2, 3), np.nan)
+    tau[known] = NewtonEuler(model).motion_tau(
+        track.q[known], track.v[known], a[known], foot_wrench[known].reshape(-1, 12)
+    )
+    if support is not None:
+        bears = np.asarray(np.nan_to_num(support).any(axis=(1, 2)))
+        for t in known[bears[known]]:
             tau[t] -= support_torques(model, track.q[t], support[t])
-        force[t], moment[t] = residual_in_world(model, track.q[t], tau[t])
-    return InverseDynamics(tau, force, moment)
+    residual[known] = _residuals_in_world(model, motion_frames(model, track.q[known])[1], tau[known])
+    return InverseDynamics(tau, residual[:, 0], residual[:, 1])

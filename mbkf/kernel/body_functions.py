@@ -64,6 +64,11 @@ class BodyFunctions(Protocol):
     ) -> tuple[Made[Array, "frames: 4*joints 3"], Made[Array, "jacobian: 6 nv fortran"]]:
         """Three axes and origin of every joint, and the spatial Jacobian of all dofs."""
 
+    def frames_and_jacobians(
+        self, tree: Tree, q: In[Array, "T nq"], /
+    ) -> tuple[Made[Array, "frames: T 4*joints 3"], Made[Array, "jacobians: T nv 6"]]:
+        """:meth:`frames_and_jacobian` of many configurations, Jacobians column by column."""
+
     def root_dynamics(
         self,
         tree: Tree,
@@ -92,6 +97,25 @@ class BodyFunctions(Protocol):
         /,
     ) -> Made[Array, "tau: nv"]:
         """Generalised forces ID(q, v, a) − Σ J_fᵀ w_f.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            moves: True where a dof moves the right, the left foot.
+            wrenches: w_f of the right, the left foot.
+        """
+
+    def motion_forces(
+        self,
+        tree: Tree,
+        q: In[Array, "T nq"],
+        v: In[Array, "T nv"],
+        a: In[Array, "T nv"],
+        moves: In[BoolArray, "2 nv"],
+        wrenches: In[Array, "T 12"],
+        /,
+    ) -> Made[Array, "tau: T nv"]:
+        """:meth:`generalised_forces` of the frames of a motion.
 
         Args:
             tree: The body.

@@ -93,6 +93,15 @@ void mbkf_generalised_forces(Tree *tree, const double *q, const double *v, const
     subtract_wrenches(tree, moves, wrenches, tau);
 }
 
+void mbkf_motion_forces(int frames, Tree *tree, const double *q, const double *v, const double *a, const char *moves,
+                        const double *wrenches, double *tau)
+{
+    for (int t = 0; t < frames; t++) {
+        mbkf_generalised_forces(tree, q, v, a, moves, wrenches, tau);
+        q += tree->nq, v += tree->nv, a += tree->nv, wrenches += 12, tau += tree->nv;
+    }
+}
+
 void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
                              const double *wrenches, double *tau, double *by_state, double *jacobian)
 {

@@ -145,6 +145,14 @@ void mbkf_frames_and_jacobian(Tree *tree, const double *q, double *frames, doubl
     memcpy(jacobian, tree->axes, sizeof *tree->axes * tree->nv);
 }
 
+void mbkf_frames_and_jacobians(int frames_count, Tree *tree, const double *q, double *frames, double *jacobians)
+{
+    for (int t = 0; t < frames_count; t++) {
+        mbkf_frames_and_jacobian(tree, q, frames, jacobians);
+        q += tree->nq, frames += 12 * tree->joints, jacobians += 6 * tree->nv;
+    }
+}
+
 /* Height of a point p on a joint: its velocity (v + w x p)_z by each dof below the joint. */
 void mbkf_height_jacobian(int n, Tree *tree, const double *q, const int *joint_ids, double *heights)
 {

@@ -78,6 +78,11 @@ class CompiledTree:
         """(4 J, 3) frames and (6, nv) Jacobian as :meth:`mbkf.model.body.Body.frames_and_jacobian`."""
         return self.kernel.frames_and_jacobian(self.handle, _read(q))
 
+    def frames_and_jacobians(self, q: Array) -> tuple[Array, Array]:
+        """(T, 4 J, 3) and (T, 6, nv): :meth:`frames_and_jacobian` of configurations (T, nq)."""
+        frames, columns = self.kernel.frames_and_jacobians(self.handle, _read(q))
+        return frames, columns.swapaxes(1, 2)
+
     def root(self, q: Array, v: Array, a: Array, wrench: Array) -> tuple[Array, Array]:
         """(6,) residual and (6, 3 nv + 12) derivatives. Args: as :meth:`BodyFunctions.root_dynamics`."""
         return self.kernel.root_dynamics(self.handle, _read(q), _read(v), _read(a), _read(wrench))
@@ -86,6 +91,11 @@ class CompiledTree:
         """(nv,) generalised forces. Args: as :meth:`BodyFunctions.generalised_forces`."""
         motion = _read(q), _read(v), _read(a)
         return self.kernel.generalised_forces(self.handle, *motion, moves, _read(wrenches))
+
+    def motion_tau(self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array) -> Array:
+        """(T, nv) generalised forces of T frames. Args: as :meth:`BodyFunctions.motion_forces`."""
+        motion = _read(q), _read(v), _read(a)
+        return self.kernel.motion_forces(self.handle, *motion, moves, _read(wrenches))
 
     def torques(
         self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array

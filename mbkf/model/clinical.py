@@ -329,44 +329,41 @@ class ClinicalAngles:
 
         Args:
             q: (T, nq) configurations.
-            tau: (T, nv) generalised forces in the tangent space.
+            tau: (…, T, nv) generalised forces in the tangent space.
             angles: (T, A) coordinates, as for :meth:`rate_matrices`.
 
         Returns:
-            (T, A) N m, and N for translations; regular at singularities.
+            (…, T, A) N m, and N for translations; regular at singularities.
 
         Raises:
             InvalidInput: The angles are read in other axes than the body's own.
         """
-        if self._axes:
-            raise InvalidInput("moments belong to the angles in the body's own axes")
         q, angles = self._with_angles(q, angles)
-        tau = self._checked("tau", tau, self.model.nv)
-        conjugate = np.empty((len(q), len(self.names)))
-        B = velocity_map(self._cardan(angles), self._parity)
-        conjugate[:, self.ball_columns] = self._ball_sign * np.einsum(
-            "tnij,tni->tnj", B, tau[:, self._ball_v]
-        )
-        conjugate[:, self._dof_column] = self._dof_sign * tau[:, self._dof_v]
-        world_force = np.einsum("tij,tj->ti", self._root_rotation(q), tau[:, self._root_v])
-        conjugate[:, self._root_columns] = world_force @ self._root_axes.T
-        return conjugate
+        return self._conjugate(q, self._checked("tau", tau, self.model.nv), angles, 1)
 
     def moments_sd(self, q: Array, tau_sd: Array, angles: Array | None = None) -> Array:
-        """(T, A) standard deviations √Σ B² sd² of the moments, for independent forces.
-
-        One axis of every joint is taken at a time, because no coordinate mixes two joints.
+        """(…, T, A) standard deviations √Σ B² sd² of the moments, for independent forces.
 
         Args:
             q: (T, nq) configurations.
-            tau_sd: (T, nv) standard deviations of the generalised forces.
+            tau_sd: (…, T, nv) standard deviations of the generalised forces.
             angles: (T, A) coordinates, as for :meth:`rate_matrices`.
         """
         q, angles = self._with_angles(q, angles)
-        joints = self.model.joints.values()
-        axis = np.concatenate([np.arange(joint.v.stop - joint.v.start) % 3 for joint in joints])
-        by_axis = [self.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
-        return np.asarray(np.sqrt(np.square(by_axis).sum(axis=0)))
+        return np.asarray(np.sqrt(self._conjugate(q, np.square(tau_sd), angles, 2)))
+
+    def _conjugate(self, q: Array, forces: Array, angles: Array, power: int) -> Array:
+        """(…, T, A) sums of forces (…, T, nv) by the elements of Bᵀ to a power."""
+        if self._axes:
+            raise InvalidInput("moments belong to the angles in the body's own axes")
+        B = velocity_map(self._cardan(angles), self._parity) ** power
+        of_root = (self._root_axes @ self._root_rotation(q)) ** power
+        found = np.empty((*forces.shape[:-1], len(self.names)))
+        balls = np.einsum("tnij,...tni->...tnj", B, forces[..., self._ball_v])
+        found[..., self.ball_columns] = self._ball_sign**power * balls
+        found[..., self._dof_column] = self._dof_sign**power * forces[..., self._dof_v]
+        found[..., self._root_columns] = np.einsum("tij,...tj->...ti", of_root, forces[..., self._root_v])
+        return found
 
     def _rate_blocks(self, q: Array, angles: Array) -> Array:
         """(T, n, 3, 3) rates of a ball's angles per angular velocity about the axes of its order."""
@@ -393,6 +390,6 @@ class ClinicalAngles:
     @staticmethod
     def _checked(name: str, values: Array, width: int) -> Array:
         values = np.asarray(values, dtype=float)
-        if values.ndim != 2 or values.shape[1] != width:
+        if values.ndim < 2 or values.shape[-1] != width:
             raise ShapeError(name, f"(T, {width})", values.shape)
         return values

@@ -181,6 +181,20 @@ class NewtonEuler:
             tau -= (wrenches[6 * foot : 6 * foot + 6] @ J) * moves
         return tau
 
+    def motion_tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
+        """(T, nv) :meth:`tau` of the frames of a motion.
+
+        Args:
+            q: (T, nq) configurations.
+            v: (T, nv) velocities in the tangent space.
+            a: (T, nv) accelerations.
+            wrenches: (T, 12) wrenches of right and left foot.
+        """
+        if self._tree is not None:
+            return self._tree.motion_tau(q, v, a, self._moves_feet, wrenches)
+        found = [self.tau(*one).copy() for one in zip(q, v, a, wrenches, strict=True)]
+        return np.array(found).reshape(len(q), self.model.nv)
+
     def _inverse_dynamics(self, q: Array, v: Array, a: Array) -> tuple[Array, Array, Array]:
         """(nv, nv) derivatives of inverse dynamics by q, v and a; torques and Jacobian stay in Pinocchio's data."""
         return pin.computeRNEADerivatives(self._pin, self._data, q, v, a)

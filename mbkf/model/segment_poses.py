@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.motion_frames import motion_frames
 
 
 def segment_poses(model: Body, q: Array) -> Array:
@@ -19,10 +20,8 @@ def segment_poses(model: Body, q: Array) -> Array:
     known = np.flatnonzero(~np.isnan(q).any(axis=1))
     if not len(known):
         return poses
-    rotations = np.empty((len(known), len(ids), 3, 3))
-    for row, t in enumerate(known):
-        R, origins = model.placements(q[t])
-        rotations[row], poses[t, :, :3] = R[ids], origins[ids]
+    frames = motion_frames(model, q[known])[0][:, ids]
+    rotations, poses[known, :, :3] = frames[:, :, :3].swapaxes(2, 3), frames[:, :, 3]
     quaternions = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat().reshape(len(known), len(ids), 4)
     turned = (quaternions[1:] * quaternions[:-1]).sum(axis=2) < 0
     quaternions[1:][np.cumsum(turned, axis=0) % 2 == 1] *= -1.0

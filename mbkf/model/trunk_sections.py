@@ -146,9 +146,8 @@ class TrunkSections:
         """
         if q.ndim == 1:
             return np.asarray(self.moments(q[None], v[None], a[None], carried[None], residual[None])[0])
-        upper = np.empty(carried.shape)
-        for t, motion in enumerate(zip(q, v, a, strict=True)):
-            upper[t] = self.upper_wrenches(*motion)
+        unloaded = np.zeros((len(q), 2 * ROOT))
+        upper = np.stack([part.motion_tau(q, v, a, unloaded)[:, :ROOT] for part in self._upper], axis=1)
         for loaded in np.flatnonzero(carried.any(axis=(1, 2))):
             upper[loaded] -= carried[loaded] @ self._model.spatial_jacobian(q[loaded])[:, :ROOT]
         wrenches = np.stack([upper, upper - residual[:, None]], axis=1)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.model.motion_frames import motion_frames
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 SKIN_MEMORY_S = 0.2
@@ -56,15 +57,13 @@ def filled(
         dt_s: Time between frames.
         both_sides: True to use sights after a gap, too (smoothing).
     """
-    frames, markers = shown_m.shape[:2]
-    on_body = np.full((frames, markers, 3), np.nan)
-    axes = np.full((frames, markers, 3, 3), np.nan)
+    segments = motion_frames(sensor.model, q)[0][:, sensor.joint_ids]
+    axes, local = segments[:, :, :3], np.zeros(shown_m.shape)  # rows are axes
     for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        rotations, origins = sensor.model.placements(q[t])
-        axes[t] = rotations[sensor.joint_ids]
-        on_body[t] = origins[sensor.joint_ids] + np.einsum("mij,mj->mi", axes[t], sensor.local_at(q[t]))
-    offset = np.einsum("tmji,tmj->tmi", axes, shown_m - on_body)
-    with_skin = on_body + np.einsum("tmij,tmj->tmi", axes, _expected(sensor, offset, dt_s, both_sides))
+        local[t] = sensor.local_at(q[t])
+    on_body = segments[:, :, 3] + np.einsum("tmji,tmj->tmi", axes, local)
+    offset = np.einsum("tmij,tmj->tmi", axes, shown_m - on_body)
+    with_skin = on_body + np.einsum("tmji,tmj->tmi", axes, _expected(sensor, offset, dt_s, both_sides))
     return on_body, with_skin
 
 

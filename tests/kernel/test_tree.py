@@ -131,6 +131,23 @@ def test_heights_change_as_their_joints_velocities_say(seed):
     assert_same(s.tree.height_jacobian(s.q, joints), np.array(expected))
 
 
+@pytest.mark.parametrize("frames", [0, 1, 3])
+def test_frames_of_a_motion_are_those_of_each_frame_by_itself(frames):
+    s = moving(2)
+    nv = s.model.nv
+    steps = s.rng.normal(size=(frames, nv))
+    q = np.array([pin.integrate(s.model, s.q, step) for step in steps]).reshape(frames, s.model.nq)
+    v, a, w = (s.rng.normal(size=(frames, size)) for size in (nv, nv, 12))
+    moves = s.rng.random((2, nv)) < 0.5
+    placed, jacobians = s.tree.frames_and_jacobians(q)
+    tau = s.tree.motion_tau(q, v, a, moves, w)
+    assert len(placed) == len(jacobians) == len(tau) == frames
+    for t in range(frames):
+        frame, jacobian = s.tree.frames_and_jacobian(q[t])
+        assert np.array_equal(placed[t], frame) and np.array_equal(jacobians[t], jacobian)
+        assert np.array_equal(tau[t], s.tree.tau(q[t], v[t], a[t], moves, w[t]))
+
+
 def test_rows_of_tables_and_whole_numbers_are_read():
     s = moving(0)
     every_other = np.repeat(s.q, 2).reshape(-1, 2)[:, 0]

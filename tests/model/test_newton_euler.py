@@ -59,6 +59,9 @@ def test_the_kernel_finds_the_same_torques_and_derivatives(seed, monkeypatch):
     assert_near(found.tau, expected.tau, 1e-12)
     assert_near(found.by_state, expected.by_state, 1e-12)
     assert_near(compiled.tau(s.q, s.v, s.a, s.w), expected.tau, 1e-12)
+    motion = [np.array([one, one]) for one in (s.q, s.v, s.a, s.w)]
+    for way in (compiled, reference):
+        assert_near(way.motion_tau(*motion), np.array([expected.tau, expected.tau]), 1e-12)
     hand = model.joint("right_hand").joint_id
     assert_near(compiled.jacobian(hand), reference.jacobian(hand), 1e-12)
 

@@ -13,9 +13,9 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
+from mbkf.model.motion_frames import motion_frames
 from mbkf.numerics.runs import stretches
 from mbkf.numerics.windows import dilated, majority, second_derivative
-from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.plates import (
     PlateAreas,
     centres_of_pressure,
@@ -25,6 +25,7 @@ from mbkf.sensors.contact.plates import (
 )
 from mbkf.sensors.contact.rules import (
     BOTH,
+    FACES_DOWN,
     FALL_EDGE_S,
     FALL_WINDOW_S,
     FLOOR_PERCENTILE,
@@ -125,11 +126,8 @@ def assign_feet(
 
 def _facing_down(model: Body, q: Array) -> BoolArray:
     """(T, 2) True for soles that face the floor at configurations q (T, nq); False where these are NaN."""
-    feet, still = FeetOnBody(model), np.zeros(model.nv)
-    found = np.zeros((len(q), 2), dtype=bool)
-    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        found[t] = feet.at(q[t], still).facing_down
-    return found
+    feet = [model.joint(segment).joint_id for segment in model.roles.feet]
+    return np.asarray(motion_frames(model, q)[0][:, feet, 2, 2] > FACES_DOWN)
 
 
 def _floor_height(soles: Array, loaded: BoolArray) -> float:

@@ -9,8 +9,8 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.model.motion_frames import motion_frames
 from mbkf.model.soles import sole_locals
-from mbkf.sensors.marker_sensor import MarkerSensor
 
 Sole = Sequence[Sequence[float]]
 """World positions of heel, ball and toe end of one sole, m."""
@@ -18,11 +18,10 @@ Sole = Sequence[Sequence[float]]
 
 def sole_points(model: Body, q: Array) -> Array:
     """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q (T, nq) is NaN."""
-    sensor = MarkerSensor(model, *sole_locals(model))
-    points = np.full((len(q), 2, 3, 3), np.nan)
-    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        points[t] = sensor.positions(q[t]).reshape(2, 3, 3)
-    return points
+    segments, local_m = sole_locals(model)
+    feet = motion_frames(model, q)[0][:, [model.joint(segment).joint_id for segment in segments]]
+    points = np.einsum("tkij,ki->tkj", feet, np.insert(local_m, 3, 1.0, axis=1))
+    return np.asarray(points.reshape(len(q), 2, 3, 3))
 
 
 def share_along(x: float, y: float, sole: Sole) -> float:
@@ -56,8 +55,9 @@ def distance_to_sole(x: float, y: float, sole: Sole) -> float:
 
 def distances_to_soles(points_m: Array, soles: Array) -> Array:
     """(T, 2) :func:`distance_to_sole` of points (T, 3) from soles (T, 2, 3, 3); NaN where not known."""
-    found = np.full((len(points_m), 2), np.nan)
-    for t in np.flatnonzero(~np.isnan(points_m[:, 0]) & ~np.isnan(soles[:, 0, 0, 0])):
-        x, y, _ = points_m[t].tolist()
-        found[t] = [distance_to_sole(x, y, sole) for sole in soles[t].tolist()]
-    return found
+    heels = soles[:, :, 0, :2]
+    lengths, from_heels = soles[:, :, 2, :2] - heels, points_m[:, None, :2] - heels
+    with np.errstate(invalid="ignore"):  # soles without length
+        along = (from_heels * lengths).sum(axis=2) / (lengths**2).sum(axis=2)
+    apart = from_heels - np.clip(along, 0.0, 1.0)[:, :, None] * lengths
+    return np.asarray(np.hypot(apart[:, :, 0], apart[:, :, 1]))

@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.model.description import Bearing
+from mbkf.model.motion_frames import motion_frames
 from mbkf.model.sides import mirrored
 
 
@@ -92,13 +93,9 @@ class BearingParts:
             q: (T, nq) configurations.
             v: (T, nv) velocities.
         """
-        frames, parts = len(q), len(self)
-        turns, origins = np.full((frames, parts, 3, 3), np.nan), np.full((frames, parts, 3), np.nan)
-        jacobians = np.full((frames, 6, self.model.nv), np.nan)
-        for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-            rotations, places, jacobians[t] = self.model.placements_and_jacobian(q[t])
-            turns[t], origins[t] = rotations[self.joint_ids], places[self.joint_ids]
-        return self._moving(turns, origins, jacobians, v)
+        frames, jacobians = motion_frames(self.model, q)
+        parts = frames[:, self.joint_ids]
+        return self._moving(parts[:, :, :3].swapaxes(2, 3), parts[:, :, 3], jacobians, v)
 
     def _moving(self, rotations: Array, origins: Array, jacobians: Array, v: Array) -> BearingPoints:
         """Points and speeds of one frame, or of many along a first axis.

@@ -122,8 +122,9 @@ def _moments(own: ClinicalAngles, track: Track, torques: Torques, known: BoolArr
     offset, change = (np.where(unknown, np.nan, sd) for sd in (torques.sd_tau_offset, track.torque_change))
     moments, *spreads = (np.full((len(known), len(own.names)), np.nan) for _ in range(4))
     moments[known] = own.moments(q, torques.tau[known], angles)
-    for spread, tau_sd in zip(spreads, (torques.sd_tau, offset, change), strict=True):
-        spread[known] = own.moments_sd(q, tau_sd[known], angles)
+    tau_sd = np.stack([one[known] for one in (torques.sd_tau, offset, change)])
+    for spread, found in zip(spreads, own.moments_sd(q, tau_sd, angles), strict=True):
+        spread[known] = found
     total, offset, change = spreads
     return Moments(moments=moments, moments_sd=total, moments_sd_offset=offset, moments_sd_change=change)
 
