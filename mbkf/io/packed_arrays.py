@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ _ZLIB = b"\x78\x01"
 _MOST_STORED = 0xFFFF
 
 
-def write_packed(file: h5py.File, key: str, values: NDArray[Any]) -> h5py.Dataset:
+def write_packed(file: h5py.File, key: str, values: NDArray[np.generic]) -> h5py.Dataset:
     """Makes a dataset of an array, in chunks of whole rows.
 
     Args:
@@ -57,7 +57,7 @@ def write_packed(file: h5py.File, key: str, values: NDArray[Any]) -> h5py.Datase
     return dataset
 
 
-def packed(values: NDArray[Any]) -> bytes:
+def packed(values: NDArray[np.generic]) -> bytes:
     """A chunk as HDF5's filters shuffle and deflate would leave it, or longer by a little."""
     by_number = np.ascontiguousarray(values).reshape(-1).view(np.uint8).reshape(values.size, values.itemsize)
     kinds = np.ascontiguousarray(by_number.T)
