@@ -109,9 +109,9 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         since = exponential @ self._mounted
         turned = since.transpose(0, 2, 1) @ self._mounted
         values = (turned[:, None] @ reading.values.reshape(count, 2, 3, 1))[..., 0]
-        motion = np.concatenate([reading.by_q, reading.by_v, reading.by_a], axis=2)
+        motion = reading.jacobian.reshape(count, 2, 3, -1)
         jacobian = np.zeros((count, 2, 3, layout.size))
-        jacobian[..., : motion.shape[-1]] = turned[:, None] @ motion.reshape(count, 2, 3, -1)
+        jacobian[..., : motion.shape[-1]] = turned[:, None] @ motion
         each = np.arange(count)
         jacobian[..., layout[BIASES]].reshape(count, 2, 3, count, 3)[each, 0, :, each] = np.eye(3)
         jacobian[..., layout[TURNS]].reshape(count, 2, 3, count, 3)[each, :, :, each] = _by_turn(

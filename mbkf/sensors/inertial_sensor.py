@@ -28,13 +28,26 @@ class InertialReading(NamedTuple):
 
     Attributes:
         values: (S, 6) angular velocity rad/s, then specific force m/s², in sensor axes.
-        by_q, by_v, by_a: (S, 6, nv) derivatives; by q in the tangent space.
+        jacobian: (S, 6, 3, nv) derivatives by q, in the tangent space, by v and by a.
     """
 
     values: Array
-    by_q: Array
-    by_v: Array
-    by_a: Array
+    jacobian: Array
+
+    @property
+    def by_q(self) -> Array:
+        """(S, 6, nv)."""
+        return self.jacobian[:, :, 0]
+
+    @property
+    def by_v(self) -> Array:
+        """(S, 6, nv)."""
+        return self.jacobian[:, :, 1]
+
+    @property
+    def by_a(self) -> Array:
+        """(S, 6, nv)."""
+        return self.jacobian[:, :, 2]
 
 
 class InertialSensor:
@@ -87,17 +100,18 @@ class InertialSensor:
         model, data = self.model.pin_model, self._data
         pin.computeForwardKinematicsDerivatives(model, data, q, v, a)
         values, up = self._read()
-        shape = (len(self._joints), 6, self.model.nv)
-        by_q, by_v, by_a = np.empty(shape), np.empty(shape), np.zeros(shape)
+        count, nv = len(self._joints), self.model.nv
+        jacobian = np.zeros((count, 6, 3, nv))
         for k, (joint, place) in enumerate(zip(self._joints, self._places, strict=True)):
             velocity = pin.getJointVelocityDerivatives(model, data, joint, pin.LOCAL)
             force = pin.getPointClassicAccelerationDerivatives(model, data, joint, place, pin.LOCAL)
-            by_q[k, :3], by_v[k, :3] = velocity[0][3:], velocity[1][3:]
-            by_q[k, 3:], by_v[k, 3:], by_a[k, 3:] = force[1], force[2], force[3]
-        by_q[:, :3] = self._to_sensor @ by_q[:, :3]
-        by_v[:, :3] = self._to_sensor @ by_v[:, :3]
-        by_q[:, 3:] += skew(up) @ by_v[:, :3]  # gravity turns against the sensor
-        return InertialReading(values, by_q, by_v, by_a)
+            rates, forces = jacobian[k, :3], jacobian[k, 3:]
+            rates[:, 0], rates[:, 1] = velocity[0][3:], velocity[1][3:]
+            forces[:, 0], forces[:, 1], forces[:, 2] = force[1], force[2], force[3]
+        rates = self._to_sensor @ jacobian[:, :3, :2].reshape(count, 3, 2 * nv)
+        jacobian[:, :3, :2] = rates.reshape(count, 3, 2, nv)
+        jacobian[:, 3:, 0] += skew(up) @ rates[..., nv:]  # gravity turns against the sensor
+        return InertialReading(values, jacobian)
 
     def _read(self) -> tuple[Array, Array]:
         """(S, 6) values from the kinematics at hand, and g upwards (S, 3) in sensor axes."""
