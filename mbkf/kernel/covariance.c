@@ -10,6 +10,7 @@
 #include "bands.h"
 #include "blas.h"
 #include "call.h"
+#include "certain.h"
 #include "factor.h"
 #include "joints.h"
 #include "product.h"
@@ -321,31 +322,6 @@ static int informed(int N, int n, int m, const double *P, const double *informat
     return 0;
 }
 
-/* Numbers of the components whose rows of P are not zero: readings change no others. Returns their count. */
-static int uncertain(int N, const double *P, int *numbers)
-{
-    int count = 0;
-    for (int i = 0; i < N; i++) {
-        const double *row = P + (long)i * N;
-        int j = row[i] != 0.0 ? i : 0;
-        while (j < N && row[j] == 0.0)
-            j++;
-        if (j < N)
-            numbers[count++] = i;
-    }
-    return count;
-}
-
-/* of (rows x columns), row by row, from M with `length` numbers a row: some of its rows, all of them for NULL. */
-static void pick(int rows, const int *row, int columns, const int *column, int length, const double *M, double *of)
-{
-    for (int i = 0; i < rows; i++) {
-        const double *from = M + (long)(row ? row[i] : i) * length;
-        for (int j = 0; j < columns; j++)
-            *of++ = from[column[j]];
-    }
-}
-
 int mbkf_add_information(int N, int n, int m, const double *P, const double *information, const double *rows,
                          double *after)
 {
@@ -354,7 +330,7 @@ int mbkf_add_information(int N, int n, int m, const double *P, const double *inf
     if (!F)
         return 0;
     double *own = F + room(N, n, m), *found = own + square, *first = found + square, *others = first + (long)n * n;
-    int *known = (int *)(others + (long)m * N), count = uncertain(N, P, known), ahead = 0;
+    int *known = (int *)(others + (long)m * N), count = uncertain(N, P, NULL, known), ahead = 0;
     while (ahead < count && known[ahead] < n)
         ahead++;
     if (count == N || !ahead)
@@ -365,10 +341,7 @@ int mbkf_add_information(int N, int n, int m, const double *P, const double *inf
     const int failed = informed(count, ahead, m, own, first, others, found, F);
     if (failed)
         return failed;
-    memset(after, 0, sizeof *after * square);
-    for (int i = 0; i < count; i++)
-        for (int j = 0; j < count; j++)
-            after[(long)known[i] * N + known[j]] = found[(long)i * count + j];
+    put(count, known, found, N, after);
     return 0;
 }
 

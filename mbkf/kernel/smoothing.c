@@ -5,6 +5,7 @@
 
 #include "bands.h"
 #include "call.h"
+#include "certain.h"
 #include "declared.h"
 #include "joints.h"
 #include "product.h"
@@ -153,15 +154,31 @@ void mbkf_gradient_before(int N, int n, int m, int nv, int J, int orders, const 
 }
 
 /* Column by column, P L row by row is L P. */
-void mbkf_smoothed_covariance(int N, const double *P, const double *L, double *smoothed, double *PL)
+static void smoothed_and_product(int N, const double *P, const double *L, double *smoothed, double *PL, double *turned)
 {
-    double *turned = workspace((long)N * N);
-    if (!turned)
-        return;
     product(WHOLE, N, N, N, 1.0, L, N, P, N, 0.0, NULL, PL, N);
     transpose(N, PL, turned);
     product(LOWER, N, N, N, -1.0, P, N, turned, N, 1.0, P, smoothed, N);
     mirror(N, smoothed);
+}
+
+void mbkf_smoothed_covariance(int N, const double *P, const double *L, double *smoothed, double *PL)
+{
+    const long square = (long)N * N;
+    double *turned = workspace(5 * square + N);
+    if (!turned)
+        return;
+    double *own = turned + square, *later = own + square, *found = later + square, *both = found + square;
+    int *known = (int *)(both + square), count = uncertain(N, P, NULL, known);
+    if (count == N) {
+        smoothed_and_product(N, P, L, smoothed, PL, turned);
+        return;
+    }
+    pick(count, known, count, known, N, P, own);
+    pick(count, known, count, known, N, L, later);
+    smoothed_and_product(count, own, later, found, both, turned);
+    put(count, known, found, N, smoothed);
+    put(count, known, both, N, PL);
 }
 
 /* Z = L P + M smoothed / 2 (column by column); R: rows' transpose; S: (N x m), working memory. */
@@ -181,12 +198,10 @@ static void half_before(int N, const double *smoothed, const double *LP, int n, 
     }
 }
 
-void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *PL,
-                                    const double *information, const double *rows, double *before)
+/* As mbkf_curvature_before_readings, working in Z. */
+static void before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *PL,
+                            const double *information, const double *rows, double *before, double *Z)
 {
-    double *Z = workspace((long)N * (N + 2L * m));
-    if (!Z)
-        return;
     double *R = Z + (long)N * N, *S = R + (long)N * m;
     transposed(N, m, rows, N, R);
     half_before(N, smoothed, PL, n, information, m, rows, R, S, Z);
@@ -208,4 +223,30 @@ void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const 
                 before + (long)b.first * N, N);
     }
     symmetrise(N, before);
+}
+
+/* Curvature in components that are certain counts nowhere, and is left out. */
+void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *PL,
+                                    const double *information, const double *rows, double *before)
+{
+    const long square = (long)N * N;
+    double *Z = workspace(5 * square + 3L * m * N + (long)n * n + N);
+    if (!Z)
+        return;
+    double *later = Z + square + 2L * m * N, *own = later + square, *both = own + square, *found = both + square;
+    double *first = found + square, *others = first + (long)n * n;
+    int *known = (int *)(others + (long)m * N), count = uncertain(N, smoothed, PL, known), ahead = 0;
+    while (ahead < count && known[ahead] < n)
+        ahead++;
+    if (count == N) {
+        before_readings(N, n, m, L, smoothed, PL, information, rows, before, Z);
+        return;
+    }
+    pick(count, known, count, known, N, L, later);
+    pick(count, known, count, known, N, smoothed, own);
+    pick(count, known, count, known, N, PL, both);
+    pick(ahead, known, ahead, known, n, information, first);
+    pick(m, NULL, count, known, N, rows, others);
+    before_readings(count, ahead, m, later, own, both, first, others, found, Z);
+    put(count, known, found, N, before);
 }
