@@ -26,6 +26,7 @@ def worn(rng):
     "sensors.inertial_sensor.InertialReading.by_q",
     "sensors.inertial_sensor.InertialReading.by_v",
     "sensors.inertial_sensor.InertialReading.by_a",
+    "sensors.inertial_sensor.InertialReading.jacobian",
     "sensors.inertial_sensor.InertialSensor.reading",
     tolerance=1e-6,
 )
@@ -44,6 +45,7 @@ def inertial_readings(rng):
         ("by_q", stated.by_q, by_q),
         ("by_v", stated.by_v, by_v),
         ("by_a", stated.by_a, by_a),
+        ("jacobian", stated.jacobian, np.stack([by_q, by_v, by_a], axis=2)),
     )
 
 
