@@ -33,13 +33,13 @@ VECTORISED static int panel(int rows, int width, double *A, int lda)
 }
 
 /* X (rows x width) divided by a block of L. */
-VECTORISED static void columns_divided(int rows, int width, const double *L, int ldl, double *X)
+VECTORISED static void columns_divided(int rows, int width, const double *L, int ldl, double *X, int ldx)
 {
     for (int j = 0; j < width; j++) {
-        double *column = X + (long)j * rows;
+        double *column = X + (long)j * ldx;
         const double by = L[(long)j * ldl + j];
         for (int k = 0; k < j; k++) {
-            const double *before = X + (long)k * rows, factor = L[(long)k * ldl + j];
+            const double *before = X + (long)k * ldx, factor = L[(long)k * ldl + j];
             for (int i = 0; i < rows; i++)
                 column[i] -= factor * before[i];
         }
@@ -79,6 +79,25 @@ void divided(int rows, int n, const double *L, double *X)
         double *own = X + (long)b * rows;
         if (b)
             product(WHOLE, rows, width, b, -1.0, X, rows, L + b, n, 1.0, own, own, rows);
-        columns_divided(rows, width, L + (long)b * n + b, n, own);
+        columns_divided(rows, width, L + (long)b * n + b, n, own, rows);
+    }
+}
+
+void inverse_transposed(int n, const double *L, double *X)
+{
+    double one = 1.0;
+    memset(X, 0, sizeof *X * n * n);
+    for (int i = 0; i < n; i++)
+        X[(long)i * n + i] = 1.0;
+    if (n && !product_is_own()) {
+        blas.dtrsm("r", "l", "t", "n", &n, &n, &one, (double *)L, &n, X, &n);
+        return;
+    }
+    for (int b = 0; b < n; b += WIDTH) {
+        const int width = n - b < WIDTH ? n - b : WIDTH, rows = b + width; /* X is zero below its diagonal */
+        double *own = X + (long)b * n;
+        if (b)
+            product(WHOLE, b, width, b, -1.0, X, n, L + b, n, 1.0, own, own, n);
+        columns_divided(rows, width, L + (long)b * n + b, n, own, n);
     }
 }

@@ -9,4 +9,7 @@ int factored(int n, double *A);
 /* X L^-T (rows x n) in place of X. */
 void divided(int rows, int n, const double *L, double *X);
 
+/* X (n x n) = L^-T, an upper triangle. */
+void inverse_transposed(int n, const double *L, double *X);
+
 #endif

@@ -2,14 +2,16 @@
  *
  *     E = S P S + C' skin + rows' rows,   S = diag(size), C' built of the inverse of one frame's information,
  *
- * without E itself: its diagonal, the diagonals of T E T' and U E U', and blocks of three components. P is symmetric,
- * which halves T S P S T'; the inverse is W'W with a triangle W. Matrices stand column by column. */
+ * without E itself: its diagonal, the diagonals of T E T' and U E U', and blocks of three components. The inverse is
+ * X X' with an upper triangle X. Rows of T are taken eight at a time: torques of a limb depend on few components, and
+ * those on which none of the eight does are left out. P is symmetric, which halves the work. Matrices stand column by
+ * column. */
 #include <string.h>
 
 #include "call.h"
 #include "declared.h"
 #include "factor.h"
-#include "product.h"
+#include "lanes.h"
 #include "vectorised.h"
 
 /* Errors of a state (q, v, a, rest) of N components. */
@@ -22,175 +24,219 @@ typedef struct {
     double skin, rate;  /* variance of the markers' skin, and its rate of movement */
     int n_rows;
     const double *rows; /* (n_rows x N), row by row */
+    double *root;       /* (n_seen x n_seen) X */
 } Errors;
 
-enum { BLOCK = 24 };
+enum { BREADTH = 8, HALF = BREADTH / 2 };
 
-/* W = L^-1 of a lower triangle L (n x n) */
-VECTORISED static void inverted(int n, const double *L, double *W)
-{
-    memset(W, 0, sizeof(double) * n * n);
-    for (int j = 0; j < n; j++) {
-        double *x = W + (long)j * n;
-        x[j] = 1.0;
-        for (int k = j; k < n; k++) {
-            const double *l = L + (long)k * n, found = x[k] / l[k];
-            x[k] = found;
-            for (int i = k + 1; i < n; i++)
-                x[i] -= found * l[i];
-        }
-    }
-}
-
-/* x . y */
-VECTORISED static double dot(int n, const double *x, const double *y)
-{
-    double sum[4] = {0.0, 0.0, 0.0, 0.0};
-    int i = 0;
-    for (; i + 4 <= n; i += 4)
-        for (int k = 0; k < 4; k++)
-            sum[k] += x[i + k] * y[i + k];
-    for (; i < n; i++)
-        sum[0] += x[i] * y[i];
-    return sum[0] + sum[1] + (sum[2] + sum[3]);
-}
-
-/* total (n) += x y, number by number, summed over columns one after the other */
-VECTORISED static void add_products(int n, int columns, const double *x, const double *y, double *total)
-{
-    for (int j = 0; j < columns; j++, x += n, y += n)
-        for (int i = 0; i < n; i++)
-            total[i] += x[i] * y[i];
-}
-
-/* diagonal (N) of the errors' covariance, and root (n_seen x nv): W, column by column, 0 in columns that are not seen.
- * Returns 1 if the information has no factor. work: 2 nv^2 numbers. */
-static int error_diagonal(const Errors *e, double *root, double *diagonal, double *work)
+/* diagonal (N) of the errors' covariance, and X. Returns 1 if the information has no factor. work: nv^2 numbers. */
+VECTORISED static int error_diagonal(const Errors *e, double *diagonal, double *work)
 {
     const int n = e->n_seen, nv = e->nv, N = e->N;
-    double *L = work, *W = work + (long)n * n;
+    const double square = e->rate * e->rate;
+    double *variance = work;
     for (int j = 0; j < n; j++)
         for (int i = j; i < n; i++)
-            L[(long)j * n + i] = e->information[(long)e->seen[j] * nv + e->seen[i]];
-    if (factored(n, L))
+            work[(long)j * n + i] = e->information[(long)e->seen[j] * nv + e->seen[i]];
+    if (factored(n, work))
         return 1;
-    inverted(n, L, W);
-    memset(root, 0, sizeof(double) * n * nv);
+    inverse_transposed(n, work, e->root);
+    memset(variance, 0, sizeof *variance * n);
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i <= k; i++)
+            variance[i] += e->root[(long)k * n + i] * e->root[(long)k * n + i];
     for (int i = 0; i < N; i++)
         diagonal[i] = e->P[(long)i * N + i] * e->size[i] * e->size[i];
     for (int k = 0; k < n; k++) {
         const int dof = e->seen[k];
-        const double square = e->rate * e->rate;
-        const double skin = e->skin * dot(n, W + (long)k * n, W + (long)k * n);
-        memcpy(root + (long)dof * n, W + (long)k * n, sizeof(double) * n);
-        diagonal[dof] += skin;
-        diagonal[nv + dof] += square * skin;
-        diagonal[2 * nv + dof] += square * square * skin;
+        diagonal[dof] += e->skin * variance[k];
+        diagonal[nv + dof] += square * (e->skin * variance[k]);
+        diagonal[2 * nv + dof] += square * square * (e->skin * variance[k]);
     }
-    add_products(N, e->n_rows, e->rows, e->rows, diagonal);
+    for (int k = 0; k < e->n_rows; k++)
+        for (int i = 0; i < N; i++)
+            diagonal[i] += e->rows[(long)k * N + i] * e->rows[(long)k * N + i];
     return 0;
 }
 
-/* variance += diagonal of T P T' for T (m x n): what stands left of P's diagonal counts twice. Y: (m x BLOCK) */
-static void symmetric_form(int m, int n, const double *T, int N, const double *P, double *variance, double *Y)
+/* variance += diagonal of A P A', A (LANES x count) the columns index of a matrix: left of P's diagonal counts twice.
+ * count is a multiple of BREADTH. */
+VECTORISED static void add_quadratic(int count, const int *index, const Lanes *A, int N, const double *P,
+                                     Lanes *variance)
 {
-    for (int b = 0; b < n; b += BLOCK) {
-        const int width = n - b < BLOCK ? n - b : BLOCK;
-        const double *own = T + (long)b * m;
-        if (b)
-            product(WHOLE, m, width, b, 2.0, T, m, P + b, N, 0.0, NULL, Y, m);
-        product(WHOLE, m, width, width, 1.0, own, m, P + (long)b * N + b, N, b ? 1.0 : 0.0, Y, Y, m);
-        add_products(m, width, own, Y, variance);
+    Lanes total = *variance;
+    for (int b = 0; b < count; b += BREADTH) {
+        Lanes sum[BREADTH];
+        const double *column[BREADTH];
+        memset(sum, 0, sizeof sum);
+        for (int j = 0; j < BREADTH; j++)
+            column[j] = P + (long)index[b + j] * N;
+        for (int p = 0; p < b; p++)
+            for (int j = 0; j < BREADTH; j++)
+                add_multiple(sum + j, column[j][index[p]], A + p);
+        for (int j = 0; j < BREADTH; j++)
+            add_multiple(sum + j, 1.0, sum + j);
+        for (int p = b; p < b + BREADTH; p++)
+            for (int j = 0; j < BREADTH; j++)
+                add_multiple(sum + j, column[j][index[p]], A + p);
+        for (int j = 0; j < BREADTH; j++)
+            add_product(&total, 1.0, sum + j, A + b + j);
     }
+    *variance = total;
 }
 
-/* T on an oscillation: positions and accelerations, which are in opposition, and velocities between them: (2 m x nv). */
-VECTORISED static void oscillation(int m, int n, int nv, double rate, const double *T, double *parts)
+/* variance += factor times the squares of B X, B (2 LANES x count) the columns index of matrices: swing and quarter. */
+VECTORISED static void add_repeated(int count, const int *index, const Lanes *B, int n, const double *X, double factor,
+                                    Lanes *variance)
 {
-    const int has_v = n >= 2 * nv, has_a = n >= 3 * nv;
-    for (int j = 0; j < nv; j++) {
-        const double *q = T + (long)j * m, *v = q + (long)nv * m, *a = v + (long)nv * m;
-        double *swing = parts + 2L * j * m, *quarter = swing + m;
-        for (int i = 0; i < m; i++)
-            swing[i] = has_a ? q[i] - rate * rate * a[i] : q[i];
-        for (int i = 0; i < m; i++)
-            quarter[i] = has_v ? rate * v[i] : 0.0;
+    Lanes total = *variance;
+    for (int b = count ? index[0] : n; b < n; b += HALF) { /* X is zero below its diagonal */
+        Lanes sum[HALF][2];
+        const double *column[HALF];
+        memset(sum, 0, sizeof sum);
+        for (int j = 0; j < HALF; j++)
+            column[j] = X + (long)(b + j < n ? b + j : n - 1) * n;
+        for (int p = 0; p < count && index[p] < b + HALF; p++)
+            for (int j = 0; j < HALF; j++)
+                for (int half = 0; half < 2; half++)
+                    add_multiple(&sum[j][half], column[j][index[p]], B + 2 * p + half);
+        for (int j = 0; j < HALF && b + j < n; j++)
+            for (int half = 0; half < 2; half++)
+                add_product(&total, factor, &sum[j][half], &sum[j][half]);
     }
+    *variance = total;
 }
 
-/* variance (m) += factor times the squares of columns of 2 m numbers, both halves added */
-VECTORISED static void folded(int m, int columns, double factor, const double *R, double *variance)
+/* variance += square of A (LANES x count) times a row's components index. */
+VECTORISED static void add_row(int count, const int *index, const Lanes *A, const double *row, Lanes *variance)
 {
-    for (int j = 0; j < columns; j++, R += 2L * m)
-        for (int i = 0; i < m; i++)
-            variance[i] += factor * (R[i] * R[i] + R[m + i] * R[m + i]);
+    Lanes sum;
+    memset(&sum, 0, sizeof sum);
+    for (int p = 0; p < count; p++)
+        if (row[index[p]] != 0.0)
+            add_multiple(&sum, row[index[p]], A + p);
+    add_product(variance, 1.0, &sum, &sum);
 }
 
-/* variance += skin times the squares of parts W' (2 m x n_seen), where row k of W ends at the seen dof k */
-static void repeated(const Errors *e, const double *root, int m, const double *parts, double *variance, double *R)
+/* Working memory for rows of T: their columns that are not zero, these times S, and their oscillation. */
+typedef struct {
+    Lanes *own, *sized, *swinging;
+    int *index, *seen;
+} Columns;
+
+enum { IN_LANES = 4 }; /* Columns take so many times LANES numbers per component, its integers included */
+
+static long columns_size(int N) { return (long)IN_LANES * LANES * (N + BREADTH); }
+
+static Columns columns_in(double *work, int N)
 {
-    const int rows = 2 * m;
-    for (int b = 0; b < e->n_seen; b += BLOCK) {
-        const int width = e->n_seen - b < BLOCK ? e->n_seen - b : BLOCK;
-        const int inner = e->seen[b + width - 1] + 1;
-        product(WHOLE, rows, width, inner, 1.0, parts, rows, root + b, e->n_seen, 0.0, NULL, R, rows);
-        folded(m, width, e->skin, R, variance);
+    Lanes *at = (Lanes *)work;
+    const long room = N + BREADTH;
+    int *index = (int *)(at + 3 * room); /* swinging has two for each of N/3 dofs */
+    return (Columns){at, at + room, at + 2 * room, index, index + room};
+}
+
+/* The columns of T (m x n) that are not zero in some of its rows from first on; their number. */
+VECTORISED static int taken(int m, int n, const double *T, int first, Columns *to)
+{
+    const int height = m - first < LANES ? m - first : LANES;
+    int count = 0;
+    for (int j = 0; j < n; j++) {
+        const double *column = T + (long)j * m + first;
+        int i = 0;
+        while (i < height && column[i] == 0.0)
+            i++;
+        if (i == height)
+            continue;
+        if (height == LANES)
+            memcpy(to->own + count, column, sizeof *to->own);
+        else {
+            memset(to->own + count, 0, sizeof *to->own);
+            memcpy(to->own + count, column, sizeof *column * height);
+        }
+        to->index[count++] = j;
     }
+    return count;
 }
 
-/* T with its columns multiplied by size. */
-VECTORISED static void scaled(int m, int columns, const double *size, const double *T, double *sized)
+/* Rows of T on an oscillation: positions and accelerations, which are in opposition, and velocities between them, by
+ * those seen dofs on which they depend; the number of these. */
+VECTORISED static int oscillation(const Errors *e, int count, Columns *columns)
 {
-    for (int j = 0; j < columns; j++, T += m, sized += m)
-        for (int i = 0; i < m; i++)
-            sized[i] = size[j] * T[i];
-}
-
-VECTORISED static void added(int m, double factor, const double *x, double *y)
-{
-    for (int i = 0; i < m; i++)
-        y[i] += factor * x[i];
-}
-
-static long error_work(int m, int n, int nv) { return (long)m * (n + 2L * nv + 2 * BLOCK); }
-
-/* variance (m) of quantities T (m x n, column by column) of the first n components. work: error_work numbers. */
-static void error_of(const Errors *e, const double *root, int m, int n, const double *T, double *variance,
-                     double *work)
-{
-    double *sized = work, *parts = sized + (long)m * n, *Y = parts + 2L * m * e->nv;
-    memset(variance, 0, sizeof(double) * m);
-    scaled(m, n, e->size, T, sized);
-    symmetric_form(m, n, sized, e->N, e->P, variance, Y);
-    if (e->n_seen && e->skin > 0.0) {
-        oscillation(m, n, e->nv, e->rate, T, parts);
-        repeated(e, root, m, parts, variance, Y);
-    }
-    for (int k = 0; k < e->n_rows; k++) {
-        const double *row = e->rows + (long)k * e->N;
+    const int nv = e->nv;
+    const double factor[3] = {1.0, e->rate, -e->rate * e->rate};
+    int at[3] = {0, 0, 0}, found = 0;
+    for (int part = 1; part < 3; part++)
+        for (at[part] = at[part - 1]; at[part] < count && columns->index[at[part]] < part * nv;)
+            at[part]++;
+    for (int k = 0; k < e->n_seen; k++) {
+        Lanes *both = columns->swinging + 2 * found;
         int some = 0;
-        memset(Y, 0, sizeof(double) * m);
-        for (int j = 0; j < n; j++)
-            if (row[j] != 0.0) {
-                added(m, row[j], T + (long)j * m, Y);
+        memset(both, 0, 2 * sizeof *both);
+        for (int part = 0; part < 3; part++) {
+            const int wanted = part * nv + e->seen[k];
+            while (at[part] < count && columns->index[at[part]] < wanted)
+                at[part]++;
+            if (at[part] < count && columns->index[at[part]] == wanted) {
+                add_multiple(both + part % 2, factor[part], columns->own + at[part]);
                 some = 1;
             }
-        if (some)
-            add_products(m, 1, Y, Y, variance);
+        }
+        columns->seen[found] = k;
+        found += some;
+    }
+    return found;
+}
+
+/* variance (m) of quantities T (m x n, column by column) of the first n components. work: columns_size numbers. */
+VECTORISED static void error_of(const Errors *e, int m, int n, const double *T, double *variance, double *work)
+{
+    Columns columns = columns_in(work, e->N);
+    for (int first = 0; first < m; first += LANES) {
+        const int count = taken(m, n, T, first, &columns);
+        const int padded = (count + BREADTH - 1) / BREADTH * BREADTH;
+        Lanes found;
+        memset(&found, 0, sizeof found);
+        memset(columns.sized, 0, sizeof found * padded);
+        for (int p = 0; p < count; p++)
+            add_multiple(columns.sized + p, e->size[columns.index[p]], columns.own + p);
+        for (int p = count; p < padded; p++)
+            columns.index[p] = 0;
+        add_quadratic(padded, columns.index, columns.sized, e->N, e->P, &found);
+        for (int k = 0; k < e->n_rows; k++)
+            add_row(count, columns.index, columns.own, e->rows + (long)k * e->N, &found);
+        if (e->skin > 0.0) {
+            const int dofs = oscillation(e, count, &columns);
+            add_repeated(dofs, columns.seen, columns.swinging, e->n_seen, e->root, e->skin, &found);
+        }
+        memcpy(variance + first, &found, sizeof *variance * (m - first < LANES ? m - first : LANES));
     }
 }
 
 /* blocks (n_blocks x 3 x 3) of the errors' covariance, of three components of q each, from `first` on. */
-static void error_blocks(const Errors *e, const double *root, int n_blocks, const int *first, double *blocks)
+static void error_blocks(const Errors *e, int n_blocks, const int *first, double *blocks)
 {
     const int n = e->n_seen;
-    for (int b = 0; b < n_blocks; b++)
+    for (int b = 0; b < n_blocks; b++) {
+        double C[3][3] = {{0.0}};
+        int place[3] = {-1, -1, -1};
+        for (int k = 0; k < n; k++)
+            if (e->seen[k] >= first[b] && e->seen[k] < first[b] + 3)
+                place[e->seen[k] - first[b]] = k;
+        for (int k = 0; k < n; k++) {
+            double x[3];
+            for (int i = 0; i < 3; i++)
+                x[i] = place[i] < 0 ? 0.0 : e->root[(long)k * n + place[i]];
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++)
+                    C[i][j] += x[i] * x[j];
+        }
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) {
                 const int p = first[b] + i, q = first[b] + j;
-                blocks[9 * b + 3 * i + j] = e->P[(long)p * e->N + q] * e->size[p] * e->size[q] +
-                                            e->skin * dot(n, root + (long)p * n, root + (long)q * n);
+                blocks[9 * b + 3 * i + j] = e->P[(long)p * e->N + q] * e->size[p] * e->size[q] + e->skin * C[i][j];
             }
+    }
 }
 
 int mbkf_error_variances(int N, int nv, int s, int k, int m, int n, int l, int p, int b, const double *P,
@@ -198,13 +244,13 @@ int mbkf_error_variances(int N, int nv, int s, int k, int m, int n, int l, int p
                          const double *rows, const double *T, const double *U, const int *first, double *diagonal,
                          double *of_T, double *of_U, double *blocks)
 {
-    const Errors e = {N, nv, P, information, s, seen, size, skin, rate, k, rows};
-    const long square = (long)nv * nv;
-    double *root = workspace(3 * square + error_work(m, n, nv) + error_work(l, p, nv));
-    if (!root || error_diagonal(&e, root, diagonal, root + square))
+    const long square = (long)nv * nv, columns = columns_size(N);
+    double *root = workspace(square + (square > columns ? square : columns));
+    const Errors e = {N, nv, P, information, s, seen, size, skin, rate, k, rows, root};
+    if (!root || error_diagonal(&e, diagonal, root + square))
         return 1;
-    error_of(&e, root, m, n, T, of_T, root + square);
-    error_of(&e, root, l, p, U, of_U, root + square);
-    error_blocks(&e, root, b, first, blocks);
+    error_of(&e, m, n, T, of_T, root + square);
+    error_of(&e, l, p, U, of_U, root + square);
+    error_blocks(&e, b, first, blocks);
     return 0;
 }
