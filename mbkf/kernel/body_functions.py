@@ -147,6 +147,33 @@ class BodyFunctions(Protocol):
             wrenches: w_f of the right, the left foot.
         """
 
+    def load_derivatives(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        moves: In[BoolArray, "2 nv"],
+        wrenches: In[Array, "12"],
+        above: In[Int32Array, "L in 1:joints"],
+        transports: In[Array, "L 3 6"],
+        parts: In[Array, "L 13"],
+        /,
+    ) -> tuple[Made[Array, "tau: nv"], Made[Array, "by_state: 6*L+nv 3*nv+12 fortran"]]:
+        """Generalised forces, and derivatives of the trunk's moments and of these forces by q, v, a and wrenches.
+
+        Rows are three moments of each section top-down, the same bottom-up, then the forces.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            moves: True where a dof moves the right, the left foot.
+            wrenches: w_f of the right, the left foot, which are below the sections.
+            above: Joint of the segment above each section, on the root; where it is spherical, moments turn with it.
+            transports: Moment about the section by a wrench about the root's origin, in its axes.
+            parts: Mass, centre of mass and inertia about it, row by row, of the root segment's part above.
+        """
+
     @requires("above >= 1", "above < joints", "N >= 3*nv")
     def section_state(
         self,

@@ -150,3 +150,14 @@ void tree_force_derivatives(Tree *tree, const double *q, const double *v, const 
             accumulate(before, &tree->composite[i]);
     }
 }
+
+void tree_upper(const Tree *tree, const Joint *part, int above, Composite *upper, Derivative *by)
+{
+    *upper = tree->composite[1]; /* which moves as the root does */
+    segment_inertia(part, tree->frames + 12, &upper->inertia);
+    set_gyration(&upper->inertia, upper->velocity, upper->gyration);
+    set_force(upper);
+    accumulate(upper, &tree->composite[above]);
+    for (int k = 0; k < 6; k++)
+        differentiate(upper, &tree->composite[0], tree->axes[k], by + k);
+}

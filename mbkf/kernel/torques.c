@@ -30,9 +30,10 @@ static void gyrated(const Composite *one, const double *axis, double *found)
 }
 
 /* Derivatives of dof i's force by the dofs k of a joint before its own, or of its own, and of theirs by dof i. */
-static void couple(const Tree *tree, const Joint *joint, int same, int i, const double *gyration, double *by_state)
+static void couple(const Tree *tree, const Joint *joint, int same, int i, const double *gyration, long m,
+                   double *by_state)
 {
-    const long nv = tree->nv, block = nv * nv;
+    const long block = tree->nv * m;
     const Derivative *of = &tree->by[i];
     double total[6];
     for (int c = 0; c < 6; c++)
@@ -40,7 +41,7 @@ static void couple(const Tree *tree, const Joint *joint, int same, int i, const 
     for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++) {
         const Derivative *by = &tree->by[k];
         const double *axis = tree->axes[k];
-        double *down = by_state + k * nv + i, *up = by_state + i * nv + k;
+        double *down = by_state + k * m + i, *up = by_state + i * m + k;
         down[0] = dot6(by->by_q, of->force_by_a) + dot3(by->drag + 3, gyration);
         down[block] = dot6(by->by_v, of->force_by_a) + dot3(axis + 3, gyration);
         down[2 * block] = dot6(axis, of->force_by_a);
@@ -62,9 +63,10 @@ static void subtract_wrenches(const Tree *tree, const char *moves, const double 
 }
 
 /* The same for by_state and one foot, whose wrench is constant in the world while dofs before turn an axis. */
-static void subtract_derivatives(const Tree *tree, const char *own, const double *w, double *by_state, double *by_wrench)
+static void subtract_derivatives(const Tree *tree, const char *own, const double *w, long m, double *by_state,
+                                 double *by_wrench)
 {
-    const long nv = tree->nv;
+    const int nv = tree->nv;
     for (int n = 1; n < tree->joints; n++) {
         const Joint *joint = &tree->joint[n];
         if (!joint->dofs || !own[joint->at_v])
@@ -73,10 +75,10 @@ static void subtract_derivatives(const Tree *tree, const char *own, const double
             double change[6];
             turned_wrench(w, tree->axes[k], change);
             for (int c = 0; c < 6; c++)
-                by_wrench[c * nv + k] = -tree->axes[k][c];
+                by_wrench[c * m + k] = -tree->axes[k][c];
             for (int i = joint->at_v; i < nv; i++)
                 if (own[i])
-                    by_state[k * nv + i] -= dot6(tree->axes[i], change);
+                    by_state[k * m + i] -= dot6(tree->axes[i], change);
         }
     }
 }
@@ -102,11 +104,10 @@ void mbkf_motion_forces(int frames, Tree *tree, const double *q, const double *v
     }
 }
 
-void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
-                             const double *wrenches, double *tau, double *by_state, double *jacobian)
+void tree_torques(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
+                  const double *wrenches, long m, double *tau, double *by_state)
 {
-    const long nv = tree->nv, block = nv * nv;
-    memset(by_state, 0, sizeof(double) * nv * (3 * nv + 12));
+    const long nv = tree->nv;
     tree_force_derivatives(tree, q, v, a);
     for (int n = 1; n < tree->joints; n++) {
         const Joint *joint = &tree->joint[n];
@@ -115,13 +116,22 @@ void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const
             double gyration[3];
             tau[i] = dot6(tree->axes[i], one->force);
             gyrated(one, tree->axes[i], gyration);
-            couple(tree, joint, 1, i, gyration, by_state);
-            for (int m = joint->parent; m; m = tree->joint[m].parent)
-                couple(tree, &tree->joint[m], 0, i, gyration, by_state);
+            couple(tree, joint, 1, i, gyration, m, by_state);
+            for (int before = joint->parent; before; before = tree->joint[before].parent)
+                couple(tree, &tree->joint[before], 0, i, gyration, m, by_state);
         }
     }
     subtract_wrenches(tree, moves, wrenches, tau);
     for (int foot = 0; foot < 2; foot++)
-        subtract_derivatives(tree, moves + foot * nv, wrenches + 6 * foot, by_state, by_state + 3 * block + 6 * foot * nv);
+        subtract_derivatives(tree, moves + foot * nv, wrenches + 6 * foot, m, by_state,
+                             by_state + (3 * nv + 6 * foot) * m);
+}
+
+void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
+                             const double *wrenches, double *tau, double *by_state, double *jacobian)
+{
+    const long nv = tree->nv;
+    memset(by_state, 0, sizeof *by_state * nv * (3 * nv + 12));
+    tree_torques(tree, q, v, a, moves, wrenches, nv, tau, by_state);
     memcpy(jacobian, tree->axes, sizeof *tree->axes * nv);
 }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pinocchio as pin
 
@@ -22,6 +24,14 @@ KINDS = {
 
 Loads = tuple[Array, Array]
 """(6,) residual at the root, and its derivatives (6, N)."""
+
+
+class SectionTable(NamedTuple):
+    """Sections of the trunk. Fields: as arguments of :meth:`BodyFunctions.load_derivatives`."""
+
+    above: Int32Array
+    transports: Array
+    parts: Array
 
 
 class CompiledTree:
@@ -103,6 +113,13 @@ class CompiledTree:
         """:meth:`tau`, its derivatives, Jacobian (6, nv). Args: as :meth:`BodyFunctions.torque_derivatives`."""
         motion = _read(q), _read(v), _read(a)
         return self.kernel.torque_derivatives(self.handle, *motion, moves, _read(wrenches))
+
+    def loads(
+        self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array, sections: SectionTable
+    ) -> tuple[Array, Array]:
+        """(nv,) generalised forces, (6 L + nv, N) derivatives. Args: as :meth:`BodyFunctions.load_derivatives`."""
+        motion = _read(q), _read(v), _read(a)
+        return self.kernel.load_derivatives(self.handle, *motion, moves, _read(wrenches), *sections)
 
     def section(
         self, motion: tuple[Array, Array, Array], carried: Array, transport: Array, above: int, whole: Loads

@@ -17,6 +17,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.kernel.tree import SectionTable
 from mbkf.model.body import Body
 from mbkf.model.layout import FOOT, Layout
 
@@ -142,6 +143,22 @@ class NewtonEuler:
             own = J[:, chain]
             by_state[chain[:, None], chain] -= after * (own.T @ _turned_wrench(wrench) @ own)
         return found
+
+    def compiled_loads(
+        self, q: Array, v: Array, a: Array, wrenches: Array, sections: SectionTable
+    ) -> Array | None:
+        """(6 L + nv, N) derivatives of moments at L sections and of :meth:`torques`; None without a compiled kernel.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches.
+            sections: The sections.
+        """
+        if self._tree is None:
+            return None
+        return self._tree.loads(q, v, a, self._moves_feet, wrenches, sections)[1]
 
     def loaded(self, found: JointTorques, loads: Mapping[int, Array]) -> None:
         """Adds further loads to the last result of :meth:`torques`, in place: τ −= Σ Jᵀ w.

@@ -20,7 +20,7 @@ import numpy as np
 import pinocchio as pin
 
 from mbkf.conventions import Array
-from mbkf.kernel.tree import CompiledTree
+from mbkf.kernel.tree import CompiledTree, SectionTable
 from mbkf.model.body import Body
 from mbkf.model.description import TrunkLevel
 from mbkf.model.human import HumanModel
@@ -102,6 +102,13 @@ class TrunkSections:
         """The parts above the levels in compiled code; empty without a kernel."""
         trees = [upper.model.tree for upper in self._upper]
         return [tree for tree in trees if tree is not None]
+
+    @cached_property
+    def table(self) -> SectionTable:
+        """The sections as compiled code takes them."""
+        parts = [self.part(k) for k in range(len(self.levels))]
+        rows = [[part.mass, *part.lever, *part.inertia.ravel()] for part in parts]
+        return SectionTable(np.array(self._above, np.int32), self.transports, np.array(rows).reshape(-1, 13))
 
     def joints_above(self, level: TrunkLevel) -> set[int]:
         """Joints whose segments hang on the segment above a level, that one's included."""

@@ -1,6 +1,5 @@
 """Variances of limbs' torques, which depend on few components each, by products of either kind."""
 
-import numpy as np
 import pytest
 
 from tests.filters.test_state_variances import NV, assert_diagonals, errors

@@ -216,3 +216,17 @@ def test_the_kernel_gives_the_references_loads_and_derivatives(seed, monkeypatch
     for name in ("wrench", "moment", "by_state", "by_root"):
         one, other = getattr(found, name), getattr(expected, name)
         assert_near(one, other, 1e-12 * worst(other))
+
+
+@seeds
+def test_moments_and_forces_that_the_kernel_differentiates_together_are_those_one_by_one(seed, monkeypatch):
+    model, sections, s = made(seed)
+    balance = NewtonEuler(model)
+    found = balance.compiled_loads(s.q, s.v, s.a, s.w, sections.table)
+    if found is None:
+        pytest.skip("the kernel is not compiled here")
+    whole = balance.torques(s.q, s.v, s.a, s.w)
+    monkeypatch.setattr(TrunkSections, "_compiled", lambda *_: None)
+    moments = sections.state(s.q, s.v, s.a, NOTHING, whole.tau[:6], whole.by_state[:6]).by_state
+    assert_near(found[:18], moments.reshape(18, -1), 1e-12 * worst(moments))
+    np.testing.assert_array_equal(found[18:], whole.by_state)

@@ -204,7 +204,7 @@ class DynamicReport(StateReport[DynamicState]):
         """Standard deviations; torques' from the whole state through Newton–Euler."""
         found = self._variances(estimate, torques)
         parts, q = ConfigurationParts(found.height, found.blocks), estimate.record.state.q
-        torque = found.torque[: self.model.nv]
+        torque = found.torque[-self.model.nv :]
         return Spread(self.reader, q, found.position, found.velocity, torque, lambda: parts)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
@@ -222,7 +222,7 @@ class DynamicReport(StateReport[DynamicState]):
         Args:
             estimate: The estimate.
             torques: False where those of the torques may be NaN.
-            levels: The trunk's moments follow the torques.
+            levels: The trunk's moments come before the torques.
         """
         if self._read is not None and self._read[0] is estimate and self._read[2] >= torques + levels:
             return self._read[1]
@@ -248,18 +248,22 @@ class DynamicReport(StateReport[DynamicState]):
 
         Args:
             estimate: The estimate.
-            levels: 6 L rows of the trunk's moments follow.
+            levels: 6 L rows of the trunk's moments come before them.
         """
         state, balance = estimate.record.state, self.kalman.balance
         loads = self.loads.of(_step(estimate).decisions.notes.supports, state)
+        if levels and loads is None:
+            sections = self._levels.sections.table
+            together = balance.compiled_loads(state.q, state.v, state.a, state.w, sections)
+            if together is not None:
+                return together, None
         torque = balance.torques(state.q, state.v, state.a, state.w)
         by_state, shared = self.loads.torques(balance, torque, loads)
         if not levels:
             return by_state, shared
         rows, of_sharing = self._levels.at(state, loads, torque.tau, by_state)
-        both = np.empty((len(by_state) + len(rows), by_state.shape[1]), order="F")
-        both[: len(by_state)], both[len(by_state) :] = by_state, rows
-        return both, None if shared is None else np.concatenate([shared, of_sharing])
+        both = np.concatenate([rows, by_state])
+        return both, None if shared is None else np.concatenate([of_sharing, shared])
 
     @cached_property
     def _levels(self) -> LevelRows:
@@ -272,7 +276,7 @@ class DynamicReport(StateReport[DynamicState]):
         """
         if not self._levels.sections.levels:
             return None
-        return self._variances(estimate, levels=True).torque[self.model.nv :].reshape(self._levels.shape)
+        return self._variances(estimate, levels=True).torque[: -self.model.nv].reshape(self._levels.shape)
 
     def errors(self, estimate: Posterior) -> ErrorCovariance:
         """Errors of the whole state; the filter's own P where it knows how the noise is correlated."""

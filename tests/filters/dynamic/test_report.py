@@ -9,6 +9,7 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.report import ROUNDS, DynamicReport
 from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.model.trunk_sections import TrunkSections
 from mbkf.sensors.contact.records import Contact, FreeStance
 from mbkf.sensors.contact.sharing import Stance, push_apart
 from tests.dynamics import settings_with
@@ -40,22 +41,29 @@ def test_a_start_agrees_with_the_plates():
     assert worst(root.residual) < 5.0
 
 
-def test_torques_come_with_the_spread_of_the_whole_state():
-    """T P Tᵀ with T the derivative of the torques, here by finite differences along the state."""
-    tracking, found = estimates("dynamic")
+@pytest.mark.usefixtures("either_kernel")
+def test_torques_and_the_trunks_moments_come_with_the_spread_of_the_whole_state():
+    """T P Tᵀ with T their derivative, here by finite differences along the state."""
+    tracking, found = made_filter("dynamic"), estimates("dynamic")[1]
     state: DynamicState = found[5].record.state
     model, nv = made().model, made().model.nv
-    balance = tracking.kalman.balance
+    balance, sections = tracking.kalman.balance, TrunkSections(model)
+    carried = np.zeros((len(sections.levels), 6))
 
-    def tau(x):
+    def loads(x):
         q = model.integrate(state.q, x[:nv])
         v, a, w, _ = np.split(x[nv:], [nv, 2 * nv, 2 * nv + 12])
-        return balance.tau(q, state.v + v, state.a + a, state.w + w)
+        motion = q, state.v + v, state.a + a
+        tau = balance.tau(*motion, state.w + w)
+        return np.r_[tau, sections.moments(*motion, carried, tau[:6]).ravel()]
 
     h = 1e-6
-    T = np.array([(tau(h * e) - tau(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
-    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, tracking.report.errors(found[5]).covariance(), T))
-    np.testing.assert_allclose(tracking.spread(found[5]).torque, expected, rtol=1e-5)
+    T = np.array([(loads(h * e) - loads(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
+    expected = np.einsum("ij,jk,ik->i", T, tracking.report.errors(found[5]).covariance(), T)
+    np.testing.assert_allclose(tracking.spread(found[5]).torque ** 2, expected[:nv], rtol=2e-5)
+    np.testing.assert_allclose(tracking.level_variance(found[5]).ravel(), expected[nv:], rtol=2e-5)
+    again = tracking.report.spread(found[5])  # read off the rows with levels
+    np.testing.assert_allclose(again.torque**2, expected[:nv], rtol=2e-5)
 
 
 def test_wrenches_and_motion_come_with_the_states_spread():
