@@ -19,18 +19,22 @@ class SmoothingSettings:
     """Lengths of a smoother's windows.
 
     Attributes:
-        window_s: Length of a window that is smoothed at once.
+        window_s: Length of a window that is smoothed at once, at least.
         ahead_s: Time beyond its end whose readings are used, too.
+        frames: Frames of both together, at least. Frames beyond a window's end are worked through again in the next
+            one, so short windows at a low rate cost more.
     """
 
     window_s: float = 1.5
     ahead_s: float = 0.4
+    frames: int = 380
 
 
 class FixedLagSmoother:
     """Takes estimates frame by frame and gives smoothed ones back as soon as they are due.
 
-    A window begins with the last frame of the one before, so that differences over time have both their ends.
+    A window begins with the last frame of the one before, so that differences over time have both their ends. It is the
+    filter's own estimate, marked as ``uncorrected`` where its window failed.
 
     Attributes:
         filter: The filter.
@@ -39,8 +43,8 @@ class FixedLagSmoother:
     def __init__(self, filter: TrackingFilter, settings: SmoothingSettings) -> None:
         """Makes a smoother of a filter's estimates."""
         self.filter = filter
-        self._window = max(1, round(settings.window_s / filter.dt_s))
         self._ahead = max(1, round(settings.ahead_s / filter.dt_s))
+        self._window = max(1, round(settings.window_s / filter.dt_s), settings.frames - self._ahead)
         self._run: list[Posterior] = []
         self._first = 0
         self._given = 0
@@ -79,5 +83,7 @@ class FixedLagSmoother:
         )
         done = list(enumerate(smoothed, start=self._first))[self._given :]
         self._run, self._given = self._run[until - 1 :], 1
+        if smoothed[-1].uncorrected:
+            self._run[0] = smoothed[-1]
         self._first += until - 1
         return done

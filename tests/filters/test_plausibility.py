@@ -14,7 +14,7 @@ from mbkf.trial.preparation.filters import FILTERS
 from tests.followed import estimates, made_filter, recording, replayed
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
-WINDOWS = SmoothingSettings(window_s=0.2, ahead_s=0.1)
+WINDOWS = SmoothingSettings(window_s=0.2, ahead_s=0.1, frames=0)
 
 
 def one(name="dynamic"):
@@ -129,18 +129,24 @@ def test_a_trial_without_a_plausible_window_is_not_smoothed(monkeypatch):
     assert found.uncorrected.all() and not found.smoothed
 
 
-def test_windows_go_on_after_an_implausible_one(monkeypatch):
-    filter = made_filter("kinematic")
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_windows_go_on_after_an_implausible_one(name, monkeypatch):
+    """From the filter's own estimate, not from the smoother's."""
+    filter, anew = made_filter(name), []
     smooth = filter.smooth
 
     def thrown(run, wanted):
         found = smooth(run, wanted)
-        return [each._replace(v=each.v + 1e9) for each in found] if run[0].started else found
+        if run[0].started:
+            return [each._replace(v=each.v + 1e9) for each in found]
+        anew.append(anew or made_filter(name).smooth(run, wanted))
+        return found
 
     monkeypatch.setattr(filter, "smooth", thrown)
     smoother, given = FixedLagSmoother(filter, WINDOWS), []
-    for t, estimate in enumerate(estimates("kinematic")[1]):
+    for t, estimate in enumerate(estimates(name)[1]):
         given += smoother.push(t, estimate)
     given += smoother.finish()
     assert [t for t, _ in given] == list(range(len(recording())))
     assert [each.uncorrected for _, each in given] == [True] * 20 + [False] * (len(recording()) - 20)
+    np.testing.assert_array_equal([each.q for _, each in given[20:40]], [each.q for each in anew[0][1:]])

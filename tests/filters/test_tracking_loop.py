@@ -88,7 +88,7 @@ def test_a_frame_whose_start_is_implausible_too_has_no_estimate():
 
 
 @pytest.mark.parametrize("gap", [0, 5])
-@pytest.mark.parametrize("smoothing", [None, SmoothingSettings(window_s=1.0)])
+@pytest.mark.parametrize("smoothing", [None, SmoothingSettings(window_s=1.0, frames=0)])
 def test_a_body_that_stands_elsewhere_is_found_there_in_the_same_frame(gap, smoothing):
     """It errs no more than the same motion without the step, before and after it, and is not thrown across."""
     filter, recording = whole_motion()

@@ -14,7 +14,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.filters.dynamic.filter import DynamicFilter, DynamicStep
 from mbkf.filters.dynamic.level_rows import LevelRows
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.filters.dynamic.smoother import smooth
+from mbkf.filters.dynamic.smoother import WindowMemory, smooth
 from mbkf.filters.dynamic.support_loads import SupportLoads
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.estimate import Posterior, Record
@@ -82,7 +82,7 @@ class DynamicReport(StateReport[DynamicState]):
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
         self._read: tuple[Posterior, StateVariances, int] | None = None
         self._no_torques = np.zeros((0, kalman.layout.wrench.stop))
-        self._smoothing: list[Array] = []  # memory that windows share
+        self._smoothing = WindowMemory()
 
     def first(self, motion: FirstMotion, frame: Frame) -> Posterior:
         """The motion, corrected by the frame's plates and Newton's law."""
@@ -176,6 +176,8 @@ class DynamicReport(StateReport[DynamicState]):
             wanted: Number of estimates to return.
         """
         steps = [_step(estimate) for estimate in run]
+        if run[0].uncorrected:
+            self._smoothing.forget()
         states = list(smooth(self.kalman, steps, ROUNDS, wanted, self._smoothing))
         ahead_s = self.kalman.plant.dt_s * np.arange(len(run) - 1, -1, -1)
         befores: list[DynamicState | None] = [None, *states]

@@ -44,12 +44,47 @@ class _Frame(NamedTuple):
     transition: Transition | None
 
 
+class WindowMemory:
+    """What one window leaves to the next.
+
+    Attributes:
+        covariances: Arrays (N, N) to work in: fresh memory costs as much as the products that go there.
+    """
+
+    def __init__(self) -> None:
+        self.covariances: list[Array] = []
+        self._kept: tuple[DynamicState, DynamicState] | None = None
+
+    def grow(self, frames: int, shape: tuple[int, ...]) -> None:
+        """Makes covariances for as many frames."""
+        self.covariances += [np.empty(shape) for _ in range(len(self.covariances), frames)]
+
+    def keep(self, filtered: DynamicState, linearised: DynamicState) -> None:
+        """Keeps the last round's forward estimate of a frame, from which the next window's forward pass goes on.
+
+        Args:
+            filtered: The filter's own estimate of the frame.
+            linearised: The last round's.
+        """
+        self._kept = filtered, linearised
+
+    def forget(self) -> None:
+        """Lets the next window begin with the filter's own estimate."""
+        self._kept = None
+
+    def start(self, filtered: DynamicState) -> DynamicState:
+        """The estimate of a window's first frame from which its forward pass goes on."""
+        if self._kept is not None and self._kept[0] is filtered:
+            return self._kept[1]
+        return filtered
+
+
 def smooth(
     kalman: DynamicFilter,
     run: Sequence[Step[DynamicState]],
     rounds: int,
     wanted: int | None = None,
-    memory: list[Array] | None = None,
+    memory: WindowMemory | None = None,
 ) -> Iterator[DynamicState]:
     """Smoothed states of a window, in order.
 
@@ -58,13 +93,12 @@ def smooth(
         run: Its steps; the first one's state is taken as it is.
         rounds: Number of linearisations, the filter's own among them.
         wanted: Only the first ``wanted`` frames are returned; the others are looked at.
-        memory: Arrays (N, N) to work in, which may serve one window after another: fresh memory costs as much as the
-            products that go there. It grows as it has to; what is returned does not lie in it.
+        memory: Memory of the windows before; what is returned does not lie in it.
     """
-    begin, decided = run[0].state, [step.decisions for step in run]
+    memory = WindowMemory() if memory is None else memory
+    begin, decided = memory.start(run[0].state), [step.decisions for step in run]
     means = [step.state for step in run]
-    memory = [] if memory is None else memory
-    memory += [np.empty(begin.P.shape) for _ in range(len(memory), len(run))]
+    memory.grow(len(run), begin.P.shape)
     forward = _filtered(kalman, run)
     for _ in range(rounds - 1):
         steps = [step for step, _ in _backward(forward)]
@@ -72,7 +106,11 @@ def smooth(
         means = [
             kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
         ]
-        forward = _forward(kalman, begin, means, decided, memory)
+        forward = _forward(kalman, begin, means, decided, memory.covariances)
+    last = (len(run) if wanted is None else wanted) - 1
+    if rounds > 1:
+        found = forward[last]
+        memory.keep(run[last].state, kalman.plant.retract(means[last], found.delta, found.P.copy()))
     steps_and_covariances = list(_backward(forward, len(run) if wanted is None else wanted))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:

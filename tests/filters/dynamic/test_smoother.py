@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from mbkf.filters.dynamic.smoother import smooth
+from mbkf.filters.dynamic.smoother import WindowMemory, smooth
 from mbkf.numerics.smoothing import BackwardPass
 from tests.dynamics import DT, follow, trial
 from tests.motions import angle_errors, assert_near, worst
@@ -121,6 +121,16 @@ def test_stretches_that_look_ahead_are_nearly_the_whole(name):
         sd, share = np.sqrt(np.diag(whole.P)), 0.25 if t < half // 2 else 1.0
         assert worst(run.kalman.plant.difference(whole, found) / sd) < 0.3 * share
         assert worst((found.P - whole.P) / sd[:, None] / sd) < 0.2 * share
+
+
+@each_motion
+def test_a_window_goes_on_from_the_one_before(name):
+    """Its linearisation does not begin anew: it is the whole run's, but for readings beyond the first window."""
+    run, half, memory = run_of(name), 30, WindowMemory()
+    list(smooth(run.kalman, run.steps[: half + 20], 2, half, memory))
+    second = smooth(run.kalman, run.steps[half - 1 :], 2, memory=memory)
+    for found, whole in zip(second, smoothed(name, 2)[half - 1 :], strict=True):
+        assert worst(run.kalman.plant.difference(whole, found) / np.sqrt(np.diag(whole.P))) < 0.01
 
 
 def test_looking_ahead_is_what_makes_a_stretch_good():
