@@ -6,6 +6,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.numerics.percentiles import known_percentiles
 from mbkf.numerics.runs import spread_indices
 
 METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
@@ -157,15 +158,13 @@ def body_extent_m(positions_m: Array) -> float:
     The longest side of the box around the markers of a frame without the outermost tenth on either side
     (ghosts), median over up to 200 frames spread over the trial; all markers where fewer than ten are seen.
     """
-    chosen = spread_indices(len(positions_m), _CHECKED_FRAMES)
-    extents = []
-    for points in positions_m[chosen] if len(positions_m) else ():
-        seen = points[~np.isnan(points).any(axis=1)]
-        if len(seen) >= 4:
-            cut = 10 if len(seen) >= 10 else 0
-            low, high = np.percentile(seen, [cut, 100 - cut], axis=0)
-            extents.append((high - low).max())
-    return float(np.median(extents)) if extents else float("nan")
+    points = positions_m[spread_indices(len(positions_m), _CHECKED_FRAMES)] if len(positions_m) else positions_m
+    seen = ~np.isnan(points).any(axis=2)
+    count = seen.sum(axis=1)
+    known = np.where(seen[:, :, None], points, np.nan)[count >= 4]
+    least, low, high, most = known_percentiles(known.swapaxes(0, 1), (0.0, 10.0, 90.0, 100.0))
+    sides = np.where((count[count >= 4] >= 10)[:, None], high - low, most - least)
+    return float(np.median(sides.max(axis=1))) if len(sides) else float("nan")
 
 
 def check_body_size(positions_m: Array, unit: str, where: str) -> tuple[str, ...]:
