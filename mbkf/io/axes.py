@@ -158,7 +158,7 @@ def body_extent_m(positions_m: Array) -> float:
     The longest side of the box around the markers of a frame without the outermost tenth on either side
     (ghosts), median over up to 200 frames spread over the trial; all markers where fewer than ten are seen.
     """
-    points = positions_m[spread_indices(len(positions_m), _CHECKED_FRAMES)] if len(positions_m) else positions_m
+    points = positions_m[spread_indices(len(positions_m), _CHECKED_FRAMES)]
     seen = ~np.isnan(points).any(axis=2)
     count = seen.sum(axis=1)
     known = np.where(seen[:, :, None], points, np.nan)[count >= 4]

@@ -44,8 +44,10 @@ def order_finding(evidence: Evidence) -> tuple[Finding | None, tuple[PlateReadin
         return None, evidence.plates
     one, other = (evidence.plates[p].name for p in pairs[best])
     hint = f"in each other's place they fit {times:.1f} times as well: check the order of their channels and corners"
-    name = f"order of plates '{one}' and '{other}'"
-    return Finding(name, times, TIMES_SD, "times", BOUND, "outside", hint), _exchanged(evidence.plates, *pairs[best])
+    finding = Finding(
+        f"order of plates '{one}' and '{other}'", times, TIMES_SD, "times", BOUND, "outside", hint
+    )
+    return finding, _exchanged(evidence.plates, *pairs[best])
 
 
 def _sums(evidence: Evidence, pairs: Sequence[tuple[int, int]]) -> list[Array]:
