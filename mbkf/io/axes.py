@@ -159,7 +159,7 @@ def body_extent_m(positions_m: Array) -> float:
     (ghosts), median over up to 200 frames spread over the trial; all markers where fewer than ten are seen.
     """
     points = positions_m[spread_indices(len(positions_m), _CHECKED_FRAMES)]
-    seen = ~np.isnan(points).any(axis=2)
+    seen = np.asarray(~np.isnan(points).any(axis=2))
     count = seen.sum(axis=1)
     known = np.where(seen[:, :, None], points, np.nan)[count >= 4]
     least, low, high, most = known_percentiles(known.swapaxes(0, 1), (0.0, 10.0, 90.0, 100.0))
