@@ -28,10 +28,3 @@ Band band_from(int start, int m, int N, const double *rows)
     }
     return band;
 }
-
-void transposed(int rows, int columns, const double *A, int lda, double *B)
-{
-    for (int j = 0; j < columns; j++)
-        for (int i = 0; i < rows; i++)
-            B[(long)i * columns + j] = A[(long)j * lda + i];
-}

@@ -10,7 +10,4 @@ typedef struct {
 /* The band that begins with a row. */
 Band band_from(int start, int m, int N, const double *rows);
 
-/* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column. */
-void transposed(int rows, int columns, const double *A, int lda, double *B);
-
 #endif

@@ -1,4 +1,4 @@
-/* Matrices (N x N) and their transposes, in tiles that stay in the caches; see symmetric.c. */
+/* Matrices and their transposes, in tiles that stay in the caches; see symmetric.c. */
 #ifndef MBKF_SYMMETRIC_H
 #define MBKF_SYMMETRIC_H
 
@@ -7,6 +7,9 @@ void mirror(int N, double *X);
 
 /* out = X'; out is not X. */
 void transpose(int N, const double *X, double *out);
+
+/* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column. */
+void transposed(int rows, int columns, const double *A, int lda, double *B);
 
 /* X + X' in place of X: exactly symmetric. */
 void symmetrise(int N, double *X);
