@@ -90,7 +90,7 @@ class OpenContacts:
     def added_to(self, recording: Recording, t: int) -> Recording:
         """The recording, for frame t, with the contacts that have opened besides those that it knows of."""
         flags = self.watch.bearing()
-        if not flags.any():
+        if not np.count_nonzero(flags):
             return recording
         known = recording.readings.get(BEARING)
         opened = flags.astype(float) if known is None else np.maximum(known[t], flags)
@@ -99,7 +99,7 @@ class OpenContacts:
 
     def opened(self) -> Posterior | None:
         """The estimate of the latest frame by a filter that knows of a contact which has opened; None without one."""
-        bears, before = bool(self.watch.bearing().any()), self._bore
+        bears, before = bool(np.count_nonzero(self.watch.bearing())), self._bore
         self._bore = bears
         if self._latest is None or not bears or before:
             return None

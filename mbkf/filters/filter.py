@@ -107,7 +107,9 @@ class Step(NamedTuple, Generic[StateT]):
     def refused(self) -> BoolArray:
         """(M,) markers seen but outside their gate."""
         notes = self.decisions.notes
-        return notes.seen & ~notes.trusted if notes.trusted is not notes.seen else np.zeros_like(notes.seen)
+        if notes.trusted is notes.seen:
+            return np.zeros(len(notes.seen), dtype=bool)
+        return notes.seen & ~notes.trusted
 
 
 class Filter(Generic[StateT]):

@@ -14,6 +14,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.estimate import Posterior
+from mbkf.kernel.loading import library
 from mbkf.model.body import Body
 from mbkf.sensors.contact.possible import MOST_WEIGHTS
 from mbkf.sensors.gating import TRACK_LOSS_M
@@ -29,11 +30,15 @@ DOUBT = 2.0
 def plausible(estimate: Posterior, model: Body) -> bool:
     """True where an estimate is finite, no joint turns faster than :data:`MOST_RAD_S`, and forces can be borne."""
     q, v, a = estimate.q, estimate.v, estimate.a
+    most = DOUBT * MOST_WEIGHTS * GRAVITY_M_S2 * model.mass_kg
+    kernel = library()
+    if kernel is not None:
+        read = np.ascontiguousarray
+        return kernel.is_possible(read(q), read(v), read(a), read(estimate.wrench), MOST_RAD_S, most)
     if not isfinite(float(q @ q) + float(a @ a)):
         return False
     if not (v.max(initial=0.0) <= MOST_RAD_S and v.min(initial=0.0) >= -MOST_RAD_S):  # NaN is not
         return False
-    most = DOUBT * MOST_WEIGHTS * GRAVITY_M_S2 * model.mass_kg
     return not any(abs(force) > most for force in estimate.wrench[:, :3].ravel().tolist())
 
 

@@ -86,6 +86,32 @@ class BodyFunctions(Protocol):
             wrench: w, sum of both wrenches.
         """
 
+    def law_rows(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        wrenches: In[Array, "12"],
+        extra: In[Array, "m"],
+        by_extra: In[Array, "6 m"],
+        sharp: In[Array, "6"],
+        /,
+    ) -> tuple[Made[Array, "rows: 6 3*nv+12+m"], Made[Array, "innovation: 6"]]:
+        """Newton's law at the root as whitened readings of zero: rows on (q, v, a, wrenches, extra) and innovations.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            wrenches: Of the right, the left foot.
+            extra: Further states.
+            by_extra: Whitened rows on them.
+            sharp: 1/sd of the residual of :meth:`root_dynamics`.
+        """
+
+    def centre_of_mass(self, tree: Tree, q: In[Array, "nq"], /) -> Made[Array, "centre: 3"]:
+        """Centre of mass at a configuration, m."""
+
     def generalised_forces(
         self,
         tree: Tree,

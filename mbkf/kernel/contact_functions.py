@@ -197,6 +197,19 @@ class ContactFunctions(Protocol):
             origins: Of the plates, m.
         """
 
+    def plate_total(self, wrenches: In[Array, "plates 6"], /) -> tuple[bool, Made[Array, "force: 3"]]:
+        """True where plates read finite numbers alone, and the sum of their forces, those not read counted as 0."""
+
+    def plate_loads(
+        self, origins: In[Array, "plates 3"], wrenches: In[Array, "plates 6"], /
+    ) -> tuple[Made[Array, "force: plates 3"], Made[Array, "moment: plates 3"]]:
+        """Forces of plates, and their moments about their own origins.
+
+        Args:
+            origins: Of the plates, m.
+            wrenches: About the world's origin; NaN where not read.
+        """
+
     def plate_spreads(
         self, origins: In[Array, "K 3"], points: In[Array, "n 3"], force: float, moment: float, /
     ) -> Made[Array, "spreads: n 6"]:

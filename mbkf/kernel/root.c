@@ -1,4 +1,5 @@
 /* The root's six equations ID(q, v, a) - J'w in its own axes, and their derivatives by q, v, a and the wrenches. */
+#include "call.h"
 #include "dynamics.h"
 
 /* A force and its moment about the root joint in the root's axes, down a column. */
@@ -49,4 +50,43 @@ void mbkf_root_dynamics(Tree *tree, const double *q, const double *v, const doub
     }
     in_root_axes(frame, left, residual, 1);
     add_turned(tree, wrench, by_state, stride);
+}
+
+void mbkf_law_rows(int m, Tree *tree, const double *q, const double *v, const double *a, const double *wrenches,
+                   const double *extra, const double *by_extra, const double *sharp, double *rows,
+                   double *innovation)
+{
+    const int known = 3 * tree->nv + 12, width = known + m;
+    double wrench[6], residual[6], *by_state = workspace(6L * known);
+    if (!by_state)
+        return;
+    for (int i = 0; i < 6; i++)
+        wrench[i] = wrenches[i] + wrenches[6 + i];
+    mbkf_root_dynamics(tree, q, v, a, wrench, residual, by_state);
+    for (int i = 0; i < 6; i++) {
+        double *row = rows + (long)i * width;
+        innovation[i] = -sharp[i] * residual[i];
+        for (int j = 0; j < known; j++)
+            row[j] = sharp[i] * by_state[(long)i * known + j];
+        for (int j = 0; j < m; j++) {
+            row[known + j] = by_extra[(long)i * m + j];
+            innovation[i] -= row[known + j] * extra[j];
+        }
+    }
+}
+
+void mbkf_centre_of_mass(Tree *tree, const double *q, double *centre)
+{
+    double mass = 0.0;
+    tree_place(tree, q);
+    centre[0] = centre[1] = centre[2] = 0.0;
+    for (int i = 1; i < tree->joints; i++) {
+        const Joint *joint = &tree->joint[i];
+        const double *frame = tree->frames + 12 * i, *lever = joint->lever;
+        for (int k = 0; k < 3; k++)
+            centre[k] += joint->mass * (frame[9 + k] + lever[0] * frame[k] + lever[1] * frame[3 + k] + lever[2] * frame[6 + k]);
+        mass += joint->mass;
+    }
+    for (int k = 0; k < 3; k++)
+        centre[k] /= mass;
 }

@@ -264,6 +264,43 @@ class StateFunctions(Protocol):
             beta, zeta: Gains.
         """
 
+    def mean_activity(
+        self,
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        before: In[Array, "nv"] | None,
+        rate: float,
+        share: float,
+        /,
+    ) -> Made[Array, "after: nv"]:
+        """Running mean of a² + (rate v)², to which a frame adds a share; the frame's own where there is not one before.
+
+        Args:
+            v, a: Velocity and acceleration.
+            before: The mean before.
+            rate: 1/s.
+            share: Weight of the frame.
+        """
+
+    def is_possible(
+        self,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        wrenches: In[Array, "k 6"],
+        rate: float,
+        force: float,
+        /,
+    ) -> bool:
+        """True where q, v and a are finite, and neither a velocity nor a force along an axis exceeds its bound.
+
+        Args:
+            q, v, a: Motion.
+            wrenches: Force and moment; NaN where not known.
+            rate: Greatest velocity.
+            force: Greatest force, N.
+        """
+
     def third_differences(
         self,
         first: In[Array, "*count"],

@@ -97,6 +97,17 @@ class CompiledTree:
         """(6,) residual and (6, 3 nv + 12) derivatives. Args: as :meth:`BodyFunctions.root_dynamics`."""
         return self.kernel.root_dynamics(self.handle, _read(q), _read(v), _read(a), _read(wrench))
 
+    def law(
+        self, q: Array, v: Array, a: Array, wrenches: Array, extra: Array, by_extra: Array, sharp: Array
+    ) -> tuple[Array, Array]:
+        """(6, 3 nv + 12 + m) rows and (6,) innovations. Args: as :meth:`BodyFunctions.law_rows`."""
+        state = _read(q), _read(v), _read(a), _read(wrenches), _read(extra)
+        return self.kernel.law_rows(self.handle, *state, by_extra, sharp)
+
+    def centre_of_mass(self, q: Array) -> Array:
+        """(3,) centre of mass at q (nq,), m."""
+        return self.kernel.centre_of_mass(self.handle, _read(q))
+
     def tau(self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array) -> Array:
         """(nv,) generalised forces. Args: as :meth:`BodyFunctions.generalised_forces`."""
         motion = _read(q), _read(v), _read(a)

@@ -4,7 +4,8 @@
  *     P += S(c) diag(sd^2) S(c)'   of FootContact.inflate
  *
  * and readings of plates: all_possible (mbkf/sensors/contact/possible.py), PlateBuffer.mean
- * (mbkf/stream/receiving/plate_buffer.py). */
+ * (mbkf/stream/receiving/plate_buffer.py), StrayLoad (mbkf/trial/loads/running.py), PlateNoise.after
+ * (mbkf/sensors/contact/plate_noise.py). */
 #include <math.h>
 #include <string.h>
 
@@ -89,5 +90,31 @@ void mbkf_wrench_means(int size, int n, int plates, const double *ring, int firs
         mean[5] += o[0] * mean[1] - o[1] * mean[0];
         for (int c = 0; c < 6 && isnan(sum); c++)
             mean[c] = NAN;
+    }
+}
+
+int mbkf_plate_total(int plates, const double *wrenches, double *force)
+{
+    int finite = 1;
+    force[0] = force[1] = force[2] = 0.0;
+    for (int k = 0; k < plates; k++)
+        for (int c = 0; c < 6; c++) {
+            const double read = wrenches[6 * k + c];
+            finite &= isfinite(read) != 0;
+            if (c < 3 && !isnan(read))
+                force[c] += read;
+        }
+    return finite;
+}
+
+void mbkf_plate_loads(int plates, const double *origins, const double *wrenches, double *force, double *moment)
+{
+    for (int k = 0; k < plates; k++, origins += 3, wrenches += 6, force += 3, moment += 3) {
+        double turned[3];
+        cross(origins, wrenches, turned);
+        for (int i = 0; i < 3; i++) {
+            force[i] = wrenches[i];
+            moment[i] = wrenches[3 + i] - turned[i];
+        }
     }
 }

@@ -115,6 +115,26 @@ class NewtonEuler:
         by_state[:, :ROOT] += _turned_wrench(own)
         return RootBalance(data.tau[:ROOT] + own, by_state)
 
+    def law(
+        self, q: Array, v: Array, a: Array, wrenches: Array, extra: Array, by_extra: Array, sharp: Array
+    ) -> tuple[Array, Array]:
+        """The pelvis's equations as whitened readings of zero: (6, N + m) rows and (6,) innovations.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+            extra: (m,) further states that act at the root.
+            by_extra: (6, m) whitened rows on them.
+            sharp: (6,) 1/sd of each equation.
+        """
+        if self._tree is not None:
+            return self._tree.law(q, v, a, wrenches, extra, by_extra, sharp)
+        root = self.root(q, v, a, wrenches)
+        rows = np.concatenate([root.by_state * sharp[:, None], by_extra], axis=1)
+        return rows, -root.residual * sharp - by_extra @ extra
+
     def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
         """All generalised forces with derivatives, for the feet's wrenches (12,).
 

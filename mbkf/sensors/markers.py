@@ -19,6 +19,7 @@ predicted, its joint's spread is inflated.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import exp
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -163,7 +164,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         if s.skin_memory_s > 0.0:
             self._skin = SkinMarkers(sensor, self.noise_m, s.camera_noise_m, s.skin_memory_s, dt_s)
         self._observed = ObservedDofs(sensor, unobservable)
-        self._forget = 1.0 - np.exp(-dt_s / s.noise_memory_s)
+        self._forget = 1.0 - exp(-dt_s / s.noise_memory_s)
         self._nv = sensor.model.nv
         self._passes_m2 = s.gate * self.noise_m**2
 

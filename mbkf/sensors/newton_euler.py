@@ -7,7 +7,6 @@ contact is in the state they vanish. They are read as zero. Torques of the joint
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -42,14 +41,6 @@ LOADS_AT_ROOT = {UNSEEN_MOMENT: slice(3, 6), ROOT_RESIDUAL: slice(0, 6)}
 """Added states that act at the root itself, and the rows of the law that they add to."""
 
 
-class _Load(NamedTuple):
-    """Rows of the law, and the slice of a load at the root in the state and among the added states."""
-
-    components: slice
-    state: slice
-    extra: slice
-
-
 class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     """Newton's law at the root, on a state (q, v, a, wrenches).
 
@@ -77,8 +68,8 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         self.balance, self.settings = balance, settings
         self._support: slice | None = None
         self._support_extra = slice(0)
-        self._loads: list[_Load] = []
-        self._by_loads = np.zeros((ROOT, 0))
+        self._left_foot = slice(0)
+        self._by_extra = np.zeros((ROOT, 0))
         model = balance.model
         feet = [model.joint(segment).v.start for segment in model.roles.feet]
         self._unseen_foot = unobservable is not None and bool(unobservable[feet].any())
@@ -88,15 +79,15 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         """Keeps the slices of the wrench of other contacts and of loads at the root, if the state has them."""
         if SUPPORT in layout:
             self._support, self._support_extra = layout[SUPPORT], layout.extra_index(SUPPORT)
-        self._loads = [
-            _Load(components, layout[name], layout.extra_index(name))
-            for name, components in LOADS_AT_ROOT.items()
-            if name in layout
-        ]
-        added = [load.state for load in self._loads] + ([] if self._support is None else [self._support])
-        self._by_loads = np.zeros((ROOT, max((part.stop for part in added), default=0)))
-        for load in self._loads:
-            self._by_loads[load.components, load.state] = np.diag(self._sharp[load.components])
+        self._left_foot = layout.feet[1]
+        by_extra = np.zeros((ROOT, layout.size - layout.extra.start))
+        used = self._support_extra.stop
+        for name, components in LOADS_AT_ROOT.items():
+            if name in layout:
+                own = layout.extra_index(name)
+                by_extra[components, own] = np.diag(self._sharp[components])
+                used = max(used, own.stop)
+        self._by_extra = by_extra[:, :used].copy()
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
@@ -105,20 +96,13 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
             # At the root a wrench counts alike wherever it acts: that of other parts adds to the right foot's.
             wrenches = wrenches.copy()
             wrenches[:6] += state.extra[self._support_extra]
-        root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
-        residual = root.residual
-        known = root.by_state.shape[1]
-        if support is None and not self._loads:
-            return Rows(root.by_state * sharp, -residual * self._sharp, readings=6)
-        rows = self._by_loads.copy()
-        np.multiply(root.by_state, sharp, out=rows[:, :known])
+        extra = state.extra[: self._by_extra.shape[1]]
+        rows, innovation = self.balance.law(
+            state.q, state.v, state.a, wrenches, extra, self._by_extra, self._sharp
+        )
         if support is not None:
-            np.multiply(root.by_state[:, -6:], sharp, out=rows[:, support])
-        if self._loads:
-            residual = residual.copy()
-        for load in self._loads:
-            residual[load.components] += state.extra[load.extra]
-        return Rows(rows, -residual * self._sharp, readings=6)
+            rows[:, support] = rows[:, self._left_foot]
+        return Rows(rows, innovation, readings=6)
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
         """The prepared rows, loosened for limbs that only inertial sensors lead, and for loads on feet never seen."""

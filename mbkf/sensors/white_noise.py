@@ -10,8 +10,8 @@ of a standard normal number; a Robbins–Monro recursion in its logarithm (Robbi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import exp
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,7 @@ _LEVEL = 0.318639 * 20.0**0.5
 """Level of third differences for σ = 1."""
 
 
-@dataclass(frozen=True)
-class WhiteNoise:
+class WhiteNoise(NamedTuple):
     """Estimate of readings' noise after a sample.
 
     Attributes:
@@ -44,16 +43,15 @@ class WhiteNoise:
         now = np.ascontiguousarray(now, dtype=float)
         if len(self.last) < 3:
             return WhiteNoise(self.sd, self.least, (*self.last, now))
-        samples, sd = (*self.last, now), self.sd
+        (first, second, third), sd, kept = self.last, self.sd, (*self.last[1:], now)
         if not sd:
-            return WhiteNoise(_first_sd(samples, self.least), self.least, samples[1:])
+            return WhiteNoise(_first_sd((*self.last, now), self.least), self.least, kept)
         kernel = library()
         count = _third_differences if kernel is None else kernel.third_differences
-        first, second, third, latest = samples
-        known, below = count(first, second, third, latest, _LEVEL * sd)
+        known, below = count(first, second, third, now, _LEVEL * sd)
         if known:
             sd = max(self.least, sd * exp(STEP * (QUANTILE - below / known)))
-        return WhiteNoise(sd, self.least, samples[1:])
+        return WhiteNoise(sd, self.least, kept)
 
 
 def _first_sd(samples: Sequence[Array], least: float) -> float:

@@ -28,6 +28,7 @@ def test_a_squat_is_plausible(name):
     assert all(plausible(estimate, model) for estimate in estimates(name)[1])
 
 
+@pytest.mark.usefixtures("either_kernel")
 @pytest.mark.parametrize("field", ["q", "v", "a"])
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_numbers_that_are_not_finite_are_implausible(field, value):
@@ -37,6 +38,7 @@ def test_numbers_that_are_not_finite_are_implausible(field, value):
     assert not plausible(estimate._replace(**{field: wrong}), model)
 
 
+@pytest.mark.usefixtures("either_kernel")
 def test_no_joint_is_too_fast_and_no_force_too_large():
     estimate, model = one()
     for share, possible in ((0.99, True), (1.01, False)):

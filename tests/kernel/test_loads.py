@@ -9,6 +9,7 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.kernel.loading import library
 from mbkf.sensors.contact import plate_noise
 from mbkf.sensors.contact.plate_noise import PlateNoise
+from mbkf.sensors.contact.plates import force_read
 from mbkf.trial.loads import running
 from mbkf.trial.loads.running import RunningBalance
 
@@ -41,3 +42,32 @@ def test_spreads_on_feet_are_those_of_the_reference(seed, plates):
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(plate_noise, "library", lambda: None)
         np.testing.assert_allclose(found, noise.on_feet(soles), rtol=1e-13)
+
+
+@pytest.mark.usefixtures("either_kernel")
+@pytest.mark.parametrize("missing", [np.nan, np.inf])
+def test_forces_of_plates_are_summed_as_far_as_they_are_read(missing):
+    plates = np.random.default_rng(5).normal(size=(3, 6))
+    finite, force_n = force_read(plates)
+    assert finite
+    np.testing.assert_allclose(force_n, plates[:, :3].sum(axis=0), rtol=1e-14)
+    plates[1, 5] = missing
+    assert not force_read(plates)[0]
+    plates[0, 2] = np.nan
+    finite, force_n = force_read(plates)
+    assert not finite
+    np.testing.assert_allclose(force_n[2], plates[1:, 2].sum(), rtol=1e-14)
+    assert force_read(np.zeros((0, 6)))[0]
+
+
+@pytest.mark.usefixtures("either_kernel")
+def test_noise_of_moments_is_that_about_the_plates_own_origins():
+    """Moments of a steady force that moves under it are not steady about the world's origin."""
+    origins, rng = np.array([[1.0, 2.0, 0.3], [-2.0, 0.5, 0.0]]), np.random.default_rng(2)
+    noise = PlateNoise.before(origins, 3.0, 1.0)
+    for _ in range(60):
+        force = 500.0 * rng.normal(size=(2, 3))
+        noise = noise.after(np.hstack([force, np.cross(origins, force)]))
+    assert noise.moment.sd == 0.02
+    np.testing.assert_allclose(noise.force.last[-1], force)
+    np.testing.assert_allclose(noise.moment.last[-1], 0.0, atol=1e-9)

@@ -95,6 +95,24 @@ def test_the_root_s_equations_are_pinocchio_s(seed):
 
 @often
 @seeds
+def test_the_root_s_readings_are_its_equations_whitened_with_further_loads(seed):
+    s = moving(seed)
+    extra, by_extra, sharp = s.rng.normal(size=5), s.rng.normal(size=(6, 5)), s.rng.uniform(0.1, 9.0, 6)
+    rows, innovation = s.tree.law(s.q, s.v, s.a, s.w, extra, by_extra, sharp)
+    residual, by_state = s.tree.root(s.q, s.v, s.a, s.w[:6] + s.w[6:])
+    assert_same(rows, np.hstack([by_state * sharp[:, None], by_extra]))
+    assert_same(innovation, -sharp * residual - by_extra @ extra)
+
+
+@often
+@seeds
+def test_the_centre_of_mass_is_pinocchio_s(seed):
+    s = moving(seed)
+    assert_same(s.tree.centre_of_mass(s.q), pin.centerOfMass(s.model, s.data, s.q))
+
+
+@often
+@seeds
 def test_torques_and_their_derivatives_are_pinocchio_s(seed):
     """Each foot hangs on any joint; its wrench stands still in the world."""
     s = moving(seed)

@@ -139,7 +139,7 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
             self.c1 = -s.decay_s * float(np.expm1(-dt_s / s.decay_s))
             self.c2 = s.decay_s * (dt_s - self.c1)
             self.covariance = _white_jerk(dt_s, s.decay_s)
-        self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
+        self._calm = 1.0 - float(np.exp(-dt_s / s.activity_memory_s))
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
         self._busiest = self.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
         self._joints = joint_ranges(joint.v for joint in model.joints.values())
@@ -162,6 +162,8 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         s, unobserved = self.settings, notes.unobserved
         if s.activity_gain <= 0.0:
             return None
+        if self._kernel is not None and not len(unobserved):
+            return self._kernel.mean_activity(posterior.v, posterior.a, memory, s.activity_rate, self._calm)
         now: Array = posterior.a**2 + (s.activity_rate * posterior.v) ** 2
         if len(unobserved):
             now[unobserved] = (self.acceleration_sd[unobserved] / s.activity_gain) ** 2

@@ -10,13 +10,12 @@ Which plate a foot is on makes little difference, since plates of a laboratory a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import library
-from mbkf.numerics.rotations import skew
 from mbkf.sensors.white_noise import WhiteNoise
 
 LEAST_FORCE_N, LEAST_MOMENT_NM = 0.1, 0.02
@@ -28,19 +27,16 @@ _OTHERS = 1.0 - np.eye(3)
 """Of squares by axis, the sums of the other two."""
 
 
-@dataclass(frozen=True)
-class PlateNoise:
+class PlateNoise(NamedTuple):
     """Noise of K plates after a frame.
 
     Attributes:
         origins_m: (K, 3) points that the plates' own moments refer to.
-        levers: (K, 3, 3) o× of them.
         force: Noise of the forces, N.
         moment: Noise of the moments about these points, N m.
     """
 
     origins_m: Array
-    levers: Array
     force: WhiteNoise
     moment: WhiteNoise
 
@@ -54,13 +50,17 @@ class PlateNoise:
             moment_nm: Usual noise of moments, N m.
         """
         noise = WhiteNoise(force_n, LEAST_FORCE_N), WhiteNoise(moment_nm, LEAST_MOMENT_NM)
-        return cls(origins_m, skew(origins_m), *noise)
+        return cls(np.ascontiguousarray(origins_m, float), *noise)
 
     def after(self, wrench: Array) -> PlateNoise:
         """The noise after the next frame's (K, 6) wrenches about the world's origin; NaN without a reading."""
-        force, moment = wrench[:, :3], wrench[:, 3:]
-        own = moment - (self.levers @ force[:, :, None])[:, :, 0]
-        return PlateNoise(self.origins_m, self.levers, self.force.after(force), self.moment.after(own))
+        kernel = library()
+        if kernel is None:
+            force = wrench[:, :3]
+            own = wrench[:, 3:] - np.cross(self.origins_m, force)
+        else:
+            force, own = kernel.plate_loads(self.origins_m, np.ascontiguousarray(wrench, float))
+        return PlateNoise(self.origins_m, self.force.after(force), self.moment.after(own))
 
     def on_feet(self, middles_m: Array) -> Array:
         """(2, 6) noise of the feet's wrenches about the world's origin, N, N m.

@@ -13,6 +13,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import average_over_frames
+from mbkf.kernel.loading import library
 from mbkf.sensors.contact.rules import least_load
 
 Number = TypeVar("Number", float, Array)
@@ -52,6 +53,18 @@ def pressed_at(wrench: Sequence[Number], surface_m: float) -> tuple[Number, Numb
     """
     fx, fy, fz, mx, my, _ = wrench
     return (surface_m * fx - my) / fz, (surface_m * fy + mx) / fz
+
+
+def force_read(plates: Array) -> tuple[bool, Array]:
+    """True where plates read finite numbers alone, and the sum (3,) of their forces, N; those not read count as 0.
+
+    Args:
+        plates: (K, 6) wrenches, NaN where not read.
+    """
+    kernel = library()
+    if kernel is not None:
+        return kernel.plate_total(np.ascontiguousarray(plates, dtype=float))
+    return bool(np.isfinite(plates).all()), np.nansum(plates[:, :3], axis=0)
 
 
 def centres_of_pressure(wrench: Array, surface_m: float, threshold_n: float) -> Array:

@@ -209,10 +209,17 @@ class CentreOfMass:
 
     def __init__(self, model: Body) -> None:
         """Args: the body."""
-        self._model, self._data = model.pin_model, pin.Data(model.pin_model)
+        self._model, self._tree = model.pin_model, model.tree
+
+    @cached_property
+    def _data(self) -> pin.Data:
+        """Pinocchio's working memory, made where no compiled kernel does the work."""
+        return pin.Data(self._model)
 
     def at(self, q: Array) -> Array:
         """(3,) centre of mass at a configuration q (nq,), m."""
+        if self._tree is not None:
+            return self._tree.centre_of_mass(q)
         return np.array(pin.centerOfMass(self._model, self._data, q))
 
 

@@ -20,6 +20,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.contact_opening import Noted
 from mbkf.model.body import Body
 from mbkf.numerics.runs import runs
+from mbkf.sensors.contact.plates import force_read
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.supports.search import LASTING_S, LASTING_SHARE, LEAST_SHARE, other_contacts
 from mbkf.trial.loads.balance import LoadBalance
@@ -49,6 +50,9 @@ walks with half a step beside a plate (``python -m benchmarks loads``)."""
 
 LEFT_S = 0.1
 """A contact closes when the mean of its force over such a time is small, or is not judged for :data:`LASTING_S`."""
+
+
+_NOTHING = np.zeros(3)
 
 
 class _Kept(NamedTuple):
@@ -115,11 +119,10 @@ class ContactOpener:
     def _judge(self, one: Noted) -> None:
         """Judges a frame."""
         estimate, plates = one
-        support = np.zeros((1, 6)) if estimate.support is None else estimate.support
-        others_n = support[:, :3].sum(axis=0)
+        others_n = _NOTHING if estimate.support is None else estimate.support[:, :3].sum(axis=0)
         read = estimate.contact is not None and Contact.UNMEASURED not in estimate.contact
-        judged = bool(read and estimate.tracked and np.isfinite(plates).all())
-        on_feet_n = estimate.wrench[:, :3].sum(axis=0)
+        judged = bool(read and estimate.tracked and force_read(plates)[0])
+        on_feet_n = estimate.wrench[0, :3] + estimate.wrench[1, :3]
         self._load = self._running.push(estimate.q, on_feet_n, others_n, plates, judged)
         whole = judged and not self._running.strays
         self._kept.append(
@@ -143,7 +146,7 @@ class ContactOpener:
         if self._noted is not None:
             one, self._noted = self._noted, None
             self._judge(one)
-            if self.flags.any():
+            if self.flags is not self._none:
                 self._look_again()
             elif self._searches():
                 found = self._found()

@@ -9,6 +9,7 @@ begins, one above 20 % within a third.
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.kernel.loading import library
 from mbkf.model.body import Body
+from mbkf.sensors.contact.plates import force_read
 from mbkf.trial.loads.balance import BRIDGE_S, GRAVITY, CentreOfMass, LoadBalance, Window
 from mbkf.trial.loads.flags import LIMITS, READ_SHARE, Limit
 
@@ -67,9 +69,7 @@ class StrayLoad:
             on_feet_n: (3,) force on the feet by the contacts that were decided.
             plates: (K, 6) wrenches that the plates read.
         """
-        read_n = plates[:, :3].sum(axis=0)
-        if not np.isfinite(read_n).all():
-            read_n = np.nan_to_num(plates[:, :3]).sum(axis=0)
+        _, read_n = force_read(plates)
         stray = read_n[2] - on_feet_n[2] > self._least_n
         self._frames = self._frames + 1 if stray else 0
         self.reads = 0 < self._frames <= self._most
@@ -122,7 +122,7 @@ class RunningBalance:
         """
         frame = np.concatenate([centre_m, contacts_n])
         self._unread = 0 if judged else self._unread + 1
-        if not np.isfinite(frame).all() or self._unread > self._bridged:
+        if not isfinite(float(frame @ frame)) or self._unread > self._bridged:
             self._first = self._after
             # A foot that comes down beside its plate lacks its load before it is seen to stand there.
             return self._stated(UNKNOWN_N, self._unread <= self._held and self._acting > 2 * self._bridged)

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
 from mbkf.filters.dynamic.plant import SingerSettings
+from mbkf.sensors.block import Notes
 from tests.dynamics import DT, random_state, singer
 from tests.motions import assert_near, random_model, reference_model, worst
 
@@ -176,3 +177,17 @@ def test_a_busy_joint_s_noise_follows_its_acceleration_up_to_its_share_of_the_ta
     assert_near(plant.noise((0.1 * table) ** 2), np.hypot(0.1, 0.6) * table, 1e-12)
     most = np.r_[np.full(3, 2.0), np.full(NV - 3, 8.0)]
     assert_near(plant.noise((100.0 * table) ** 2), most * table, 1e-12)
+
+
+@pytest.mark.usefixtures("either_kernel")
+def test_recent_activity_is_a_running_mean_square():
+    """Dofs that nothing observes have the table's."""
+    plant, notes = singer(MODEL, settings=SingerSettings(activity_memory_s=0.05)), Notes()
+    s = random_state(MODEL, np.random.default_rng(7))
+    now = s.a**2 + (5.0 * s.v) ** 2
+    assert_near(plant.remember(s, notes, None), now, 1e-12 * worst(now))
+    before = np.linspace(0.0, 9.0, NV)
+    after = before + (1.0 - np.exp(-DT / 0.05)) * (now - before)
+    assert_near(plant.remember(s, notes, before), after, 1e-12 * worst(after))
+    notes.unobserved = np.array([8])
+    assert_near(plant.remember(s, notes, None)[8], (MODEL.movement_sd[8] / 6.0) ** 2, 1e-12)
