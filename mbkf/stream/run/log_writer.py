@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +32,9 @@ REPORTED_S = 5.0
 
 MOST_HELD_BYTES = 256 * 1024 * 1024
 """Most memory held while nothing can be written; the oldest rows are dropped first."""
+
+MOST_LATER = 2000
+"""Rows of so many frames may wait to be made, while writing takes long."""
 
 
 def arrived(rows: NDArray) -> int:
@@ -90,10 +95,13 @@ class LogWriter:
         self._log, self._failed, self._report, self._died = log, failed, report, died
         self._logs = [_Log(one) for one in (log.frames, log.plates, log.limbs, *log.recording)]
         self._recorded = dict(zip(log.recording, self._logs[3:], strict=True))
+        self._later: deque[Callable[[], None]] = deque()
+        self._making = threading.Lock()
         self.record: Record | None = None
         self.unrecorded = 0
         if log.recording:
-            self.record = Recorder(RecordingFiles(*log.recording), self._put_recorded).take
+            take = Recorder(RecordingFiles(*log.recording), self._put_recorded).take
+            self.record = lambda *frame: self._make_later(partial(take, *frame))
         self._changed = threading.Condition()
         self._closing = False
         self._thread = threading.Thread(target=self._run, name="mbkf-log", daemon=True)
@@ -106,8 +114,10 @@ class LogWriter:
 
     def put_samples(self, samples: PlateSamples) -> None:
         """Readings of the plates."""
-        if not len(samples.index):
-            return
+        if len(samples.index):
+            self._make_later(partial(self._put_samples, samples))
+
+    def _put_samples(self, samples: PlateSamples) -> None:
         rows = np.zeros(len(samples.index), dtype=self._log.plates.dtype)
         rows["index"], rows["wrench"] = samples.index, samples.wrench
         with self._changed:
@@ -119,6 +129,19 @@ class LogWriter:
         with self._changed:
             self._logs[2].put(row)
 
+    def _make_later(self, make: Callable[[], None]) -> None:
+        """Leaves rows to the log's thread: who brings them has a frame to answer."""
+        self._later.append(make)
+        if len(self._later) > MOST_LATER:
+            self._make_rows()
+
+    def _make_rows(self) -> None:
+        """Makes the rows that wait, in their order."""
+        with self._making:
+            while self._later:
+                self._later.popleft()()
+                time.sleep(0.0)  # another thread may go on
+
     def _put_recorded(self, file: FrameLogWriter, rows: NDArray) -> None:
         with self._changed:
             self._recorded[file].put(rows)
@@ -129,6 +152,8 @@ class LogWriter:
             self._closing = True
             self._changed.notify_all()
         self._thread.join()
+        with suppress(Exception):
+            self._make_rows()
         for log in self._logs:  # rows left by a thread that died
             with suppress(Exception):
                 self._flush(log)
@@ -151,6 +176,7 @@ class LogWriter:
             with self._changed:
                 self._changed.wait_for(lambda: self._closing, pause)
                 closing = self._closing
+            self._make_rows()
             pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
             unreported_s += pause
             if self._report is not None and unreported_s >= REPORTED_S:

@@ -15,7 +15,7 @@ from mbkf.io.axes import METRES_PER_UNIT, length_unit, rotation_to_world
 from mbkf.io.plate_corners import has_area
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
-from mbkf.stream.source import FARTHEST_M, StreamDescription, counts, empty_plate
+from mbkf.stream.source import FARTHEST_M, LARGEST_COUNT, StreamDescription, counts, empty_plate
 
 DEFAULT_PORT = 15100
 """Port of ``--from udp`` without one."""
@@ -172,6 +172,8 @@ def _plate(
 def _count(value: object, key: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidPacket(f'UDP: "{key}" is not a number')
+    if isinstance(value, int) and abs(value) <= LARGEST_COUNT:
+        return value
     return int(counts(np.float64(value))) if abs(value) < 1e300 else int(counts(np.float64(math.nan)))
 
 

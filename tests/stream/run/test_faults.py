@@ -266,6 +266,24 @@ def test_frames_that_are_missing_in_the_recording_are_counted(tmp_path, monkeypa
     assert writer.unrecorded == 3
 
 
+def test_frames_that_wait_for_the_log_s_thread_stay_few_and_in_order(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_writer, "EVERY_S", 60.0)
+    monkeypatch.setattr(log_writer, "MOST_LATER", 3)
+    stream = LiveStream("x", 100.0, 0.0, ())
+    files = open_recording(tmp_path, stream, tmp_path / "x.c3d")
+    made, append = [], files.markers.append
+    monkeypatch.setattr(files.markers, "append", lambda rows: made.extend(rows["number"]) or append(rows))
+    writer = LogWriter(LiveLog(tmp_path / "log", stream, ROWS, {}, [], files), [].append)
+    none, waiting = np.zeros((0, 3)), []
+    for number in range(10):
+        frame = SourceFrame(number, 0.0, none, none, PlateSamples.none(0))
+        writer.record(number, frame, PlateSamples.none(0))
+        waiting.append(len(writer._later))
+    assert max(waiting) == 3
+    assert writer.close() == (0, 0)
+    assert made == list(range(10))
+
+
 def test_a_full_disk_ends_in_one_line_and_the_log_is_recovered(tmp_path, capture, subject):
     """Files may grow to 200 kB: half of the log."""
     write_c3d(capture, tmp_path / "trial.c3d")
