@@ -79,16 +79,19 @@ def held_headings(
     Q = s.walk_rad**2 * dt_s * np.eye(n)
     Q[known_one, known_one] = 0.0
     above, below = [one[0] for one in holding], [one[1] for one in holding]
+    # A side axis near the vertical has no heading.
+    weak = 1.0 / np.maximum(np.minimum(level[:, above], level[:, below]), 0.1) ** 4
+    noise, known = sd**2 * weak * (s.memory_s / dt_s), np.isfinite(apart)
+    diagonal = np.diag_indices(len(holding))
     x, means, covariances = np.zeros(n), np.empty((count, n)), np.empty((count, n, n))
     for t in range(count):
         P = P + Q
-        # A side axis near the vertical has no heading.
-        weak = 1.0 / np.maximum(np.minimum(level[t, above], level[t, below]), 0.1) ** 4
-        R = np.diag(sd**2 * weak * (s.memory_s / dt_s))
-        K = np.linalg.solve(H @ P @ H.T + R, H @ P).T
-        known = np.where(np.isfinite(apart[t]), -apart[t] - H @ x, 0.0)
-        x = x + K @ known
-        P = P - K @ H @ P
+        HP = H @ P
+        S = HP @ H.T
+        S[diagonal] += noise[t]
+        K = np.linalg.solve(S, HP).T
+        x = x + K @ np.where(known[t], -apart[t] - H @ x, 0.0)
+        P = P - K @ HP
         means[t], covariances[t] = x, P
     back = np.linalg.solve(covariances[:-1] + Q + 1e-15 * np.eye(n), covariances[:-1]).swapaxes(1, 2)
     for t in range(count - 2, -1, -1):

@@ -215,7 +215,9 @@ def _tracked(
     named, found = Misfit(filter, recording), list[SensorPlacement]()
 
     def judge(turned: frozenset[str], names: Mapping[str, str], beyond: float) -> float:
-        return misfit(*_filter(_renamed(plan, turned, names)), beyond)
+        filter, recording = _filter(_renamed(plan, turned, names))
+        filter.kalman.follows_spreads = False  # no estimate depends on them
+        return misfit(filter, recording, beyond)
 
     def settle() -> None:
         if not found:
