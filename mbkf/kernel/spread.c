@@ -136,10 +136,10 @@ static Columns columns_in(double *work, int N)
     return (Columns){at, at + room, at + 2 * room, index, index + room};
 }
 
-/* The columns of T (m x n) that are not zero in some of its rows from first on; their number. */
-VECTORISED static int taken(int m, int n, const double *T, int first, Columns *to)
+/* The columns of T (m x n) that are not zero in some of its rows from first to end, LANES at most; their number. */
+VECTORISED static int taken(int m, int n, const double *T, int first, int end, Columns *to)
 {
-    const int height = m - first < LANES ? m - first : LANES;
+    const int height = end - first;
     int count = 0;
     for (int j = 0; j < n; j++) {
         const double *column = T + (long)j * m + first;
@@ -188,12 +188,16 @@ VECTORISED static int oscillation(const Errors *e, int count, Columns *columns)
     return found;
 }
 
-/* variance (m) of quantities T (m x n, column by column) of the first n components. work: columns_size numbers. */
+/* variance (m) of quantities T (m x n, column by column) of the first n components. The last nv rows are grouped from
+ * their first one on: their variances are equal to the last digit with rows before them and without. work: columns_size
+ * numbers. */
 VECTORISED static void error_of(const Errors *e, int m, int n, const double *T, double *variance, double *work)
 {
     Columns columns = columns_in(work, e->N);
-    for (int first = 0; first < m; first += LANES) {
-        const int count = taken(m, n, T, first, &columns);
+    for (int first = 0, end; first < m; first = end) {
+        const int edge = first < m - e->nv ? m - e->nv : m;
+        end = first + LANES < edge ? first + LANES : edge;
+        const int count = taken(m, n, T, first, end, &columns);
         const int padded = (count + BREADTH - 1) / BREADTH * BREADTH;
         Lanes found;
         memset(&found, 0, sizeof found);
@@ -209,7 +213,7 @@ VECTORISED static void error_of(const Errors *e, int m, int n, const double *T, 
             const int dofs = oscillation(e, count, &columns);
             add_repeated(dofs, columns.seen, columns.swinging, e->n_seen, e->root, e->skin, &found);
         }
-        memcpy(variance + first, &found, sizeof *variance * (m - first < LANES ? m - first : LANES));
+        memcpy(variance + first, &found, sizeof *variance * (end - first));
     }
 }
 

@@ -1,8 +1,11 @@
 """Variances of limbs' torques, which depend on few components each, by products of either kind."""
 
+import numpy as np
 import pytest
 
-from tests.filters.test_state_variances import NV, assert_diagonals, errors
+from mbkf.filters.state_variances import state_variances
+from mbkf.kernel.loading import library
+from tests.filters.test_state_variances import DOFS, NV, assert_diagonals, errors
 
 
 @pytest.mark.usefixtures("products")
@@ -15,3 +18,14 @@ def test_quantities_that_depend_on_few_components_each_have_the_whole_covariance
     T[rng.random((rows, T.shape[1])) < 0.9] = 0.0
     T[8:16] = 0.0
     assert_diagonals(stated, T, T[:2, :NV])
+
+
+@pytest.mark.skipif(library() is None, reason="the reference sums over whole matrices")
+def test_torques_have_the_same_bits_with_other_quantities_before_them():
+    """A live run states no moments of the trunk, a whole trial does; their torques' deviations are compared."""
+    rng, stated = errors(3)
+    T, U = rng.normal(size=(NV, 3 * NV + 12)), rng.normal(size=(2, NV))
+    T[rng.random(T.shape) < 0.9] = 0.0
+    before = rng.normal(size=(18, 3 * NV + 12))
+    alone, after = (state_variances(stated, rows, U, DOFS).torque for rows in (T, np.vstack([before, T])))
+    np.testing.assert_array_equal(after[18:], alone)
