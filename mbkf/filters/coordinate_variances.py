@@ -1,4 +1,4 @@
-"""Variances of clinical coordinates and of their rates, from covariances of a body's dofs.
+"""Standard deviations of clinical coordinates and of their rates, from covariances of a body's dofs.
 
 θ̇ = E v, and no coordinate mixes two joints: what is needed of a covariance are its blocks joint by joint, and diagonals
 for joints of one or two angles, each of which is one dof.
@@ -6,13 +6,34 @@ for joints of one or two angles, each of which is one dof.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import library
 from mbkf.model.clinical import ClinicalAngles
+
+
+class DofVariances(NamedTuple):
+    """Of covariances of a body's dofs, that of the configuration and that of the velocity.
+
+    The filter's velocities are independent, so that only their diagonal is known.
+
+    Attributes:
+        position: (nv,) diagonal of the first.
+        velocity: (nv,) diagonal of the second.
+        blocks: (n + 1, 3, 3) blocks of the first, those of :attr:`CoordinateVariances.dofs`.
+        velocity_blocks: The same of the second; None for independent velocities.
+    """
+
+    position: Array
+    velocity: Array
+    blocks: Array
+    velocity_blocks: Array | None
+
+
+_NO_OFFSET = (None, None, None, None)
 
 
 class CoordinateVariances:
@@ -27,31 +48,50 @@ class CoordinateVariances:
         self._clinical, self._layout = clinical, clinical.rate_layout
         where = self._layout
         self.dofs = where.dofs
-        self._columns = np.concatenate([where.columns.ravel(), where.single_columns])
-        self._quaternions = np.array(where.quaternions, dtype=np.int32)
-        self._order = np.array(where.order, dtype=np.int32)
-        self._signs = np.column_stack([where.parity, where.signs]).astype(float)
-        self._axes = np.ascontiguousarray(where.root_axes, dtype=float)
+        self._zero = np.array(clinical.zero_variance)
+        self._places = (
+            np.array(where.quaternions, dtype=np.int32),
+            np.array(where.order, dtype=np.int32),
+            np.column_stack([where.parity, where.signs]).astype(float),
+            where.root_quaternion,
+            np.ascontiguousarray(where.root_axes, dtype=float),
+            where.dofs.astype(np.int32),
+            where.columns.astype(np.int32),
+            where.single_dofs.astype(np.int32),
+            where.single_columns.astype(np.int32),
+            self._zero,
+        )
 
-    def of(self, q: Array, blocks: Sequence[Array], diagonals: Sequence[Array]) -> Array:
-        """(k, A) for k covariances of the dofs.
+    def deviations(self, q: Array, own: DofVariances, offset: DofVariances | None) -> Array:
+        """(4, A) of coordinates and of their rates, and the offset's part of both.
 
         Args:
             q: (nq,) configuration.
-            blocks: k times (n + 1, 3, 3), the covariances' blocks of :attr:`dofs`.
-            diagonals: k times (nv,), their diagonals.
+            own: By the filter.
+            offset: By the person's body, independent of it, and beside each coordinate's zero; None where the offset is
+                not known.
         """
-        covariance, where, kernel = np.array(blocks), self._layout, library()
-        if kernel is None:
-            E = self._clinical.rate_matrix(q)[where.columns[:, :, None], where.dofs[:, None, :]]
-            variance = ((E @ covariance) * E).sum(axis=-1)
-        else:
-            variance = kernel.joint_variances(
-                q, self._quaternions, self._order, self._signs, where.root_quaternion, self._axes, covariance
-            )
-        found = np.empty((len(covariance), len(self._columns)))
-        joined = variance.reshape(len(covariance), -1)
-        found[:, self._columns[: joined.shape[1]]] = joined
-        for own, diagonal in zip(found, diagonals, strict=True):
-            own[self._layout.single_columns] = diagonal[self._layout.single_dofs]
+        kernel = library()
+        if kernel is not None:
+            position, velocity, blocks = (np.ascontiguousarray(one) for one in own[:3])
+            further = _NO_OFFSET if offset is None else offset
+            return kernel.coordinate_deviations(q, *self._places, position, velocity, blocks, *further)
+        found = np.zeros((4, len(self._zero)))
+        found[:2] = self._variances(q, own)
+        if offset is not None:
+            found[2:] = np.maximum(self._variances(q, offset), 0.0)
+            found[2] += self._zero
+        found[:2] = np.maximum(found[:2], 0.0) + found[2:]
+        return np.sqrt(found, out=found)
+
+    def _variances(self, q: Array, of: DofVariances) -> Array:
+        """(2, A) of coordinates and of their rates."""
+        where, velocity = self._layout, of.velocity_blocks
+        if velocity is None:
+            velocity = np.zeros(of.blocks.shape)
+            np.einsum("bii->bi", velocity)[:] = of.velocity[where.dofs]
+        E = self._clinical.rate_matrix(q)[where.columns[:, :, None], where.dofs[:, None, :]]
+        found = np.empty((2, len(self._zero)))
+        found[:, where.columns] = ((E @ np.array([of.blocks, velocity])) * E).sum(axis=-1)
+        found[:, where.single_columns] = np.array([of.position, of.velocity])[:, where.single_dofs]
         return found

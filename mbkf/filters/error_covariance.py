@@ -31,7 +31,7 @@ changes.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,10 +117,8 @@ class ErrorCovariance:
     @cached_property
     def size(self) -> Array:
         """(N,) by which errors of the filter's kind are smaller than P says, √κ."""
-        layout, size = self.layout, np.ones(self.layout.size)
-        everything, rates = len(self.seen) == layout.nv, self.new_rates or (self.new, self.new)
-        for part, new in zip((layout.q, layout.v, layout.a), (self.new, *rates), strict=True):
-            size[part if everything else part.start + self.seen] = new**0.5
+        layout, rates = self.layout, self.new_rates or (self.new, self.new)
+        size = _motion_size(layout.nv, layout.size, self.seen.tobytes(), (self.new, *rates)).copy()
         size[layout.wrench] = np.reshape(self.plates, -1)
         for foot in self.free:
             size[layout.feet[foot]] = rates[1] ** 0.5
@@ -253,3 +251,18 @@ class ErrorCovariance:
             whole[late, late] += self.late.T @ self.late
         whole[feet, feet] += self.edges.T @ self.edges
         return whole
+
+
+@lru_cache(maxsize=8)
+def _motion_size(nv: int, size: int, seen: bytes, new: tuple[float, float, float]) -> Array:
+    """(N,) as :attr:`ErrorCovariance.size` for the errors of the motion, 1 for others.
+
+    Args:
+        nv: Dofs.
+        size: Components N.
+        seen: Dofs that markers observe, as bytes.
+        new: κ of positions, velocities and accelerations.
+    """
+    found = np.ones(size)
+    found[: 3 * nv].reshape(3, nv)[:, np.frombuffer(seen, dtype=np.intp)] = np.sqrt(new)[:, None]
+    return found

@@ -6,8 +6,9 @@ much again and is not waited for, by :meth:`FrameRecorder.spread` and :meth:`Fra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -70,20 +71,30 @@ OFFSETS_HELD_S = 0.1
 """Offsets change with the posture and are worked out once in such a time."""
 
 MOTION = ("q", "v", "a", "wrench")
-SPREAD_AT_ONCE = {
-    "sd_q": "position",
-    "sd_q_offset": "position_offset",
-    "sd_v": "velocity",
-    "sd_v_offset": "velocity_offset",
-}
-TORQUE_SPREAD = {"torque_sd": "torque", "torque_offset": "torque_offset"}
-"""Fields and the attributes of :class:`~mbkf.filters.spread.Spread` that fill them."""
+
+DEVIATIONS = ("sd_q", "sd_v", "wrench_sd", "level_sd", "torque_sd")
+OFFSETS = ("sd_q_offset", "sd_v_offset", "wrench_offset", "level_offset", "torque_offset")
+COORDINATES = ("angle_sd", "rate_sd", "angle_offset", "rate_offset")
+"""Fields that stand one after the other in a record, since each group is written at once."""
+
+_IN_GROUPS = (*DEVIATIONS, *OFFSETS, *COORDINATES)
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
     """Type of a record, by the sizes of axes (:data:`mbkf.io.dimensions.AXES`) that differ from trial to trial."""
-    flags_last = sorted(FIELDS, key=lambda one: one.kind == "?")  # so that the numbers of a row are aligned
-    return np.dtype([(f.name, f.kind, shape_of(f.axes, sizes)) for f in flags_last])
+
+    def place(one: Field) -> tuple[bool, int]:
+        """Flags come last, so that the numbers of a row are aligned."""
+        return one.kind == "?", _IN_GROUPS.index(one.name) if one.name in _IN_GROUPS else -1
+
+    return np.dtype([(f.name, f.kind, shape_of(f.axes, sizes)) for f in sorted(FIELDS, key=place)])
+
+
+def bytes_of(dtype: np.dtype, group: Sequence[str]) -> slice:
+    """Bytes of a record in which a group of fields stands."""
+    assert dtype.fields is not None
+    last, begin = dtype.fields[group[-1]], dtype.fields[group[0]][1]
+    return slice(begin, last[1] + last[0].itemsize)
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:
@@ -148,6 +159,15 @@ def _unknown_body() -> BodyErrorRoots | None:
     return None
 
 
+class _Held(NamedTuple):
+    """Offsets of a frame, caused by the person's body; ``sd`` as bytes."""
+
+    body: BodyErrorRoots | None
+    levels: bool
+    variance: Array
+    sd: NDArray[np.uint8]
+
+
 class FrameRecorder:
     """Fills records of a filter's posteriors.
 
@@ -182,6 +202,12 @@ class FrameRecorder:
         sizes["part"] = len(model.description.bearings)
         sizes["level"] = len(model.description.levels)
         self.dtype = record_dtype(sizes)
+        self._deviations, self._offsets, self._coordinates = (
+            bytes_of(self.dtype, group) for group in (DEVIATIONS, OFFSETS, COORDINATES)
+        )
+        self._no_torques = np.full(model.nv, np.nan)
+        self._no_levels = np.full(math.prod(shape_of(("way", "level", "xyz"), sizes)), np.nan)
+        self._held: _Held | None = None
         self._empty = blank(self.dtype, 1).view(
             np.uint8
         )  # numpy copies records field by field, bytes at once
@@ -225,24 +251,35 @@ class FrameRecorder:
             row[name] = getattr(posterior, name)
         row["support"] = np.nan if posterior.support is None else posterior.support
         row["support_sd"] = self.filter.support_sd(posterior)
-        by_body = self._body.of(int(row["number"][0]), posterior)
-        if self._asks_levels:
-            self._levels(row, self.filter.level_variance(posterior), by_body())
-        spread = replace(self.filter.spread(posterior, self._asks_torques), body=by_body())
-        for field, name in (SPREAD_AT_ONCE | (TORQUE_SPREAD if self._asks_torques else {})).items():
-            row[field] = getattr(spread, name)
-        offset = spread.wrench_offset
-        row["wrench_offset"], row["wrench_sd"] = offset, np.hypot(self.filter.wrench_sd(posterior), offset)
+        body = self._body.of(int(row["number"][0]), posterior)()
+        spread = self.filter.spread(posterior, self._asks_torques, self._asks_levels, body)
+        torque = spread.torque_variance if self._asks_torques else self._no_torques
+        level = self._no_levels if spread.level_variance is None else spread.level_variance.ravel()
+        offset = self._offset(body, spread.level_variance is not None)
+        total = np.concatenate(
+            (spread.position_variance, spread.velocity_variance, spread.wrench_variance, level, torque)
+        )
+        np.maximum(total, 0.0, out=total)
+        total += offset.variance
+        numbers = row.view(np.uint8)
+        numbers[self._deviations] = np.sqrt(total, out=total).view(np.uint8)
+        numbers[self._offsets] = offset.sd
         return spread
 
-    @staticmethod
-    def _levels(row: NDArray, variance: Array | None, body: BodyErrorRoots | None) -> None:
-        """Standard deviations of the trunk's moments, by the filter and by the body."""
-        if variance is None:
-            return
-        offset = None if body is None else body.level_variance
-        offset = np.zeros(variance.shape) if offset is None else offset
-        row["level_sd"], row["level_offset"] = np.sqrt(np.maximum(variance, 0.0) + offset), np.sqrt(offset)
+    def _offset(self, body: BodyErrorRoots | None, levels: bool) -> _Held:
+        """Variances of the offsets, in the order of :data:`DEVIATIONS`; they are those of the frame before in most."""
+        if self._held is None or self._held.body is not body or self._held.levels != levels:
+            nv, asked = self.filter.model.nv, self._asks_torques
+            level = np.zeros(len(self._no_levels)) if levels else self._no_levels
+            parts = [np.zeros(2 * nv + 12), level, np.zeros(nv) if asked else self._no_torques]
+            if body is not None:
+                motion = body.position_variance, body.velocity_variance, body.wrench_variance.ravel()
+                parts[0] = np.concatenate(motion)
+                parts[1] = level if body.level_variance is None else level + body.level_variance.ravel()
+                parts[2] = parts[2] + body.torque_variance
+            variance = np.concatenate(parts)
+            self._held = _Held(body, levels, variance, np.sqrt(variance).view(np.uint8))
+        return self._held
 
     def innovation(self, row: NDArray, posterior: Posterior) -> None:
         """Innovations of the frame."""
@@ -258,7 +295,5 @@ class FrameRecorder:
         row["foot_height_sd"] = spread.foot_height
         if not self._asks_angles:
             return
-        for name in ("angle", "rate"):
-            row[f"{name}_sd"] = getattr(spread, name)
-            row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
-        row["ball_covariance"], row["ball_offset"] = spread.ball_covariance, spread.ball_offset
+        row.view(np.uint8)[self._coordinates] = spread.coordinates.ravel().view(np.uint8)
+        row["ball_covariance"], row["ball_offset"] = spread.balls

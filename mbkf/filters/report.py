@@ -9,6 +9,7 @@ from typing import Any, Generic, NamedTuple, cast
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.plant import KinematicState
@@ -83,17 +84,26 @@ class StateReport(ABC, Generic[StateT]):
         """
 
     @abstractmethod
-    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
-        """Standard deviations at an estimate; without ``torques`` those of the generalised forces may be NaN."""
+    def spread(
+        self,
+        estimate: Posterior,
+        torques: bool = True,
+        levels: bool = False,
+        body: BodyErrorRoots | None = None,
+    ) -> Spread:
+        """Standard deviations at an estimate.
+
+        Args:
+            estimate: The estimate.
+            torques: False where those of the generalised forces may be NaN.
+            levels: Those of the trunk's moments are wanted, too.
+            body: Roots of the errors by the person's body; None where they are not known.
+        """
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) covariance of (q, v)."""
         motion, P = self.kalman.layout.motion, estimate.record.state.P
         return np.asarray(P[motion, motion])
-
-    def level_variance(self, estimate: Posterior) -> Array | None:
-        """(2, L, 3) variances of the trunk's moments at the body's levels by way; None where the filter has none."""
-        return None
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""

@@ -9,7 +9,7 @@ among persons. The change of the offset with the posture needs the whole trial (
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,10 +17,10 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots
-from mbkf.filters.coordinate_variances import CoordinateVariances
+from mbkf.filters.coordinate_variances import CoordinateVariances, DofVariances
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.layout import Layout
+from mbkf.model.layout import FEET, Layout
 
 ASKED = ("torques", "angles")
 """Standard deviations that a trial or a stream need not ask for: of generalised forces, and of clinical coordinates and
@@ -98,6 +98,9 @@ class Spread:
         torque_variance: (nv,) of the generalised forces, by the filter; NaN where nothing is known of them.
         parts: What else is asked of the filter's covariance of the configuration, worked out once.
         body: Roots of the errors by the person's body; None where they are not known.
+        wrench_variance: (12,) of the feet's wrenches, by the filter; NaN where it estimates none.
+        level_variance: (2, L, 3) of the trunk's moments at the body's levels by way, by the filter; None where they are
+            not asked for, or not known.
     """
 
     reader: SpreadReader
@@ -107,6 +110,8 @@ class Spread:
     torque_variance: Array
     parts: Callable[[], ConfigurationParts]
     body: BodyErrorRoots | None = None
+    wrench_variance: Array = field(default_factory=lambda: np.full(FEET, np.nan))
+    level_variance: Array | None = None
 
     @property
     def position(self) -> Array:
@@ -155,34 +160,41 @@ class Spread:
     @property
     def angle(self) -> Array:
         """(A,) of the clinical coordinates."""
-        return self._coordinates[0]
+        return self.coordinates[0]
 
     @property
     def angle_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._zeros if self.body is None else self._coordinates[2]
+        return self.coordinates[2]
 
     @property
     def rate(self) -> Array:
         """(A,) of their rates, from the velocities' own variances."""
-        return self._coordinates[1]
+        return self.coordinates[1]
 
     @property
     def rate_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._zeros if self.body is None else self._coordinates[3]
+        return self.coordinates[3]
 
     @property
     def ball_covariance(self) -> Array:
         """(n, 3, 3) covariances of the rotations of the n joints with three angles, in distal axes, rad²."""
-        own = self._parts.blocks[:-1]
-        return own if self.body is None else own + self.ball_offset
+        return self.balls[0]
 
     @property
     def ball_offset(self) -> Array:
         """(n, 3, 3) the offset's part of it."""
-        dofs = self.reader.coordinates.dofs
-        return np.zeros((len(dofs) - 1, 3, 3)) if self.body is None else self.body.blocks(dofs)[0][:-1]
+        return self.balls[1]
+
+    @property
+    def balls(self) -> tuple[Array, Array]:
+        """:attr:`ball_covariance` and :attr:`ball_offset`."""
+        own = self._parts.blocks[:-1]
+        if self.body is None:
+            return own, np.zeros(own.shape)
+        offset = self.body.blocks(self.reader.coordinates.dofs)[0][:-1]
+        return own + offset, offset
 
     @property
     def foot_height(self) -> Array:
@@ -194,21 +206,14 @@ class Spread:
         return self.parts()
 
     @cached_property
-    def _coordinates(self) -> Array:
-        """(2 or 4, A) of the clinical coordinates and their rates, and the offset's part of both."""
-        dofs, velocity, own = self.reader.coordinates.dofs, self.velocity_variance, self._parts.blocks
-        blocks = [own, np.zeros(own.shape)]
-        np.einsum("bii->bi", blocks[1])[:] = velocity[dofs]
-        diagonals = [self.position_variance, velocity]
-        if self.body is not None:
-            blocks += self.body.blocks(dofs)
-            diagonals += [self.body.position_variance, self.body.velocity_variance]
-        variance = self.reader.coordinates.of(self.q, blocks, diagonals)
-        np.maximum(variance, 0.0, out=variance)
-        if self.body is not None:
-            variance[2] += self.reader.clinical.zero_variance
-            variance[:2] += variance[2:]
-        return np.sqrt(variance, out=variance)
+    def coordinates(self) -> Array:
+        """(4, A) of the clinical coordinates and their rates, and the offset's part of both."""
+        reader, body = self.reader.coordinates, self.body
+        own = DofVariances(self.position_variance, self.velocity_variance, self._parts.blocks, None)
+        if body is None:
+            return reader.deviations(self.q, own, None)
+        of_body = DofVariances(body.position_variance, body.velocity_variance, *body.blocks(reader.dofs))
+        return reader.deviations(self.q, own, of_body)
 
     @property
     def _zeros(self) -> Array:

@@ -78,7 +78,7 @@ def _compiled(
     failed, diagonal, torque, height, blocks = kernel.error_variances(
         errors.P,
         np.ascontiguousarray(errors.information),
-        errors.seen.astype(np.int32),
+        np.asarray(errors.seen, np.int32),
         errors.size,
         errors.skin,
         errors.rate_rad_s,

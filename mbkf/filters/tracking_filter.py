@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.innovations import Innovations
 from mbkf.filters.limb_mend import LimbMend, with_limb
@@ -105,9 +106,15 @@ class TrackingFilter:
         """(2 nv, 2 nv) covariance of (q, v)."""
         return self.report_of(estimate).covariance(estimate)
 
-    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
-        """Standard deviations at an estimate; without ``torques`` those of the generalised forces may be NaN."""
-        return self.report_of(estimate).spread(estimate, torques)
+    def spread(
+        self,
+        estimate: Posterior,
+        torques: bool = True,
+        levels: bool = False,
+        body: BodyErrorRoots | None = None,
+    ) -> Spread:
+        """Standard deviations at an estimate. Args: as for :meth:`mbkf.filters.report.StateReport.spread`."""
+        return self.report_of(estimate).spread(estimate, torques, levels, body)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""
@@ -116,10 +123,6 @@ class TrackingFilter:
     def support_sd(self, estimate: Posterior) -> Array:
         """(B, 6) standard deviations of the wrenches on parts besides the feet, NaN where the filter has none."""
         return self.report_of(estimate).support_sd(estimate)
-
-    def level_variance(self, estimate: Posterior) -> Array | None:
-        """(2, L, 3) variances of the trunk's moments at the body's levels by way; None where the filter has none."""
-        return self.report_of(estimate).level_variance(estimate)
 
     def predict(self, before: Posterior) -> Prediction:
         """The frame after an estimate by the filter's own plant."""

@@ -221,6 +221,24 @@ class ContactFunctions(Protocol):
             force, moment: Spreads about the origins, per component, N and N m.
         """
 
+    def plate_changes(
+        self,
+        change: In[Array, "2 n 6"],
+        noise: In[Array, "n 6"],
+        white: float,
+        share: float,
+        share_of_second: float,
+        /,
+    ) -> Made[Array, "within: 2 n 6"]:
+        """Shares of wrenches' changes, and of these changes' changes beyond those of white noise.
+
+        Args:
+            change: Both, N and N m.
+            noise: Standard deviation of the noise of the wrenches.
+            white: Standard deviation of second differences of white noise of standard deviation 1.
+            share, share_of_second: The shares.
+        """
+
     @requires("l*longer == w", "longer >= 1")
     def missing_forces(
         self,

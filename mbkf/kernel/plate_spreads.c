@@ -1,4 +1,5 @@
-/* Spreads of wrenches about the world's origin that are independent about points: mbkf/sensors/contact/plate_noise.py. */
+/* Spreads of wrenches about the world's origin that are independent about points, and changes within a frame:
+ * mbkf/sensors/contact/plate_noise.py. */
 #include <math.h>
 
 #include "declared.h"
@@ -32,5 +33,16 @@ void mbkf_plate_spreads(int K, int n, const double *origins, const double *point
             spreads[i] = force;
             spreads[3 + i] = sqrt((square[(i + 1) % 3] + square[(i + 2) % 3]) * (force * force) + moment * moment);
         }
+    }
+}
+
+void mbkf_plate_changes(int n, const double *change, const double *noise, double white, double share,
+                        double share_of_second, double *within)
+{
+    const double *second = change + 6L * n;
+    for (long i = 0; i < 6L * n; i++) {
+        const double expected = white * noise[i], beyond = second[i] * second[i] - expected * expected;
+        within[i] = share * change[i];
+        within[6L * n + i] = beyond > 0.0 ? share_of_second * copysign(sqrt(beyond), second[i]) : 0.0;
     }
 }

@@ -181,7 +181,7 @@ class StateFunctions(Protocol):
         """
 
     @requires("root >= 0", "root + 4 <= nq")
-    def joint_variances(
+    def coordinate_deviations(
         self,
         q: In[Array, "nq"],
         quaternions: In[Int32Array, "n in 0:nq-3"],
@@ -189,19 +189,36 @@ class StateFunctions(Protocol):
         signs: In[Array, "n 4"],
         root: int,
         root_axes: In[Array, "3 3"],
-        covariance: In[Array, "k n+1 3 3"],
+        dofs: In[Int32Array, "n+1 3 in 0:nv"],
+        columns: In[Int32Array, "n+1 3 in 0:A"],
+        single_dofs: In[Int32Array, "k in 0:nv"],
+        single_columns: In[Int32Array, "k in 0:A"],
+        zero: In[Array, "A"],
+        position: In[Array, "nv"],
+        velocity: In[Array, "nv"],
+        blocks: In[Array, "n+1 3 3"],
+        offset: In[Array, "nv"] | None,
+        rate_offset: In[Array, "nv"] | None,
+        offset_blocks: In[Array, "n+1 3 3"] | None,
+        rate_offset_blocks: In[Array, "n+1 3 3"] | None,
         /,
-    ) -> Made[Array, "variance: k n+1 3"]:
-        """Variances of joints' three angles, and last of the root's position.
+    ) -> Made[Array, "deviations: 4 A"]:
+        """Standard deviations of clinical coordinates and their rates, and the offset's part of both.
 
         Args:
             q: Configuration.
-            quaternions: First component of each joint's quaternion in q.
+            quaternions: First component in q of the quaternion of each joint with three angles.
             axes: Axes of each joint's angles.
             signs: Parity of the axes and signs of the angles.
             root: First component of the root's quaternion in q.
             root_axes: Rotation from world axes to the axes of the root's position.
-            covariance: Of each joint's dofs, and last of the root's position.
+            dofs, columns: Dofs and coordinates of each joint, and last of the root's position.
+            single_dofs, single_columns: Of the other coordinates, each ± one dof.
+            zero: Variances of the coordinates' zeros, which add to the offset.
+            position, velocity: Variances of the dofs.
+            blocks: Covariances of the joints' dofs.
+            offset, rate_offset: Variances of the offset; None without.
+            offset_blocks, rate_offset_blocks: Its covariances of the joints' dofs.
         """
 
     @requires("T >= 1")

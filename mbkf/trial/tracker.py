@@ -7,7 +7,7 @@ first frames are answered together when it has succeeded.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -188,7 +188,7 @@ class Estimate:
 
     @cached_property
     def _spread(self) -> Spread:
-        return replace(self._filter.spread(self.posterior), body=self._by_body())
+        return self._filter.spread(self.posterior, body=self._by_body())
 
     @property
     def _names(self) -> tuple[str, ...]:

@@ -115,6 +115,28 @@ def test_spreads_are_totals_with_the_offset_beside_them(name, body):
         assert not rows[1][beside].any()
 
 
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_groups_of_fields_that_are_written_at_once_hold_each_its_own(name, body):
+    """One by one as the spread states them."""
+    tracking, found = estimates(name)
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], body, levels=True)
+    row, spread = recorder.row(20, recording().markers_m[20], found[20], 0.0)
+    recorder.spread(row, spread)
+    for field, part in (("sd_q", "position"), ("sd_v", "velocity"), ("torque_sd", "torque")):
+        np.testing.assert_allclose(row[field][0], getattr(spread, part), rtol=1e-12)
+    for part in ("angle", "rate"):
+        np.testing.assert_array_equal(row[f"{part}_sd"][0], getattr(spread, part))
+        np.testing.assert_array_equal(row[f"{part}_offset"][0], getattr(spread, f"{part}_offset"))
+    wrench = np.hypot(tracking.wrench_sd(found[20]), spread.wrench_offset)
+    np.testing.assert_allclose(row["wrench_sd"][0], wrench, rtol=1e-12)
+    if name == "kinematic":
+        assert np.isnan(row["level_sd"]).all() and np.isnan(row["level_offset"]).all()
+    else:
+        offset = row["level_offset"][0] ** 2
+        np.testing.assert_allclose(offset, spread.body.level_variance, rtol=1e-12)
+        np.testing.assert_allclose(row["level_sd"][0] ** 2 - offset, spread.level_variance, rtol=1e-9)
+
+
 def test_stretches_begin_with_starts_and_after_the_time_that_offsets_are_held():
     stretches, frames = Stretches(DT), round(OFFSETS_HELD_S / DT)
     starts = {0, frames + 3}

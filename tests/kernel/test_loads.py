@@ -71,3 +71,16 @@ def test_noise_of_moments_is_that_about_the_plates_own_origins():
     assert noise.moment.sd == 0.02
     np.testing.assert_allclose(noise.force.last[-1], force)
     np.testing.assert_allclose(noise.moment.last[-1], 0.0, atol=1e-9)
+
+
+@needs_kernel
+@pytest.mark.parametrize("seed", range(3))
+def test_changes_within_a_frame_are_those_of_the_reference(seed, monkeypatch):
+    """Beyond the noise with their sign, and zero where noise explains them."""
+    change = 10.0 * np.random.default_rng(seed).normal(size=(2, 2, 6))
+    noise = np.random.default_rng(seed).choice([0.0, 2.0, 8.0], (2, 6))
+    found = plate_noise.changes_within(change, noise, (0.005, 0.15))
+    monkeypatch.setattr(plate_noise, "library", lambda: None)
+    np.testing.assert_allclose(found, plate_noise.changes_within(change, noise, (0.005, 0.15)), rtol=1e-13)
+    np.testing.assert_allclose(found[1][noise == 0.0], 0.15 * change[1][noise == 0.0], rtol=1e-13)
+    assert (found[1] == 0.0).any() and (found[1][noise == 2.0] != 0.0).any()

@@ -9,8 +9,10 @@ from itertools import pairwise
 from typing import NamedTuple, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.dynamic.filter import DynamicFilter, DynamicStep
 from mbkf.filters.dynamic.level_rows import LevelRows
 from mbkf.filters.dynamic.plant import DynamicState
@@ -24,16 +26,13 @@ from mbkf.filters.spread import ConfigurationParts, Spread, root
 from mbkf.filters.state_variances import StateVariances, state_variances
 from mbkf.model.layout import FEET
 from mbkf.sensors.block import NO_DOFS, Frame
-from mbkf.sensors.contact.plate_noise import PlateNoise, spread_about_origin
+from mbkf.sensors.contact.plate_noise import PlateNoise, changes_within, spread_about_origin
 from mbkf.sensors.contact.records import Contact, ContactDecision, unread
 from mbkf.sensors.contact.sharing import push_apart, step_apart
 from mbkf.sensors.foot_contact import FootContact
 
 LATER_FADES_S = 0.1
 """Time in which a later frame's influence fades; without later frames an estimate is as late as a causal one."""
-
-OF_WHITE_NOISE = 6.0**0.5
-"""Standard deviation of the second differences of white noise of standard deviation 1."""
 
 ROUNDS = 2
 """Linearisations of a smoothed window; a third round changes the residual by less than 0.1 N."""
@@ -81,6 +80,8 @@ class DynamicReport(StateReport[DynamicState]):
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
         self._read: tuple[Posterior, StateVariances, int] | None = None
+        self._no_noise = np.zeros((2, 6))
+        self._of_unmarked: tuple[NDArray[np.intp], NDArray[np.intp]] | None = None
         self._no_torques = np.zeros((0, kalman.layout.wrench.stop))
         self._smoothing = WindowMemory()
 
@@ -202,12 +203,22 @@ class DynamicReport(StateReport[DynamicState]):
         P[self._unobservable, self._unobservable] += self._anywhere
         return P
 
-    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+    def spread(
+        self,
+        estimate: Posterior,
+        torques: bool = True,
+        levels: bool = False,
+        body: BodyErrorRoots | None = None,
+    ) -> Spread:
         """Standard deviations; torques' from the whole state through Newton–Euler."""
-        found = self._variances(estimate, torques)
+        levels = levels and bool(self._levels.sections.levels)
+        found = self._variances(estimate, torques, levels)
         parts, q = ConfigurationParts(found.height, found.blocks), estimate.record.state.q
-        torque = found.torque[-self.model.nv :]
-        return Spread(self.reader, q, found.position, found.velocity, torque, lambda: parts)
+        torque, level = found.torque[-self.model.nv :], None
+        if levels:
+            level = found.torque[: -self.model.nv].reshape(self._levels.shape)
+        own = found.position, found.velocity, torque, lambda: parts
+        return Spread(self.reader, q, *own, body, found.wrench, level)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
@@ -271,15 +282,6 @@ class DynamicReport(StateReport[DynamicState]):
     def _levels(self) -> LevelRows:
         return LevelRows(self.model, self.loads)
 
-    def level_variance(self, estimate: Posterior) -> Array | None:
-        """(2, L, 3) variances of the trunk's moments at the body's levels by way; None where it has no levels.
-
-        Asked before :meth:`spread`, it costs a few more rows of the same products.
-        """
-        if not self._levels.sections.levels:
-            return None
-        return self._variances(estimate, levels=True).torque[: -self.model.nv].reshape(self._levels.shape)
-
     def errors(self, estimate: Posterior) -> ErrorCovariance:
         """Errors of the whole state; the filter's own P where it knows how the noise is correlated."""
         state, step = estimate.record.state, _step(estimate)
@@ -290,9 +292,7 @@ class DynamicReport(StateReport[DynamicState]):
         share = s.markers.innovation_share
         if share <= 0.0 or s.markers.skin_memory_s > 0.0 or self.kalman.spread_m is not None:
             return ErrorCovariance(layout, state.P, information, NO_DOFS, 0.0, 1.0, 0.0)
-        known = ~self.kalman.unobservable
-        known[notes.unmarked] = False
-        seen = np.flatnonzero(known)
+        seen = self._seen(notes.unmarked)
         # A pose takes up part of its markers' errors, so innovations show less than that.
         readings = 3 * int(np.count_nonzero(notes.trusted))
         over = max(readings - len(seen), readings // 4)
@@ -321,6 +321,14 @@ class DynamicReport(StateReport[DynamicState]):
             self._plates(notes.contact, noise),
         )
 
+    def _seen(self, unmarked: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Dofs that markers observe; ``unmarked`` is most often the array of the frame before."""
+        if self._of_unmarked is None or self._of_unmarked[0] is not unmarked:
+            known = ~self.kalman.unobservable
+            known[unmarked] = False
+            self._of_unmarked = unmarked, np.flatnonzero(known)
+        return self._of_unmarked[1]
+
     def _plates(self, contact: ContactDecision | None, noise: Array | None) -> Array | float:
         """(2, 6) noise of the feet's wrenches over the filter's; where feet share a plate, no reading shows a share."""
         if contact is None or noise is None or Contact.SHARED in contact.contacts:
@@ -340,9 +348,9 @@ class DynamicReport(StateReport[DynamicState]):
             return np.zeros((0, FEET))
         s, change = self.kalman.settings.errors, _changes(estimate).wrench
         edges = np.zeros((5, 2, 6))
-        bends = None if change is None else change[1]
-        if bends is not None and noise is not None:
-            bends = np.sign(bends) * np.sqrt(np.maximum(bends**2 - (OF_WHITE_NOISE * noise) ** 2, 0.0))
+        read = None
+        if change is not None:
+            read = changes_within(change, self._no_noise if noise is None else noise, s.frame_share)
         for foot in (0, 1):
             if foot in free:
                 size = 0.0
@@ -352,9 +360,9 @@ class DynamicReport(StateReport[DynamicState]):
                 edges[foot, foot] = self._edge_n * size * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
             elif contact.contacts[foot] == Contact.AIR:
                 edges[foot, foot] = 0.0 if contact.below is None else contact.below
-            elif change is not None and bends is not None:
-                edges[foot, foot] = s.frame_share[0] * change[0, foot]
-                edges[2 + foot, foot] = s.frame_share[1] * bends[foot]
+            elif read is not None:
+                edges[foot, foot] = read[0, foot]
+                edges[2 + foot, foot] = read[1, foot]
         if len(free) == FEET // 6 and contact.free is not None:
             stance = contact.free.stance
             beside, stepped = s.push_share

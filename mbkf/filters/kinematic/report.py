@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import NO_WRENCH, Posterior, Record
 from mbkf.filters.filter import Step
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
@@ -93,7 +94,13 @@ class KinematicReport(StateReport[KinematicState]):
         pairs = list(zip(run, states, a, strict=False))[:wanted]
         return [self.moved(estimate, state, None)._replace(a=acc) for estimate, state, acc in pairs]
 
-    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+    def spread(
+        self,
+        estimate: Posterior,
+        torques: bool = True,
+        levels: bool = False,
+        body: BodyErrorRoots | None = None,
+    ) -> Spread:
         """Standard deviations; torques as far as accelerations cause them, NaN at a start."""
         state, step, before = estimate.record.state, estimate.record.step, _differences(estimate).before
         layout, torque = self.kalman.layout, np.full(self.model.nv, np.nan)
@@ -102,7 +109,7 @@ class KinematicReport(StateReport[KinematicState]):
             torque = self.reader.torque_variance(state.q, change, self.kalman.plant.dt_s)
         variance, q, v = np.diagonal(state.P), layout.q, layout.v
         parts = partial(self.reader.parts, state.q, state.P[q, q])
-        return Spread(self.reader, state.q, variance[q], variance[v], torque, parts)
+        return Spread(self.reader, state.q, variance[q], variance[v], torque, parts, body)
 
 
 def _differences(estimate: Posterior) -> Differences:

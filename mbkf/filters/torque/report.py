@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import Posterior, Prediction, Record
 from mbkf.filters.filter import Memory
 from mbkf.filters.report import FirstMotion, StateReport
@@ -140,12 +141,19 @@ class TorqueReport(StateReport[ForcedState]):
         record = estimate.record._replace(state=state, detail=read)
         return estimate._replace(q=read.q, v=read.v, a=read.a, wrench=read.foot_wrench, record=record)
 
-    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+    def spread(
+        self,
+        estimate: Posterior,
+        torques: bool = True,
+        levels: bool = False,
+        body: BodyErrorRoots | None = None,
+    ) -> Spread:
         """Standard deviations; torques are states of this filter."""
         P, layout, read = estimate.record.state.P, self.kalman.layout, _read(estimate)
         variance, q = np.diagonal(P), layout.q
         parts = partial(self.reader.parts, read.q, P[q, q])
-        return Spread(self.reader, read.q, variance[q], variance[layout.v], read.tau_sd**2, parts)
+        loads = read.tau_sd**2, parts, body, read.foot_wrench_sd.ravel() ** 2
+        return Spread(self.reader, read.q, variance[q], variance[layout.v], *loads)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) of the state's wrenches, carried to the world's origin."""

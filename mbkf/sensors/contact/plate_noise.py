@@ -21,6 +21,9 @@ from mbkf.sensors.white_noise import WhiteNoise
 LEAST_FORCE_N, LEAST_MOMENT_NM = 0.1, 0.02
 """Least noise of a plate's forces and moments: readings are stored in steps of such a size."""
 
+OF_WHITE_NOISE = 6.0**0.5
+"""Standard deviation of the second differences of white noise of standard deviation 1."""
+
 _NO_ORIGINS = np.zeros((0, 3))
 
 _OTHERS = 1.0 - np.eye(3)
@@ -97,4 +100,22 @@ def spread_about_origin(force_n: float, moment_nm: float, points_m: Array) -> Ar
     levers *= force_n**2
     levers += moment_nm**2
     np.sqrt(levers, out=found[:, 3:])
+    return found
+
+
+def changes_within(change: Array, noise: Array, shares: tuple[float, float]) -> Array:
+    """(2, 2, 6) by how much means over a frame may be off: shares of a wrench's change and of that change's change.
+
+    Args:
+        change: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, N and N m.
+        noise: (2, 6) white noise of the wrenches, whose second differences are left out.
+        shares: Share of each.
+    """
+    kernel = library()
+    if kernel is not None:
+        return kernel.plate_changes(change, noise, OF_WHITE_NOISE, *shares)
+    found = np.empty(change.shape)
+    np.multiply(shares[0], change[0], out=found[0])
+    beyond = np.maximum(change[1] ** 2 - (OF_WHITE_NOISE * noise) ** 2, 0.0)
+    found[1] = shares[1] * np.copysign(np.sqrt(beyond), change[1])
     return found

@@ -61,7 +61,9 @@ def test_torques_and_the_trunks_moments_come_with_the_spread_of_the_whole_state(
     T = np.array([(loads(h * e) - loads(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
     expected = np.einsum("ij,jk,ik->i", T, tracking.report.errors(found[5]).covariance(), T)
     np.testing.assert_allclose(tracking.spread(found[5]).torque ** 2, expected[:nv], rtol=2e-5)
-    np.testing.assert_allclose(tracking.level_variance(found[5]).ravel(), expected[nv:], rtol=2e-5)
+    np.testing.assert_allclose(
+        tracking.spread(found[5], levels=True).level_variance.ravel(), expected[nv:], rtol=2e-5
+    )
     again = tracking.report.spread(found[5])  # read off the rows with levels
     np.testing.assert_allclose(again.torque**2, expected[:nv], rtol=2e-5)
 
