@@ -153,7 +153,7 @@ def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_
     tracking, found = estimates("dynamic")
     record = found[30].record
     noise = record.detail.plate_noise
-    noise = replace(noise, force=replace(noise.force, sd=0.3), moment=replace(noise.moment, sd=0.5))
+    noise = noise._replace(force=noise.force._replace(sd=0.3), moment=noise.moment._replace(sd=0.5))
     quiet = found[30]._replace(record=record._replace(detail=record.detail._replace(plate_noise=noise)))
     notes = record.step.decisions.notes
     contact = notes.contact
@@ -165,7 +165,7 @@ def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_
     own = np.sqrt(np.diag(quiet.record.state.P)[tracking.kalman.layout.wrench]).reshape(2, 6)
     assert (shared >= own).all()
     assert (sd[:, 2] < 0.5 * own[:, 2]).all()
-    moments = replace(noise, moment=replace(noise.moment, sd=0.01))
+    moments = noise._replace(moment=noise.moment._replace(sd=0.01))
     still = found[30]._replace(record=record._replace(detail=record.detail._replace(plate_noise=moments)))
     quieter = tracking.wrench_sd(still)
     assert (quieter[:, 3] < 0.8 * sd[:, 3]).all()
@@ -177,10 +177,9 @@ def test_white_noise_of_a_plate_is_not_counted_again_as_a_change_within_the_fram
     tracking, found = estimates("dynamic")
     record, share = found[30].record, DynamicSettings().errors.frame_share[1]
     detail = record.detail
-    noise = replace(
-        detail.plate_noise,
-        force=replace(detail.plate_noise.force, sd=1.0),
-        moment=replace(detail.plate_noise.moment, sd=0.2),
+    noise = detail.plate_noise._replace(
+        force=detail.plate_noise.force._replace(sd=1.0),
+        moment=detail.plate_noise.moment._replace(sd=0.2),
     )
 
     def force_sd(bend_n):
