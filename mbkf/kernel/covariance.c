@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "bands.h"
-#include "blas.h"
 #include "call.h"
 #include "certain.h"
 #include "factor.h"
@@ -274,31 +273,46 @@ static int half(int N, int m, double *W, double *S)
     return 0;
 }
 
-/* The second half of the reduction: W = (P - F F') rows' C^-T with C C' = rows (P - F F') rows' + I, where F = P K.
- * Y: (m x n) and Q: (m x m) to work in; R: (N x m), rows column by column. */
-static int reduced_by_rows(int N, const double *P, int n, const double *K, const double *F, int m,
-                           const double *rows, double *W, double *Y, double *Q, double *R)
+/* S = G' P G of a lower triangular G (n x n), the part on and below its diagonal; across is G', T: (n x n) to work in. */
+static void squeezed(int n, const double *across, const double *P, int N, double *T, double *S)
 {
-    double one = 1.0, zero = 0.0;
+    enum { HEIGHT = 24 }; /* rows of G' whose leading zeros are left out together */
+    for (int b = 0; b < n; b += HEIGHT) {
+        const int rows = n - b < HEIGHT ? n - b : HEIGHT;
+        product(WHOLE, rows, n, n - b, 1.0, across + (long)b * n + b, n, P + (long)b * N, N, 0.0, NULL, T + b, n);
+    }
+    for (int b = 0; b < n; b += HEIGHT) {
+        const int columns = n - b < HEIGHT ? n - b : HEIGHT;
+        const long own = (long)b * n + b;
+        product(LOWER, n - b, columns, n - b, 1.0, T + own, n, across + own, n, 0.0, NULL, S + own, n);
+    }
+}
+
+/* The second half of the reduction: W = (P - F F') rows' C^-T with C C' = rows (P - F F') rows' + I, where F = P K,
+ * across is K'. Y: (m x n), Q: (m x m) and V: (m x N) to work in; R: (N x m), rows column by column. */
+static int reduced_by_rows(int N, const double *P, int n, const double *across, const double *F, int m,
+                           const double *rows, double *W, double *Y, double *Q, double *R, double *V)
+{
     transposed(N, m, rows, N, R);
     for (Band b = {0, 0, 0, 0}; b.end < m;) {
         b = band_from(b.end, m, N, rows);
         product(WHOLE, N, b.end - b.start, b.last - b.first, 1.0, P + (long)b.first * N, N,
                 R + (long)b.first * m + b.start, m, 0.0, NULL, W + (long)b.start * N, N);
     }
-    blas.dgemm("t", "n", &m, &n, &n, &one, W, &N, (double *)K, &n, &zero, Y, &m);
+    transposed(n, m, W, N, V);
+    product(WHOLE, m, n, n, 1.0, V, m, across, n, 0.0, NULL, Y, m);
     product(WHOLE, N, m, n, -1.0, F, N, Y, m, 1.0, W, W, N);
+    transposed(N, m, W, N, V);
     for (Band b = {0, 0, 0, 0}; b.end < m;) {
         b = band_from(b.end, m, N, rows);
-        int count = b.end - b.start, width = b.last - b.first;
-        blas.dgemm("t", "n", &count, &m, &width, &one, (double *)rows + (long)b.start * N + b.first, &N,
-                   W + b.first, &N, &zero, Q + b.start, &m);
+        product(WHOLE, b.end - b.start, m, b.last - b.first, 1.0, R + (long)b.first * m + b.start, m,
+                V + (long)b.first * m, m, 0.0, NULL, Q + b.start, m);
     }
     return half(N, m, W, Q);
 }
 
 /* Numbers that `informed` works in. */
-static long room(long N, long n, long m) { return N * (n + m) + 4 * n * n + m * (n + m + N); }
+static long room(long N, long n, long m) { return N * (n + m) + 4 * n * n + m * (n + m + 2 * N); }
 
 /* As mbkf_add_information, working in F. */
 static int informed(int N, int n, int m, const double *P, const double *information, const double *rows,
@@ -306,16 +320,16 @@ static int informed(int N, int n, int m, const double *P, const double *informat
 {
     double *W = F + (long)N * n, *G = W + (long)N * m, *across = G + (long)n * n;
     double *T = across + (long)n * n, *S = T + (long)n * n, *Y = S + (long)n * n, *Q = Y + (long)m * n;
+    double *R = Q + (long)m * m;
     if (square_root(n, information, G))
         return 1;
     transposed(n, n, G, n, across);
-    product(WHOLE, n, n, n, 1.0, across, n, P, N, 0.0, NULL, T, n);
-    product(LOWER, n, n, n, 1.0, T, n, across, n, 0.0, NULL, S, n);
+    squeezed(n, across, P, N, T, S);
     if (half(n, n, G, S))
         return 2;
     transposed(n, n, G, n, across);
     product(WHOLE, N, n, n, 1.0, P, N, across, n, 0.0, NULL, F, N);
-    if (m && reduced_by_rows(N, P, n, G, F, m, rows, W, Y, Q, Q + (long)m * m))
+    if (m && reduced_by_rows(N, P, n, across, F, m, rows, W, Y, Q, R, R + (long)m * N))
         return 3;
     product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, after, N);
     mirror(N, after);
