@@ -101,16 +101,18 @@ def _stacked(parts: Sequence[Sequence[Rows]], size: int) -> tuple[Array, Array, 
     flat = [one for part in parts for one in part]
     if not flat:
         return np.zeros((0, size)), np.zeros(0), None
-    total = sum(len(one.innovation) for one in flat)
+    total = sum([len(one.innovation) for one in flat])
     rows, values, at = np.zeros((total, size)), np.empty(total), 0
     added: Array | None = None
-    for one in flat:
-        end = at + len(one.innovation)
-        rows[at:end, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
-        values[at:end] = one.innovation if one.vector is None else 0.0
-        if one.vector is not None:
+    for jacobian, innovation, first, _, vector in flat:
+        end = at + len(innovation)
+        rows[at:end, first : first + jacobian.shape[1]] = jacobian
+        if vector is None:
+            values[at:end] = innovation
+        else:
+            values[at:end] = 0.0
             added = np.zeros(size) if added is None else added
-            added[one.first : one.first + len(one.vector)] += one.vector
+            added[first : first + len(vector)] += vector
         at = end
     return rows, values, added
 

@@ -80,6 +80,10 @@ class TrackingLoop:
 
     def advance(self, recording: Recording, t: int) -> Posterior | None:
         """The estimate of frame t, the one after the latest; None as long as no start has succeeded, and ``again``."""
+        with np.errstate(all="ignore"):  # the result is checked
+            return self._advanced(recording, t)
+
+    def _advanced(self, recording: Recording, t: int) -> Posterior | None:
         rejoined, self._rejoined = self._opened() or self._rejoined, False
         before, fresh = self.estimate, None
         prediction, self._prediction = self._prediction, None
@@ -87,11 +91,10 @@ class TrackingLoop:
         named = self._named(recording)
         if self.contacts is not None:
             named = self.contacts.added_to(named, t)
-        with np.errstate(all="ignore"):  # the result is checked
-            if starting:
-                fresh = self.filter.start(named, t, None if before is None else before.q)
-            if fresh is None and before is not None:
-                fresh = self.filter.step(before, named, t, prediction)
+        if starting:
+            fresh = self.filter.start(named, t, None if before is None else before.q)
+        if fresh is None and before is not None:
+            fresh = self.filter.step(before, named, t, prediction)
         astray = fresh is not None and not plausible(fresh, self.filter.model)
         self.implausible = astray and starting
         if self.implausible:
@@ -141,12 +144,11 @@ class TrackingLoop:
         """The estimate, with a limb set right where it is in doubt and a better pose is known."""
         if self.watch is None:
             return fresh
-        with np.errstate(all="ignore"):
-            self.mend = self.watch.look(self._number, fresh, recording.markers_m[t])
-            if self.mend is None:
-                return fresh
-            after = None if fresh.started else before
-            found = self.filter.mended(after, self._named(recording), t, self.mend)
+        self.mend = self.watch.look(self._number, fresh, recording.markers_m[t])
+        if self.mend is None:
+            return fresh
+        after = None if fresh.started else before
+        found = self.filter.mended(after, self._named(recording), t, self.mend)
         if found is None or not plausible(found, self.filter.model):
             self.mend = None
             return fresh

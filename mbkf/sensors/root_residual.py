@@ -17,7 +17,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.model.layout import ROOT_RESIDUAL, ExtraState
+from mbkf.model.body import Body
+from mbkf.model.layout import ROOT_RESIDUAL, ExtraState, Layout
 from mbkf.sensors.block import Block, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.records import unread
 from mbkf.sensors.states import LoadedState
@@ -66,14 +67,18 @@ class DecayingLoad(Block[LoadedState, None, Notes, None]):
         self._sharp = 1.0 / (sd * (0.5 * memory_s / dt_s) ** 0.5)
         self._rows = read_only(np.diag(self._sharp))
 
+    def bind(self, layout: Layout, body: Body) -> None:
+        """Keeps where the load lies in the state."""
+        super().bind(layout, body)
+        self._own, self._first = layout.extra_index(self.name), layout[self.name].start
+
     def states(self) -> list[ExtraState]:
         """The load, in the root's axes."""
         return [ExtraState(self.name, np.zeros(len(self.sd)), self.sd, self._walk)]
 
     def linearise(self, at: OperatingPoint[LoadedState, None], decision: Notes) -> Rows:
         """Rows on the load, one a component."""
-        load = at.state.extra[self.layout.extra_index(self.name)]
-        return Rows(self._rows, -load * self._sharp, self.layout[self.name].start)
+        return Rows(self._rows, -at.state.extra[self._own] * self._sharp, self._first)
 
 
 class RootResidual(DecayingLoad):

@@ -27,7 +27,7 @@ from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.loading import library
 from mbkf.kernel.state_functions import Singer
 from mbkf.model.body import Body
-from mbkf.model.layout import Layout, parted
+from mbkf.model.layout import Layout
 from mbkf.numerics.transition import RateTransition
 from mbkf.sensors.block import Notes
 
@@ -85,9 +85,15 @@ class DynamicState:
             step: (N,) tangent vector.
             P: (N, N) covariance of the moved state.
         """
-        q, v, a, w, extra = parted(step, self.v, self.v, self.a, self.w, self.extra)
+        nv = len(self.v)
+        w, extra = 3 * nv, 3 * nv + len(self.w)
         return DynamicState(
-            model.integrate(self.q, q), self.v + v, self.a + a, self.w + w, P, self.extra + extra
+            model.integrate(self.q, step[:nv]),
+            self.v + step[nv : 2 * nv],
+            self.a + step[2 * nv : w],
+            self.w + step[w:extra],
+            P,
+            self.extra + step[extra:],
         )
 
     def minus(self, model: Body, origin: DynamicState) -> Array:
@@ -141,6 +147,7 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
             self.covariance = _white_jerk(dt_s, s.decay_s)
         self._calm = 1.0 - float(np.exp(-dt_s / s.activity_memory_s))
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
+        self._gain = s.activity_gain**2
         self._busiest = self.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
         self._joints = joint_ranges(joint.v for joint in model.joints.values())
         self._push, self._rates = np.array([dt_s, self.c2]), np.array([[1.0, self.c1], [0.0, self.rho]])
@@ -151,7 +158,7 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         """(nv,) σ_a of the next step."""
         if memory is None:
             return self.acceleration_sd
-        busy = np.sqrt(self._quiet + self.settings.activity_gain**2 * memory)
+        busy = np.sqrt(self._quiet + self._gain * memory)
         return np.minimum(busy, self._busiest)
 
     def remember(self, posterior: DynamicState, notes: Notes, memory: Array | None) -> Array | None:

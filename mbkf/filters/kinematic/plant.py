@@ -14,7 +14,7 @@ from mbkf.filters.plant import Plant
 from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.loading import library
 from mbkf.model.body import Body
-from mbkf.model.layout import Layout, parted
+from mbkf.model.layout import Layout
 from mbkf.numerics.transition import RateTransition
 
 
@@ -40,8 +40,8 @@ class KinematicState:
             step: (2 nv,) tangent vector.
             P: (2 nv, 2 nv) covariance of the moved state.
         """
-        q, v = parted(step, self.v, self.v)
-        return KinematicState(model.integrate(self.q, q), self.v + v, P)
+        nv = len(self.v)
+        return KinematicState(model.integrate(self.q, step[:nv]), self.v + step[nv:], P)
 
     def minus(self, model: Body, origin: KinematicState) -> Array:
         """(2 nv,) tangent vector from the mean of another state to this one's."""

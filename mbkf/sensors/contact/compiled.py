@@ -99,12 +99,13 @@ class CompiledContact:
         before = memory if isinstance(memory, PackedMemory) else memory.packed(self._window)
         q, v, a = (np.ascontiguousarray(one, float) for one in motion)
         wrench = np.ascontiguousarray(plate_wrench, float)
-        stand = Stand(*self._decide(self._feet, q, v, a, wrench, supported, before.numbers))
-        stand.after.setflags(write=False)
-        flags, kept = stand.flags, PackedMemory(stand.after, self._plates, self._window)
-        decision = (_CONTACTS[flags & KINDS], stand.wrench, stand.middles_m, flags & STRAY > 0, kept)
+        found = self._decide(self._feet, q, v, a, wrench, supported, before.numbers)
+        flags, after, measured, middles_m = found[:4]
+        after.setflags(write=False)
+        kept = PackedMemory(after, self._plates, self._window)
+        decision = (_CONTACTS[flags & KINDS], measured, middles_m, flags & STRAY > 0, kept)
         if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR | MOVING_OR_NEAR | BELOW):
-            return self._completed(decision, stand, plate_wrench)
+            return self._completed(decision, Stand(*found), plate_wrench)
         return ContactDecision(*decision)
 
     def _completed(

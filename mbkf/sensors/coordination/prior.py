@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
+from mbkf.sensors.block import NO_DOFS, Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.posture_sensor import PostureSensor
 
@@ -104,6 +104,10 @@ class CoordinationDecision(NamedTuple):
 NO_NUMBERS = np.zeros(0)
 """An empty array."""
 
+_ALL_SEEN = CoordinationDecision(NO_DOFS, NO_NUMBERS, NO_NUMBERS, NO_NUMBERS, NO_NUMBERS, (), True, NO_DOFS)
+"""Decision while every joint is observed."""
+_LOST = _ALL_SEEN._replace(legible=False)
+
 
 class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecision, CoordinationMemory]):
     """Head, arms and toes, predicted from trunk and legs.
@@ -171,10 +175,12 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
     ) -> CoordinationDecision:
         """Predicted movement of the joints out of sight."""
         gone, legible = self._out_of_sight(notes)
+        if not len(notes.unobserved):
+            return _ALL_SEEN if legible else _LOST
         learned = {j: one for j, one in at.prepared.items() if j in gone}
         if not learned:
             return CoordinationDecision(
-                notes.unobserved[:0],
+                NO_DOFS,
                 NO_NUMBERS,
                 NO_NUMBERS,
                 NO_NUMBERS,

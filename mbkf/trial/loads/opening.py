@@ -156,8 +156,10 @@ class ContactOpener:
 
     def _searches(self) -> bool:
         """True in frames in which a stated force is searched."""
+        if not self._stated:
+            return False
         often = self._stated <= self._frames(OFTEN_S)
-        return self._stated > 0 and (self._stated - 1) % self._frames(AGAIN_S if often else RARELY_S) == 0
+        return (self._stated - 1) % self._frames(AGAIN_S if often else RARELY_S) == 0
 
     def _look_again(self) -> None:
         """Closes contacts that have been left, or lets other parts take their place."""

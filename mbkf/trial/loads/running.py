@@ -126,7 +126,9 @@ class RunningBalance:
             self._first = self._after
             # A foot that comes down beside its plate lacks its load before it is seen to stand there.
             return self._stated(UNKNOWN_N, self._unread <= self._held and self._acting > 2 * self._bridged)
-        self._level = self._level or bool(np.abs(contacts_n[:2]).max() > READ_SHARE * self._weight_n)
+        if not self._level:
+            x, y, _ = contacts_n.tolist()
+            self._level = max(abs(x), abs(y)) > READ_SHARE * self._weight_n
         self._keep(frame)
         if self._after - self._first < self._least:
             return self._stated(UNKNOWN_N, self._acting > 0)
