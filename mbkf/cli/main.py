@@ -19,11 +19,11 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from mbkf.cli.closed_streams import open_closed_streams
-from mbkf.cli.postponed import postpone
 from mbkf.cli.stopping import EXIT_INTERRUPTED, EXIT_TERMINATED, Terminated, ended_by_signal
 from mbkf.cli.terminal import guarded_output, show_traceback
 from mbkf.errors import MbkfError, MbkfWarning
 from mbkf.io.leftovers import remove_held
+from mbkf.numerics.postponed import postpone
 from mbkf.version import __version__
 
 COMMANDS = (

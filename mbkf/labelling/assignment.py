@@ -21,7 +21,6 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 from scipy.spatial.distance import cdist
 
 from mbkf.conventions import Array, BoolArray
@@ -122,6 +121,8 @@ def pair_costs(offsets_m: Array, covariance: Array, settings: AssignmentSettings
 
 def cheapest_pairs(cost: Array) -> Indices:
     """(m,) column of each row in the cheapest set of pairs; rows stay ``HIDDEN`` where no column costs less than 0."""
+    from scipy.optimize import linear_sum_assignment  # loads slowly
+
     found = np.full(len(cost), HIDDEN, dtype=np.intp)
     rows, columns = linear_sum_assignment(np.minimum(cost, 0.0))
     chosen = cost[rows, columns] < 0.0

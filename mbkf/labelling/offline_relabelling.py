@@ -20,7 +20,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
@@ -131,6 +130,8 @@ class SmoothedCapture:
             label_of_point: (T, C) labels so far.
             known: (T, C) marker of the points that carry a reliable name; None where none does.
         """
+        from scipy.optimize import linear_sum_assignment  # loads slowly
+
         cost, spans, markers = self._costs(), self.tracklets.spans, len(self.noise_m)
         if known is not None:
             length = np.diff(spans, axis=1)

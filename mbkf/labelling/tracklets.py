@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 from scipy.spatial.distance import cdist
 
 from mbkf.conventions import Array, BoolArray
@@ -114,6 +113,8 @@ def _links(frames: list[tuple[Indices, Array]]) -> list[Indices]:
 
 def _pairs(points_m: Array, steps_m: Array, moving: BoolArray, now_m: Array) -> tuple[Indices, Indices]:
     """Points of a frame (N, 3) and the next (N', 3) that are unambiguously the same."""
+    from scipy.optimize import linear_sum_assignment  # loads slowly
+
     if not len(points_m) or not len(now_m):
         nothing = np.zeros(0, dtype=np.intp)
         return nothing, nothing

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices, squared_distances
@@ -166,6 +165,8 @@ def _joining(ends: list[_End], points_m: Array, columns: list[int] | None, t: in
 
 def _sure(cost: Array) -> Indices:
     """(n,) the column of each row in the cheapest pairing, ``HIDDEN`` without one or where another is also near."""
+    from scipy.optimize import linear_sum_assignment  # loads slowly
+
     found = np.full(len(cost), HIDDEN, dtype=np.intp)
     if not cost.size:
         return found

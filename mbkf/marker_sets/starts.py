@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.marker_sets.equipment import Equipment
@@ -53,7 +52,7 @@ def starts(model: HumanModel, points_m: Array, equipment: Equipment) -> Iterator
                 root = q[model.root.q]
                 root[:2] = middle
                 root[2] = low - size * (equipment.bottom_m + floor)
-                root[3:] = Rotation.from_euler("z", heading).as_quat()
+                root[3:] = [0.0, 0.0, np.sin(0.5 * heading), np.cos(0.5 * heading)]
                 yield Start(q, float(size))
 
 
@@ -62,5 +61,5 @@ def _arms(model: HumanModel, neutral: Array, away: float) -> Array:
     q = neutral.copy()
     for segment, sense in (("right_upper_arm", -1.0), ("left_upper_arm", 1.0)):
         if segment in model.joints:
-            q[model.joint(segment).q] = Rotation.from_euler("x", sense * away).as_quat()
+            q[model.joint(segment).q] = [np.sin(0.5 * sense * away), 0.0, 0.0, np.cos(0.5 * away)]
     return q

@@ -29,4 +29,5 @@ def spread_indices(length: int, most: int, first: int = 0) -> NDArray[np.intp]:
     """
     if length <= first:
         return np.zeros(0, dtype=np.intp)
-    return np.unique(np.linspace(first, length - 1, most).astype(np.intp))
+    found = np.linspace(first, length - 1, most).astype(np.intp)
+    return np.asarray(found[np.diff(found, prepend=first - 1) > 0])

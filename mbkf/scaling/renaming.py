@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.sides import mirrored
@@ -88,6 +87,8 @@ def settled_names(problem: NamingProblem) -> Naming:
 
 
 def _settled(problem: NamingProblem, naming: Naming) -> Naming:
+    from scipy.optimize import linear_sum_assignment  # loads slowly
+
     for _ in range(TURNS):
         share, _ = problem.shares(naming.state)
         marker = np.asarray(linear_sum_assignment(share)[1], dtype=np.intp)

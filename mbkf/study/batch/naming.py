@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.numerics.printed import percent
 from mbkf.trial.axes.captures import turned_like_subject
-from mbkf.trial.label import label
-from mbkf.trial.label_nameless import label_nameless
-from mbkf.trial.label_unscaled import label_unscaled
-from mbkf.trial.labelling.result import LabelSummary, label_summary, labelled_capture
+
+if TYPE_CHECKING:
+    from mbkf.trial.labelling.result import LabelSummary
 
 NAMED_SHARE = 0.5
 """A capture that names a smaller share of the person's markers, and has points without names, is labelled."""
@@ -50,6 +50,9 @@ def body_of_points(capture: Capture, mass_kg: float, height_m: float | None, pro
         NotObservable: Too few points, or the body fits none of them.
         NotConverged: The points do not fit a person.
     """
+    from mbkf.trial.label_nameless import label_nameless  # labelling loads slowly
+    from mbkf.trial.label_unscaled import label_unscaled
+
     if protocol is None:
         return label_nameless(capture, mass_kg=mass_kg, height_m=height_m)[1]
     return label_unscaled(capture, protocol, mass_kg=mass_kg, height_m=height_m)[1]
@@ -81,6 +84,9 @@ def named(capture: Capture, subject: Subject) -> Named:
     """
     if not needs_names(capture, subject):
         return Named(capture)
+    from mbkf.trial.label import label  # loads slowly
+    from mbkf.trial.labelling.result import label_summary, labelled_capture
+
     turned = turned_like_subject(capture, subject)
     found = label(turned, subject)
     doubts = () if found.doubts is None else tuple(found.doubts.warnings())

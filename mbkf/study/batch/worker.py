@@ -17,6 +17,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import IO
 
+from mbkf.numerics.postponed import postpone
 from mbkf.study.batch.progress import Progress
 
 BEAT_S = 1.0
@@ -74,6 +75,9 @@ def answer(packed: bytes, line: Line) -> object:
         line: Where its progress goes.
     """
     try:
+        import numpy  # noqa: F401  # every task needs it, but for the parts that wait
+
+        postpone()
         return pickle.loads(packed)(line.progress)
     except BaseException as error:
         from mbkf.study.batch.outcome import failed

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import MbkfError
@@ -139,6 +138,8 @@ def faced_forward(standing: Standing) -> Standing:
     rotations, origins = model.placements(q)
     joint = model.root.joint_id
     forward = rotations[joint][:, 0]
+    from scipy.spatial.transform import Rotation  # loads slowly
+
     turn = Rotation.from_euler("z", -np.arctan2(forward[1], forward[0]))
     middle = np.array([*origins[joint][:2], 0.0])
     root = q[model.root.q]

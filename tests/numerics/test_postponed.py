@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from mbkf.cli.postponed import UNUSED
+from mbkf.numerics.postponed import UNUSED
 
 WAITS = """
 def waits(name):
@@ -15,7 +15,7 @@ def waits(name):
 
 def told(*lines):
     """What a fresh process prints."""
-    program = "\n".join(["import sys", WAITS, "from mbkf.cli.postponed import postpone", *lines])
+    program = "\n".join(["import sys", WAITS, "from mbkf.numerics.postponed import postpone", *lines])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     return done.stdout.split()
 
