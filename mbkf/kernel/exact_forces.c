@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "bands.h"
 #include "call.h"
 #include "declared.h"
 #include "joints.h"

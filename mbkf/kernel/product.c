@@ -6,12 +6,7 @@
 
 #include "blas.h"
 #include "declared.h"
-
-#if defined(__GNUC__) && defined(__x86_64__)
-#define HAS_TILES 1
-#else
-#define HAS_TILES 0
-#endif
+#include "vectorised.h"
 
 static void by_blas(int part, int rows, int columns, int inner, double factor, const double *A, int lda,
                     const double *B, int ldb, double keep, const double *D, double *C, int ldc)
@@ -26,10 +21,8 @@ static void by_blas(int part, int rows, int columns, int inner, double factor, c
                    &ldc);
 }
 
-#if HAS_TILES
+#if HAS_WIDE
 #include <immintrin.h>
-
-#define WIDE __attribute__((target("avx512f,fma")))
 
 enum { LANES = 8, VECTORS = 3, HEIGHT = LANES * VECTORS, BREADTH = 8 };
 

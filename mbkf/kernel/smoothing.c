@@ -19,44 +19,39 @@ typedef struct {
     const int *joints;
 } Transition;
 
-/* Rows of one joint: of A' L to `out`, of B' L to `pushed`. */
+/* x += a l, or x = a l. */
+static inline void plus_row(int N, int is_first, double a, const double *l, double *x)
+{
+    for (int j = 0; j < N; j++)
+        x[j] = is_first ? a * l[j] : x[j] + a * l[j];
+}
+
+/* Rows of one joint and of its rates of Phi' L; a row of B' L stays in `pushed` (N). */
 VECTORISED static void joint_rows_before(int first, int end, int N, const Transition *phi, const double *L, double *out,
                                          double *pushed)
 {
+    const int nv = phi->nv, orders = phi->orders;
     for (int i = first; i < end; i++) {
-        double *o = out + (long)i * N, *p = pushed + (long)i * N;
-        memset(o, 0, sizeof(double) * N);
-        memset(p, 0, sizeof(double) * N);
         for (int k = first; k < end; k++) {
-            const double a = phi->A[k * phi->nv + i], b = phi->B[k * phi->nv + i];
-            const double *l = L + (long)k * N;
-            for (int j = 0; j < N; j++) {
-                o[j] += a * l[j];
-                p[j] += b * l[j];
-            }
+            plus_row(N, k == first, phi->A[k * nv + i], L + (long)k * N, out + (long)i * N);
+            plus_row(N, k == first, phi->B[k * nv + i], L + (long)k * N, pushed);
+        }
+        for (int order = 0; order < orders; order++) {
+            double *o = out + (long)((1 + order) * nv + i) * N;
+            plus_row(N, 1, phi->push[order], pushed, o);
+            for (int of = 0; of < orders; of++)
+                if (phi->rates[of * orders + order] != 0.0)
+                    plus_row(N, 0, phi->rates[of * orders + order], L + (long)((1 + of) * nv + i) * N, o);
         }
     }
 }
 
-/* out = Phi' L, row by row. */
-VECTORISED static void rows_before(int N, const double *L, const Transition *phi, double *out, double *pushed)
+/* out = Phi' L, row by row; pushed: (N) to work in. */
+static void rows_before(int N, const double *L, const Transition *phi, double *out, double *pushed)
 {
-    const int nv = phi->nv, orders = phi->orders;
-    const long rest = (long)(1 + orders) * nv * N;
+    const long rest = (long)(1 + phi->orders) * phi->nv * N;
     for (int k = 0; k < phi->J; k++)
         joint_rows_before(phi->joints[2 * k], phi->joints[2 * k + 1], N, phi, L, out, pushed);
-    for (int order = 0; order < orders; order++) {
-        double *o = out + (long)(1 + order) * nv * N;
-        for (long i = 0; i < (long)nv * N; i++)
-            o[i] = phi->push[order] * pushed[i];
-        for (int of = 0; of < orders; of++) {
-            const double rate = phi->rates[of * orders + order];
-            const double *l = L + (long)(1 + of) * nv * N;
-            if (rate != 0.0)
-                for (long i = 0; i < (long)nv * N; i++)
-                    o[i] += rate * l[i];
-        }
-    }
     memcpy(out + rest, L + rest, sizeof(double) * ((long)N * N - rest));
 }
 
@@ -64,12 +59,12 @@ void mbkf_curvature_before_motion(int N, int nv, int J, int orders, const double
                                   const int *joints, const double *push, const double *rates, double *before)
 {
     const Transition phi = {nv, orders, J, A, B, push, rates, joints};
-    double *turned = are_all_dofs(J, joints, nv) ? workspace((long)N * (N + nv)) : NULL;
+    double *turned = are_all_dofs(J, joints, nv) ? workspace((long)N * (N + 1)) : NULL;
     if (!turned)
         return;
     double *pushed = turned + (long)N * N;
     rows_before(N, L, &phi, before, pushed);
-    transpose(N, before, turned);
+    transposed(N, N, before, N, turned);
     rows_before(N, turned, &phi, before, pushed);
 }
 
@@ -153,16 +148,15 @@ void mbkf_gradient_before(int N, int n, int m, int nv, int J, int orders, const 
     gradient_before_motion(N, &phi, kept, before);
 }
 
-/* Column by column, P L row by row is L P. */
-static void smoothed_and_product(int N, const double *P, const double *L, double *smoothed, double *PL, double *turned)
+static void smoothed_and_product(int N, const double *P, const double *L, double *smoothed, double *LP, double *turned)
 {
-    product(WHOLE, N, N, N, 1.0, L, N, P, N, 0.0, NULL, PL, N);
-    transpose(N, PL, turned);
+    product(WHOLE, N, N, N, 1.0, L, N, P, N, 0.0, NULL, LP, N);
+    transposed(N, N, LP, N, turned);
     product(LOWER, N, N, N, -1.0, P, N, turned, N, 1.0, P, smoothed, N);
     mirror(N, smoothed);
 }
 
-void mbkf_smoothed_covariance(int N, const double *P, const double *L, double *smoothed, double *PL)
+void mbkf_smoothed_covariance(int N, const double *P, const double *L, double *smoothed, double *LP)
 {
     const long square = (long)N * N;
     double *turned = workspace(5 * square + N);
@@ -171,82 +165,212 @@ void mbkf_smoothed_covariance(int N, const double *P, const double *L, double *s
     double *own = turned + square, *later = own + square, *found = later + square, *both = found + square;
     int *known = (int *)(both + square), count = uncertain(N, P, NULL, known);
     if (count == N) {
-        smoothed_and_product(N, P, L, smoothed, PL, turned);
+        smoothed_and_product(N, P, L, smoothed, LP, turned);
         return;
     }
     pick(count, known, count, known, N, P, own);
     pick(count, known, count, known, N, L, later);
     smoothed_and_product(count, own, later, found, both, turned);
     put(count, known, found, N, smoothed);
-    put(count, known, both, N, PL);
+    put(count, known, both, N, LP);
 }
 
-/* Z = L P + M smoothed / 2 (column by column); R: rows' transpose; S: (N x m), working memory. */
-static void half_before(int N, const double *smoothed, const double *LP, int n, const double *information, int m,
-                      const double *rows, const double *R, double *S, double *Z)
+/* Readings of a frame, Lambda = E M E' + H'H with the first n columns E of the identity: M (n x n), H (m x N) row by
+ * row, and R = H' row by row. */
+typedef struct {
+    int N, n, m;
+    const double *M, *H;
+    double *R;
+} Readings;
+
+/* Products of a curvature L, a covariance P and the smoothed one, S = P - P L P: L P E, L P H', E'S E, E'S H' and H S H',
+ * column by column; memory for the last but one turned, and for products of M. */
+typedef struct {
+    double *LPE, *LPH, *ESE, *ESH, *HSH, *HSE, *MESE, *MESH;
+} Products;
+
+static long products_size(int N, int n, int m) { return (long)n * (N + 2L * n + 3L * m) + (long)m * (2L * N + m); }
+
+/* Memory of products and of the readings' transposed rows; returns what lies behind it. */
+static double *arranged(Readings *y, Products *p, double *work)
 {
-    memcpy(Z, LP, sizeof(double) * N * N);
-    product(WHOLE, n, N, n, 0.5, information, n, smoothed, N, 1.0, Z, Z, N);
-    for (Band b = {0, 0, 0, 0}; b.end < m;) {
-        b = band_from(b.end, m, N, rows);
-        const int count = b.end - b.start, width = b.last - b.first;
-        double *s = S + (long)b.start * N;
-        product(WHOLE, N, count, width, 1.0, smoothed + (long)b.first * N, N, R + (long)b.first * m + b.start, m, 0.0,
-                NULL, s, N);
-        product(WHOLE, width, N, count, 0.5, rows + (long)b.start * N + b.first, N, s, N, 1.0, Z + b.first,
-                Z + b.first, N);
+    const long N = y->N, n = y->n, m = y->m;
+    y->R = work;
+    p->LPE = y->R + m * N;
+    p->LPH = p->LPE + n * N;
+    p->ESE = p->LPH + m * N;
+    p->ESH = p->ESE + n * n;
+    p->HSH = p->ESH + n * m;
+    transposed(y->N, y->m, y->H, y->N, y->R);
+    p->HSE = p->HSH + m * m;
+    p->MESE = p->HSE + m * n;
+    p->MESH = p->MESE + n * n;
+    return p->MESH + n * m;
+}
+
+/* out (N x m) = X H' */
+static void times_rows(const Readings *y, const double *X, double *out)
+{
+    for (Band b = {0, 0, 0, 0}; b.end < y->m;) {
+        b = band_from(b.end, y->m, y->N, y->H);
+        product(WHOLE, y->N, b.end - b.start, b.last - b.first, 1.0, X + (long)b.first * y->N, y->N,
+                y->R + (long)b.first * y->m + b.start, y->m, 0.0, NULL, out + (long)b.start * y->N, y->N);
     }
 }
 
-/* As mbkf_curvature_before_readings, working in Z. */
-static void before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *PL,
-                            const double *information, const double *rows, double *before, double *Z)
+/* out (m x m) = H X of X' (m x N). */
+static void rows_times(const Readings *y, const double *turned, double *out)
 {
-    double *R = Z + (long)N * N, *S = R + (long)N * m;
-    transposed(N, m, rows, N, R);
-    half_before(N, smoothed, PL, n, information, m, rows, R, S, Z);
-    /* Half of the sum; its transpose is added at the end. */
-    product(WHOLE, N, n, n, -1.0, Z, N, information, n, 0.5, L, before, N);
+    for (Band b = {0, 0, 0, 0}; b.end < y->m;) {
+        b = band_from(b.end, y->m, y->N, y->H);
+        product(WHOLE, b.end - b.start, y->m, b.last - b.first, 1.0, y->R + (long)b.first * y->m + b.start, y->m,
+                turned + (long)b.first * y->m, y->m, 0.0, NULL, out + b.start, y->m);
+    }
+}
+
+/* X (N x columns) += H' Y' / 2 of Y (columns x m). */
+static void add_rows(const Readings *y, int columns, const double *Y, double *X)
+{
+    for (Band b = {0, 0, 0, 0}; b.end < y->m;) {
+        b = band_from(b.end, y->m, y->N, y->H);
+        product(WHOLE, b.last - b.first, columns, b.end - b.start, 0.5, y->H + (long)b.start * y->N + b.first, y->N,
+                Y + (long)b.start * columns, columns, 1.0, X + b.first, X + b.first, y->N);
+    }
+}
+
+/* The first n rows of X (N x columns) += Y / 2. */
+static void add_first(int N, int n, int columns, const double *Y, double *X)
+{
+    for (int j = 0; j < columns; j++)
+        for (int i = 0; i < n; i++)
+            X[(long)j * N + i] += 0.5 * Y[(long)j * n + i];
+}
+
+/* of (n x columns): the first n rows of X (N x columns). */
+static void first_rows(int N, int n, int columns, const double *X, double *of)
+{
+    for (int j = 0; j < columns; j++)
+        memcpy(of + (long)j * n, X + (long)j * N, sizeof *X * n);
+}
+
+static void without_identity(int n, double *X)
+{
+    for (int i = 0; i < n; i++)
+        X[(long)i * (n + 1)] -= 1.0;
+}
+
+/* L + Lambda - V - V' with V = (L P + Lambda S / 2) Lambda, from V - Lambda / 2; products are overwritten. */
+static void before_readings(const Readings *y, const Products *p, const double *L, double *before)
+{
+    const int N = y->N, n = y->n, m = y->m;
+    product(WHOLE, n, n, n, 1.0, y->M, n, p->ESE, n, 0.0, NULL, p->MESE, n);
+    transposed(n, m, p->ESH, n, p->HSE);
+    product(WHOLE, n, m, n, 1.0, y->M, n, p->HSE, m, 0.0, NULL, p->MESH, n);
+    without_identity(n, p->MESE);
+    without_identity(m, p->HSH);
+    add_first(N, n, n, p->MESE, p->LPE);
+    add_first(N, n, m, p->MESH, p->LPH);
+    add_rows(y, n, p->ESH, p->LPE);
+    add_rows(y, m, p->HSH, p->LPH);
+    product(WHOLE, N, n, n, -1.0, p->LPE, N, y->M, n, 0.5, L, before, N);
     for (long i = (long)n * N; i < (long)N * N; i++)
         before[i] = 0.5 * L[i];
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++)
-            before[(long)j * N + i] += 0.5 * information[(long)j * n + i];
     for (Band b = {0, 0, 0, 0}; b.end < m;) {
-        b = band_from(b.end, m, N, rows);
-        const int count = b.end - b.start, width = b.last - b.first;
-        const double *r = rows + (long)b.start * N;
-        double *s = S + (long)b.start * N;
-        product(WHOLE, N, count, width, 1.0, Z + (long)b.first * N, N, R + (long)b.first * m + b.start, m, -0.5, r, s,
-                N);
-        product(WHOLE, N, width, count, -1.0, s, N, r + b.first, N, 1.0, before + (long)b.first * N,
-                before + (long)b.first * N, N);
+        b = band_from(b.end, m, N, y->H);
+        double *own = before + (long)b.first * N;
+        product(WHOLE, N, b.last - b.first, b.end - b.start, -1.0, p->LPH + (long)b.start * N, N,
+                y->H + (long)b.start * N + b.first, N, 1.0, own, own, N);
     }
     symmetrise(N, before);
 }
 
-/* Curvature in components that are certain counts nowhere, and is left out. */
-void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *PL,
-                                    const double *information, const double *rows, double *before)
+static long readings_work(int N, int n, int m) { return products_size(N, n, m) + (long)N * (n + 3L * m); }
+
+/* From the smoothed covariance S and L P. */
+static void before_smoothed(int N, int n, int m, const double *L, const double *S, const double *LP, const double *M,
+                            const double *H, double *before, double *work)
+{
+    Readings y = {N, n, m, M, H, NULL};
+    Products p;
+    double *SH = arranged(&y, &p, work), *HS = SH + (long)m * N;
+    memcpy(p.LPE, LP, sizeof *LP * n * N);
+    times_rows(&y, LP, p.LPH);
+    times_rows(&y, S, SH);
+    transposed(N, m, SH, N, HS);
+    rows_times(&y, HS, p.HSH);
+    first_rows(N, n, n, S, p.ESE);
+    first_rows(N, n, m, SH, p.ESH);
+    before_readings(&y, &p, L, before);
+}
+
+/* From P alone, by products of L and P with the readings' n + m columns. */
+static void before_alone(int N, int n, int m, const double *L, const double *P, const double *M, const double *H,
+                         double *before, double *work)
+{
+    Readings y = {N, n, m, M, H, NULL};
+    Products p;
+    double *PH = arranged(&y, &p, work), *HP = PH + (long)m * N, *EPL = HP + (long)m * N, *HPL = EPL + (long)n * N;
+    times_rows(&y, P, PH);
+    transposed(N, m, PH, N, HP);
+    product(WHOLE, N, n, N, 1.0, L, N, P, N, 0.0, NULL, p.LPE, N);
+    product(WHOLE, N, m, N, 1.0, L, N, HP, m, 0.0, NULL, p.LPH, N);
+    transposed(N, n, p.LPE, N, EPL);
+    transposed(N, m, p.LPH, N, HPL);
+    first_rows(N, n, n, P, p.ESE);
+    first_rows(N, n, m, PH, p.ESH);
+    rows_times(&y, HP, p.HSH);
+    product(WHOLE, n, n, N, -1.0, P, N, EPL, n, 1.0, p.ESE, p.ESE, n);
+    product(WHOLE, n, m, N, -1.0, P, N, HPL, m, 1.0, p.ESH, p.ESH, n);
+    product(WHOLE, m, m, N, -1.0, HP, m, HPL, m, 1.0, p.HSH, p.HSH, m);
+    before_readings(&y, &p, L, before);
+}
+
+static void before_either(int N, int n, int m, const double *L, const double *X, const double *LP, const double *M,
+                          const double *H, double *before, double *work)
+{
+    if (LP)
+        before_smoothed(N, n, m, L, X, LP, M, H, before, work);
+    else
+        before_alone(N, n, m, L, X, M, H, before, work);
+}
+
+/* X: the smoothed covariance, or P where LP is NULL. Curvature in components that are certain counts nowhere, and is
+ * left out. */
+static void without_certain(int N, int n, int m, const double *L, const double *X, const double *LP,
+                            const double *information, const double *rows, double *before)
 {
     const long square = (long)N * N;
-    double *Z = workspace(5 * square + 3L * m * N + (long)n * n + N);
-    if (!Z)
+    double *own = workspace(4 * square + (long)m * N + (long)n * n + N + readings_work(N, n, m));
+    if (!own)
         return;
-    double *later = Z + square + 2L * m * N, *own = later + square, *both = own + square, *found = both + square;
-    double *first = found + square, *others = first + (long)n * n;
-    int *known = (int *)(others + (long)m * N), count = uncertain(N, smoothed, PL, known), ahead = 0;
+    double *later = own + square, *both = later + square, *found = both + square, *first = found + square;
+    double *others = first + (long)n * n, *work = others + (long)m * N;
+    int *known = (int *)work, count = uncertain(N, X, LP, known), ahead = 0;
+    work += N;
     while (ahead < count && known[ahead] < n)
         ahead++;
     if (count == N) {
-        before_readings(N, n, m, L, smoothed, PL, information, rows, before, Z);
+        before_either(N, n, m, L, X, LP, information, rows, before, work);
         return;
     }
     pick(count, known, count, known, N, L, later);
-    pick(count, known, count, known, N, smoothed, own);
-    pick(count, known, count, known, N, PL, both);
+    pick(count, known, count, known, N, X, own);
+    if (LP)
+        pick(count, known, count, known, N, LP, both);
     pick(ahead, known, ahead, known, n, information, first);
     pick(m, NULL, count, known, N, rows, others);
-    before_readings(count, ahead, m, later, own, both, first, others, found, Z);
+    before_either(count, ahead, m, later, own, LP ? both : NULL, first, others, found, work);
     put(count, known, found, N, before);
+}
+
+void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *LP,
+                                    const double *information, const double *rows, double *before)
+{
+    without_certain(N, n, m, L, smoothed, LP, information, rows, before);
+}
+
+void mbkf_curvature_before_readings_alone(int N, int n, int m, const double *L, const double *P,
+                                          const double *information, const double *rows, double *before)
+{
+    without_certain(N, n, m, L, P, NULL, information, rows, before);
 }

@@ -24,7 +24,7 @@ class SparseBackwardPass(BackwardPass):
         if (
             self._kernel is not None and covariances
         ):  # fresh memory costs more than the products that go there
-            self._smoothed, (self._PL, self._spare) = np.empty((size, size)), np.empty((2, size, size))
+            self._smoothed, (self._LP, self._spare) = np.empty((size, size)), np.empty((2, size, size))
 
     def covariance(self, P: Array) -> Array:
         """(N, N) smoothed covariance of a frame with posterior covariance P, not to be changed.
@@ -39,13 +39,15 @@ class SparseBackwardPass(BackwardPass):
         return self._smoothed
 
     def _smooth(self, P: Array, curvature: Array) -> None:
-        """Works out P − P L P and P L; kept, since a frame's answer and its readings both need them."""
-        known = self._of is not None and self._of[0] is P and self._of[1] is curvature
-        if not known and self._kernel is not None:
+        """Works out P − P L P and L P; kept, since a frame's answer and its readings both need them."""
+        if not self._knows(P, curvature) and self._kernel is not None:
             if self._given:
                 self._smoothed, self._given = np.empty(P.shape), False
-            self._kernel.smoothed_covariance(P, curvature, self._smoothed, self._PL)
+            self._kernel.smoothed_covariance(P, curvature, self._smoothed, self._LP)
             self._of = P, curvature
+
+    def _knows(self, P: Array, curvature: Array) -> bool:
+        return self._of is not None and self._of[0] is P and self._of[1] is curvature
 
     def _swap(self) -> None:
         """The curvature worked out in the spare memory becomes the current one."""
@@ -57,8 +59,9 @@ class SparseBackwardPass(BackwardPass):
     ) -> Array:
         """From after a frame's readings to after those of the frame before it; returns :meth:`step` of the frame.
 
-        With S = P − P L P, and Z = L P + Λ S / 2, the curvature before the readings is L + Λ − Z Λ − (Z Λ)ᵀ. A
-        transition other than a :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
+        With S = P − P L P, and Z = L P + Λ S / 2, the curvature before the readings is L + Λ − Z Λ − (Z Λ)ᵀ. Where
+        :meth:`covariance` has not been asked for, only the parts that Λ reads are computed. A transition other than a
+        :class:`mbkf.numerics.transition.RateTransition` is taken as a matrix.
 
         Args:
             P: (N, N) posterior covariance.
@@ -71,9 +74,11 @@ class SparseBackwardPass(BackwardPass):
             return super().through_frame(P, matrix, rows, vector, transition)
         rows = np.ascontiguousarray(rows)
         if self.curvature is not None:
-            self._smooth(P, self.curvature)
-            before_readings = self._kernel.curvature_before_readings
-            before_readings(self.curvature, self._smoothed, self._PL, matrix, rows, self._spare)
+            L, before = self.curvature, self._spare
+            if self._knows(P, L):
+                self._kernel.curvature_before_readings(L, self._smoothed, self._LP, matrix, rows, before)
+            else:
+                self._kernel.curvature_before_readings_alone(L, P, matrix, rows, before)
             self._swap()
         if not isinstance(transition, RateTransition):
             step, kept = self.step(P), self.gradient - vector

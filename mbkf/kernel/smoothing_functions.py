@@ -68,16 +68,16 @@ class SmoothingFunctions(Protocol):
         P: In[Array, "N N symmetric"],
         L: In[Array, "N N symmetric"],
         smoothed: Out[Array, "N N symmetric"],
-        PL: Out[Array, "N N"],
+        LP: Out[Array, "N N"],
         /,
     ) -> None:
-        """Writes P − P L P and P L.
+        """Writes P − P L P and, column by column, L P.
 
         Args:
             P: Posterior covariance.
             L: Curvature of later readings.
             smoothed: Smoothed covariance.
-            PL: Product that :meth:`curvature_before_readings` takes.
+            LP: Product that :meth:`curvature_before_readings` takes.
         """
 
     @requires("n <= N")
@@ -85,7 +85,7 @@ class SmoothingFunctions(Protocol):
         self,
         L: In[Array, "N N symmetric"],
         smoothed: In[Array, "N N symmetric"],
-        PL: In[Array, "N N"],
+        LP: In[Array, "N N"],
         information: In[Array, "n n symmetric"],
         rows: In[Array, "m N"],
         before: Out[Array, "N N symmetric"],
@@ -95,7 +95,29 @@ class SmoothingFunctions(Protocol):
 
         Args:
             L: Curvature after the readings.
-            smoothed, PL: Those of :meth:`smoothed_covariance`.
+            smoothed, LP: Those of :meth:`smoothed_covariance`.
+            information: Part of Λ on the first n components.
+            rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
+            before: Curvature before the readings.
+        """
+
+    @requires("n <= N")
+    def curvature_before_readings_alone(
+        self,
+        L: In[Array, "N N symmetric"],
+        P: In[Array, "N N symmetric"],
+        information: In[Array, "n n symmetric"],
+        rows: In[Array, "m N"],
+        before: Out[Array, "N N symmetric"],
+        /,
+    ) -> None:
+        """Writes the answer of :meth:`curvature_before_readings` where the smoothed covariance is not wanted.
+
+        Only products of L and P with the readings' n + m columns are made.
+
+        Args:
+            L: Curvature after the readings.
+            P: Posterior covariance.
             information: Part of Λ on the first n components.
             rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
             before: Curvature before the readings.

@@ -5,10 +5,7 @@
 /* Copies the part above the diagonal, row by row, to the part below. */
 void mirror(int N, double *X);
 
-/* out = X'; out is not X. */
-void transpose(int N, const double *X, double *out);
-
-/* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column. */
+/* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column; B is not A. */
 void transposed(int rows, int columns, const double *A, int lda, double *B);
 
 /* X + X' in place of X: exactly symmetric. */

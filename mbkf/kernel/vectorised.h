@@ -8,4 +8,12 @@
 #define VECTORISED
 #endif
 
+/* Functions with 512-bit vectors, for processors where product_is_own. */
+#if defined(__GNUC__) && defined(__x86_64__)
+#define HAS_WIDE 1
+#define WIDE __attribute__((target("avx512f,fma")))
+#else
+#define HAS_WIDE 0
+#endif
+
 #endif
