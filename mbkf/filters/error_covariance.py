@@ -142,15 +142,20 @@ class ErrorCovariance:
         first = self.layout.a.start
         return slice(first, first if self.late is None else first + self.late.shape[1])
 
+    @property
+    def apart(self) -> float:
+        """(c² − 1) κ of two feet without a plate; 0 for one foot or none."""
+        return 0.0 if len(self.free) < 2 else (self.sharing**2 - 1.0) * self.new
+
     @cached_property
     def difference(self) -> Array | None:
-        """(6, 6) what is added to both feet's wrenches, and taken from between them; None for one foot or none."""
-        if len(self.free) < 2 or self.sharing == 1.0:
+        """(6, 6) what is added to both feet's wrenches, and taken from between them; None where that is nothing."""
+        if self.apart == 0.0:
             return None
         right, left = self.layout.feet
         between = self.P[right, left]
         half = 0.25 * (self.P[right, right] + self.P[left, left] - between - between.T)
-        return np.asarray((self.sharing**2 - 1.0) * self.new * half)
+        return np.asarray(self.apart * half)
 
     @cached_property
     def _root(self) -> Array:

@@ -82,6 +82,7 @@ def _compiled(
         errors.size,
         errors.skin,
         errors.rate_rad_s,
+        errors.apart,
         errors.added,
         np.asfortranarray(by_state),
         np.asfortranarray(by_position),
@@ -90,9 +91,4 @@ def _compiled(
     if failed:
         return None
     wrench = diagonal[layout.wrench]
-    if errors.difference is not None:
-        wrench += np.tile(np.diagonal(errors.difference), 2)
-        right, left = layout.feet
-        apart = by_state[:, right] - by_state[:, left]
-        torque += np.einsum("ij,ij->i", apart @ errors.difference, apart)
     return StateVariances(diagonal[layout.q], diagonal[layout.v], wrench, torque, height, blocks)

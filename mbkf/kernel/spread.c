@@ -1,7 +1,8 @@
 /* Parts of the covariance of a state's errors (mbkf/filters/error_covariance.py),
  *
- *     E = S P S + C' skin + rows' rows,   S = diag(size), C' built of the inverse of one frame's information,
+ *     E = S P S + C' skin + rows' rows + [D -D; -D D],   S = diag(size),
  *
+ * C' built of the inverse of one frame's information, D on both feet's wrenches for how they share their sum,
  * without E itself: its diagonal, the diagonals of T E T' and U E U', and blocks of three components. The inverse is
  * X X' with an upper triangle X. Rows of T are taken eight at a time: torques of a limb depend on few components, and
  * those on which none of the eight does are left out. P is symmetric, which halves the work. Matrices stand column by
@@ -14,7 +15,9 @@
 #include "lanes.h"
 #include "vectorised.h"
 
-/* Errors of a state (q, v, a, rest) of N components. */
+enum { FOOT = 6 }; /* components of a foot's wrench */
+
+/* Errors of a state (q, v, a, feet's wrenches, rest) of N components. */
 typedef struct {
     int N, nv;
     const double *P, *information; /* (N x N), (nv x nv) */
@@ -22,12 +25,26 @@ typedef struct {
     const int *seen;    /* dofs that markers observe */
     const double *size; /* (N) diagonal of S */
     double skin, rate;  /* variance of the markers' skin, and its rate of movement */
+    double sharing;     /* multiple by which D is made of P; 0 without */
     int n_rows;
     const double *rows; /* (n_rows x N), row by row */
     double *root;       /* (n_seen x n_seen) X */
+    double difference[FOOT][FOOT]; /* D */
 } Errors;
 
 enum { BREADTH = 8, HALF = BREADTH / 2 };
+
+/* D: a multiple of P's covariance of half the difference of both feet's wrenches, which come after accelerations. */
+static void set_difference(Errors *e, double multiple)
+{
+    const int right = 3 * e->nv, left = right + FOOT;
+    for (int i = 0; i < FOOT; i++)
+        for (int j = 0; j < FOOT; j++) {
+            const double *of_right = e->P + (long)(right + j) * e->N, *of_left = e->P + (long)(left + j) * e->N;
+            const double between = of_left[right + i] + of_right[left + i];
+            e->difference[i][j] = 0.25 * multiple * (of_right[right + i] + of_left[left + i] - between);
+        }
+}
 
 /* diagonal (N) of the errors' covariance, and X. Returns 1 if the information has no factor. work: nv^2 numbers. */
 VECTORISED static int error_diagonal(const Errors *e, double *diagonal, double *work)
@@ -56,6 +73,8 @@ VECTORISED static int error_diagonal(const Errors *e, double *diagonal, double *
     for (int k = 0; k < e->n_rows; k++)
         for (int i = 0; i < N; i++)
             diagonal[i] += e->rows[(long)k * N + i] * e->rows[(long)k * N + i];
+    for (int i = 0; i < 2 * FOOT && e->sharing != 0.0; i++)
+        diagonal[3 * nv + i] += e->difference[i % FOOT][i % FOOT];
     return 0;
 }
 
@@ -116,6 +135,21 @@ VECTORISED static void add_row(int count, const int *index, const Lanes *A, cons
         if (row[index[p]] != 0.0)
             add_multiple(&sum, row[index[p]], A + p);
     add_product(variance, 1.0, &sum, &sum);
+}
+
+/* variance += diagonal of (A_r - A_l) D (A_r - A_l)', A_r and A_l the columns of A by both feet's wrenches. */
+static void add_sharing(const Errors *e, int count, const int *index, const Lanes *A, Lanes *variance)
+{
+    Lanes apart[FOOT];
+    memset(apart, 0, sizeof apart);
+    for (int p = count - 1; p >= 0 && index[p] >= 3 * e->nv; p--) {
+        const int component = index[p] - 3 * e->nv;
+        if (component < 2 * FOOT)
+            add_multiple(apart + component % FOOT, component < FOOT ? 1.0 : -1.0, A + p);
+    }
+    for (int i = 0; i < FOOT; i++)
+        for (int j = 0; j < FOOT; j++)
+            add_product(variance, e->difference[i][j], apart + i, apart + j);
 }
 
 /* Working memory for rows of T: their columns that are not zero, these times S, and their oscillation. */
@@ -209,6 +243,8 @@ VECTORISED static void error_of(const Errors *e, int m, int n, const double *T, 
         add_quadratic(padded, columns.index, columns.sized, e->N, e->P, &found);
         for (int k = 0; k < e->n_rows; k++)
             add_row(count, columns.index, columns.own, e->rows + (long)k * e->N, &found);
+        if (e->sharing != 0.0)
+            add_sharing(e, count, columns.index, columns.own, &found);
         if (e->skin > 0.0) {
             const int dofs = oscillation(e, count, &columns);
             add_repeated(dofs, columns.seen, columns.swinging, e->n_seen, e->root, e->skin, &found);
@@ -245,12 +281,14 @@ static void error_blocks(const Errors *e, int n_blocks, const int *first, double
 
 int mbkf_error_variances(int N, int nv, int s, int k, int m, int n, int l, int p, int b, const double *P,
                          const double *information, const int *seen, const double *size, double skin, double rate,
-                         const double *rows, const double *T, const double *U, const int *first, double *diagonal,
-                         double *of_T, double *of_U, double *blocks)
+                         double sharing, const double *rows, const double *T, const double *U, const int *first,
+                         double *diagonal, double *of_T, double *of_U, double *blocks)
 {
     const long square = (long)nv * nv, columns = columns_size(N);
     double *root = workspace(square + (square > columns ? square : columns));
-    const Errors e = {N, nv, P, information, s, seen, size, skin, rate, k, rows, root};
+    Errors e = {N, nv, P, information, s, seen, size, skin, rate, sharing, k, rows, root, {{0.0}}};
+    if (sharing != 0.0)
+        set_difference(&e, sharing);
     if (!root || error_diagonal(&e, diagonal, root + square))
         return 1;
     error_of(&e, m, n, T, of_T, root + square);

@@ -143,7 +143,7 @@ class StateFunctions(Protocol):
             values: Innovations y.
         """
 
-    @requires("3*nv <= N", "nv <= n", "n <= N", "nv <= p", "p <= N", "s <= nv")
+    @requires("3*nv+12 <= N", "nv <= n", "n <= N", "nv <= p", "p <= N", "s <= nv")
     @unlocked
     def error_variances(
         self,
@@ -153,6 +153,7 @@ class StateFunctions(Protocol):
         size: In[Array, "N"],
         skin: float,
         rate: float,
+        sharing: float,
         rows: In[Array, "k N"],
         T: In[Array, "m n fortran"],
         U: In[Array, "l p fortran"],
@@ -175,6 +176,8 @@ class StateFunctions(Protocol):
             seen: Dofs that the markers observe, ascending.
             size: Factors on errors of P's kind.
             skin, rate: Variance of skin and its rate, rad/s.
+            sharing: Multiple of P's covariance of half the difference of both feet's wrenches that is added to each of
+                them, and taken from between them.
             rows: Roots of the part that is added.
             T, U: Quantities of the first n, the first p components.
             first: First of three components of each block.

@@ -189,10 +189,13 @@ def push_apart(stance: Stance, pelvis_m: Array, vertical_n: Array) -> Array:
     centres = stance.centres_at(float(vertical_n[0] / vertical_n.sum()))
     line = (centres[0] - centres[1])[:2]
     right, left = shear_to_pelvis(pelvis_m, centres) * vertical_n[:, None]
-    force = np.zeros(3)
-    force[:2] = line * (0.5 * float((right - left) @ line) / max(float(line @ line), LEAST_APART_M**2))
-    forces = np.array([force, -force])
-    return np.concatenate([forces, np.cross(centres, forces)], axis=1)
+    x, y = (line * (0.5 * float((right - left) @ line) / max(float(line @ line), LEAST_APART_M**2))).tolist()
+    return np.array(
+        [
+            (fx, fy, 0.0, -cz * fy, cz * fx, cx * fy - cy * fx)
+            for (cx, cy, cz), fx, fy in zip(centres.tolist(), (x, -x), (y, -y), strict=True)
+        ]
+    )
 
 
 def expected_stance(soles: Sequence[Sole], surface_m: float) -> Stance:
