@@ -50,7 +50,7 @@ def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
     return tuple(
         AnalogChannel(
             name=(labels[i] if i < len(labels) else "") or f"channel {i + 1}",
-            values=np.array(row, dtype=np.float64),
+            values=row,
             unit=units[i] if i < len(units) else "",
             rate_hz=rate_hz,
             scaling=scalings[i],

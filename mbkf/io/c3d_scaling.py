@@ -16,6 +16,9 @@ from mbkf.io.records import SampleScaling
 _UNSIGNED_OFFSET = -16384
 """An analog offset below this, read with a sign, is the middle of an unsigned range."""
 
+_BLOCK = 512
+"""Samples of all channels that are scaled at once, so that they stay in the processor's cache."""
+
 ANALOG_SCALING = ("OFFSET", "SCALE", "GEN_SCALE")
 """Parameters of ANALOG without which samples have no size."""
 
@@ -42,8 +45,11 @@ def scaled_samples(
     unsigned = likely and (integers or _fit_unsigned(raw, offset))
     if unsigned:
         raw, offset = raw % 65536 if integers else raw, offset % 65536
+    scaled, gain = np.empty(raw.shape), (scale * general)[:, None]
     with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
-        scaled: Array = (raw - offset[:, None]) * (scale * general)[:, None]
+        for begin in range(0, raw.shape[1], _BLOCK):
+            block = slice(begin, begin + _BLOCK)
+            scaled[:, block] = (raw[:, block] - offset[:, None]) * gain
     remarks = [TAKEN_AS_UNSIGNED] if unsigned and not stated else []
     counts = {name: parameters.all_numbers("ANALOG", name).size for name in ANALOG_SCALING}
     missing = [f"ANALOG:{name}" for name, count in counts.items() if not count]

@@ -95,17 +95,18 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
     Raises:
         InvalidInput: A force or moment is NaN, infinite or beyond :data:`LARGEST`; says where first and how many.
     """
-    bad = ~(finite(force_n) & finite(moment_nm))
-    fault = "are not numbers"
+    sides = [(one.min(initial=0.0), one.max(initial=0.0)) for one in (force_n, moment_nm)]
+    if all(-LARGEST <= least and most <= LARGEST for least, most in sides):  # not so with a NaN
+        return
+    bad, fault = ~(finite(force_n) & finite(moment_nm)), "are not numbers"
     if not bad.any():
         bad = np.asarray((np.abs(np.hstack([force_n, moment_nm])) > LARGEST).any(axis=1))
         fault = f"are larger than {LARGEST:g}"
-    if bad.any():
-        first = start_time_s + np.argmax(bad) / rate_hz
-        raise InvalidInput(
-            f"{where}: {bad.sum()} of {len(bad)} samples of force or moment {fault}, the first at "
-            f"{first:.3f} s; repair these samples, or cut the trial before or after them"
-        )
+    first = start_time_s + np.argmax(bad) / rate_hz
+    raise InvalidInput(
+        f"{where}: {bad.sum()} of {len(bad)} samples of force or moment {fault}, the first at "
+        f"{first:.3f} s; repair these samples, or cut the trial before or after them"
+    )
 
 
 def find_tare(wrench: Array, rate_hz: float) -> Tare:
@@ -139,8 +140,11 @@ def find_tare(wrench: Array, rate_hz: float) -> Tare:
 
 def remove_tare(wrench: Array, tare: Tare) -> Array:
     """(S, 6) readings without their offset; samples a software had zeroed stay zero."""
-    zeroed = (wrench == 0.0).all(axis=1)
-    return np.where(zeroed[:, None], 0.0, wrench - tare.offset)
+    zeroed = wrench[:, 2] == 0.0
+    zeroed[zeroed] = (wrench[zeroed] == 0.0).all(axis=1)
+    found = wrench - tare.offset
+    found[zeroed] = 0.0
+    return np.asarray(found)
 
 
 def offset_remarks(plates: Sequence[PlateReadings]) -> list[str]:
