@@ -21,7 +21,7 @@ from mbkf.filters.plant import PlantOf, StateT
 from mbkf.filters.readings import Readings, summed
 from mbkf.kernel.covariance import correction, informed_with_rows
 from mbkf.numerics.running_spread import RunningSpread
-from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, Statement
 
 Update = Callable[[Array, Array, Array], Array]
 """P⁺ (N, N) of a prior P⁻ (N, N), information Λ (n, n) on its first components and whitened rows (k, N)."""
@@ -219,7 +219,21 @@ class Filter(Generic[StateT]):
                     decided[k], statements[k] = decision, block.linearise(points[k], decision)
             readings = summed(self.blocks, statements, self.layout)
             posterior = self._updated(state, readings)
+        return self._step(
+            posterior, prior, Decisions(prior.noise, decided, notes), readings, statements, memory
+        )
 
+    def _step(
+        self,
+        posterior: StateT,
+        prior: Prior[StateT],
+        decisions: Decisions,
+        readings: Readings,
+        statements: Sequence[Statement],
+        memory: Memory,
+    ) -> Step[StateT]:
+        """The step that a frame's decisions and statements led to, from the memory before."""
+        decided, points = decisions.blocks, prior.points
         judged = Cached(lambda: self._spreads.judged(memory.spreads, self._spreads.read(decided, statements)))
 
         def remembered() -> Memory:
@@ -227,16 +241,9 @@ class Filter(Generic[StateT]):
             for k, block in self._remembering:
                 kept[k] = block.remember(posterior, points[k], decided[k], kept[k])
             spreads = judged()[1] if self.follows_spreads else memory.spreads
-            return Memory(self.plant.remember(posterior, notes, memory.plant), kept, spreads)
+            return Memory(self.plant.remember(posterior, decisions.notes, memory.plant), kept, spreads)
 
-        return Step(
-            posterior,
-            prior,
-            Decisions(prior.noise, decided, notes),
-            readings,
-            Cached(remembered),
-            Cached(lambda: judged()[0]),
-        )
+        return Step(posterior, prior, decisions, readings, Cached(remembered), Cached(lambda: judged()[0]))
 
     def _decided(
         self, prior: Prior[StateT], memory: Memory, frame: Frame

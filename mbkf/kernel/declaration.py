@@ -31,6 +31,7 @@ FILES = (
     "force_functions.py",
     "smoothing_functions.py",
     "state_functions.py",
+    "tracking_functions.py",
 )
 """The declarations, in the kernel's folder, in the order in which they use one another."""
 

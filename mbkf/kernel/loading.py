@@ -15,6 +15,7 @@ from mbkf.kernel.declaration import fingerprint
 from mbkf.kernel.force_functions import ForceFunctions
 from mbkf.kernel.smoothing_functions import SmoothingFunctions
 from mbkf.kernel.state_functions import StateFunctions
+from mbkf.kernel.tracking_functions import TrackingFunctions
 
 SWITCH = "MBKF_KERNEL"
 """Environment variable: ``compiled`` asks for the kernel, ``reference`` for numpy and Pinocchio."""
@@ -22,7 +23,15 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(BodyFunctions, ContactFunctions, ForceFunctions, SmoothingFunctions, StateFunctions, Protocol):
+class Library(
+    BodyFunctions,
+    ContactFunctions,
+    ForceFunctions,
+    SmoothingFunctions,
+    StateFunctions,
+    TrackingFunctions,
+    Protocol,
+):
     """The functions of the compiled kernel."""
 
 

@@ -28,7 +28,12 @@ class Innovations(NamedTuple):
 
 
 class CompiledMarkers:
-    """Markers fixed to the segments of a compiled body."""
+    """Markers fixed to the segments of a compiled body.
+
+    Attributes:
+        joint_ids: (M,) joints that carry them.
+        local_m: (M, 3) places in the joints' frames.
+    """
 
     def __init__(self, tree: CompiledTree, joint_ids: Array, local_m: Array) -> None:
         """Keeps the markers' places.
@@ -39,8 +44,8 @@ class CompiledMarkers:
             local_m: (M, 3) places in the joints' frames.
         """
         self._kernel, self._tree = tree.kernel, tree.handle
-        self._joint_ids = np.ascontiguousarray(joint_ids, dtype=np.int32)
-        self._local = np.ascontiguousarray(local_m, dtype=float)
+        self.joint_ids = np.ascontiguousarray(joint_ids, dtype=np.int32)
+        self.local_m = np.ascontiguousarray(local_m, dtype=float)
 
     def places(self, q: Array, local_m: Array | None = None) -> tuple[Array, Array]:
         """(M, 3) places in the world at q (nq,), and (6, nv) the body's spatial Jacobian there.
@@ -49,8 +54,8 @@ class CompiledMarkers:
             q: (nq,) configuration.
             local_m: (M, 3) places in the joints' frames, contiguous; None for those that are kept.
         """
-        local = self._local if local_m is None else local_m
-        return self._kernel.marker_places(self._tree, self._joint_ids, local, np.ascontiguousarray(q))
+        local = self.local_m if local_m is None else local_m
+        return self._kernel.marker_places(self._tree, self.joint_ids, local, np.ascontiguousarray(q))
 
     def information(
         self,
@@ -70,7 +75,7 @@ class CompiledMarkers:
             innovation_m: (M, 3) y; those of other markers are not read.
         """
         squared, matrix, vector = self._kernel.marker_information(
-            self._tree, self._joint_ids, weights, trusted, jacobian, places_m, innovation_m
+            self._tree, self.joint_ids, weights, trusted, jacobian, places_m, innovation_m
         )
         return matrix, vector, squared
 

@@ -72,6 +72,7 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
     Attributes:
         sensor: Deviation of every joint from neutral.
         settings: Its weight.
+        weights: (nv,) 1/sd of each dof's deviation, 1/rad.
     """
 
     prior = True
@@ -85,15 +86,15 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
     ) -> None:
         """Args: the attributes; unobservable: (nv,) dofs without a prior; dilution: (nv,) factor on their spreads."""
         self.sensor, self.settings = sensor, settings
-        self._weights = sensor.weights(settings.posture_scale, unobservable)
+        self.weights = sensor.weights(settings.posture_scale, unobservable)
         if dilution is not None:
-            self._weights = self._weights / dilution
+            self.weights = self.weights / dilution
 
     def prepare(self, state: State, memory: None) -> PreparedPosture:
         """The prior's information while every segment is observed."""
         deviation, jacobian = self.sensor.deviation(state.q)
         return PreparedPosture(
-            deviation, jacobian, prior_information(self.sensor, deviation, jacobian, self._weights)
+            deviation, jacobian, prior_information(self.sensor, deviation, jacobian, self.weights)
         )
 
     def linearise(self, at: OperatingPoint[State, PreparedPosture], decision: Notes) -> Information:
@@ -101,6 +102,6 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
         unobserved, prepared = decision.unobserved, at.prepared
         if not len(unobserved) or self.settings.unseen_posture == 1.0:
             return prepared.information
-        weights = self._weights.copy()
+        weights = self.weights.copy()
         weights[unobserved] *= self.settings.unseen_posture
         return prior_information(self.sensor, prepared.deviation, prepared.jacobian, weights)

@@ -7,18 +7,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.filter import Filter, Step
+from mbkf.filters.filter import Decisions, Filter, Memory, Prior, Step
+from mbkf.filters.kinematic.one_call import OneCall
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.sensors.block import AnyBlock
+from mbkf.filters.readings import Readings
+from mbkf.sensors.block import NO_DOFS, AnyBlock, Frame, Notes, OperatingPoint
 from mbkf.sensors.holes import beside_holes, posture_scales
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.markers import Markers, MarkerSettings
+from mbkf.sensors.markers import MarkerDecision, Markers, MarkerSettings
 from mbkf.sensors.pose_fit import PoseFit, fit_most_markers, segment_by_segment
 from mbkf.sensors.posture import PosturePrior, PostureSettings
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.unobserved import UnobservedJoints
+
+_COMMON, _NO_VALUES = 3, np.zeros(0)
+"""Number of blocks of a body without holes among its segments' markers; values of rows where there are not any."""
 
 START_SPEED_SD_M_S = 2.0
 START_SPEED_SD_RAD_S = 5.0
@@ -103,6 +108,36 @@ class KinematicFilter(Filter[KinematicState]):
         self.sensor, self.settings, self.unobservable = sensor, settings, unobservable
         self.noise_m, self.model = settings.noise(noise_m) * settings.marker_noise_scale, model
         self.posture = PostureSensor(model)
+        self._no_rows, self._one_call = np.zeros((0, self.layout.size)), None
+        markers, posture = self.blocks[0], self.blocks[-1]
+        common = len(self.blocks) == _COMMON
+        if common and isinstance(markers, Markers) and isinstance(posture, PosturePrior):
+            self._one_call = OneCall.where_possible(self.plant, markers, posture)
+
+    def step(
+        self,
+        state: KinematicState,
+        memory: Memory,
+        frame: Frame,
+        prior: Prior[KinematicState] | None = None,
+    ) -> Step[KinematicState]:
+        """As :meth:`Filter.step`, by one call of the kernel where nothing is to be decided."""
+        if prior is not None or self._one_call is None:
+            return super().step(state, memory, frame, prior)
+        noise, found = self.plant.noise(None), self._one_call(state, frame.markers_m)
+        if isinstance(found, KinematicState):
+            return self.correct(self.prepared(found, noise, memory), memory, frame)
+        notes = Notes(seen=found.seen, trusted=found.seen, observed=True, squared_m2=found.squared_m2)
+        markers = MarkerDecision(
+            frame.markers_m, found.innovation_m, found.squared_m2, found.seen, 1.0, NO_DOFS, None
+        )
+        readings = Readings(
+            found.markers, found.matrix, found.vector, self._no_rows, _NO_VALUES, ((),) * _COMMON
+        )
+        statements = found.markers, None, None
+        decisions = Decisions(noise, [markers, notes, notes], notes)
+        prior = Prior(found.prior, noise, (OperatingPoint(found.prior, None),) * _COMMON)
+        return self._step(found.posterior, prior, decisions, readings, statements, memory)
 
     def start(self, measured_m: Array, guess: Array | None = None) -> KinematicState | None:
         """A state at rest from one frame of markers (M, 3), or None where they do not fit the body.

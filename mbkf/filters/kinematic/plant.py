@@ -66,6 +66,8 @@ class WhiteAccelerationPlant(Plant[KinematicState, Array, None]):
         dt_s: Time step Δt.
         acceleration_sd: (nv,) σ_a of each dof; 0 holds a dof where it is.
         position_noise, cross_noise, velocity_noise: (nv,) diagonals of the three blocks of the noise covariance.
+        diagonals: (2, 2, nv) the same.
+        joint_ranges: (J, 2) first dof and end of each joint.
     """
 
     def __init__(self, model: Body, dt_s: float, acceleration_sd: Array) -> None:
@@ -75,11 +77,11 @@ class WhiteAccelerationPlant(Plant[KinematicState, Array, None]):
         self.position_noise = variance * dt_s**4 / 4.0
         self.cross_noise = variance * dt_s**3 / 2.0
         self.velocity_noise = variance * dt_s**2
-        self._diagonals = np.array(
+        self.diagonals = np.array(
             [[self.position_noise, self.cross_noise], [self.cross_noise, self.velocity_noise]]
         )
-        self._noise = np.block([[np.diag(own) for own in row] for row in self._diagonals])
-        self._joints = joint_ranges(joint.v for joint in model.joints.values())
+        self._noise = np.block([[np.diag(own) for own in row] for row in self.diagonals])
+        self.joint_ranges = joint_ranges(joint.v for joint in model.joints.values())
         self._push, self._rates = np.array([dt_s]), np.ones((1, 1))
         self._kernel = library()
 
@@ -101,7 +103,7 @@ class WhiteAccelerationPlant(Plant[KinematicState, Array, None]):
 
     def _parts(self, state: KinematicState) -> RateTransition:
         A, B = self.model.integration_derivatives(state.q, state.v * self.dt_s)
-        return RateTransition(A, B, self._joints, self._push, self._rates)
+        return RateTransition(A, B, self.joint_ranges, self._push, self._rates)
 
     def predict(self, state: KinematicState, noise: Array | None = None) -> KinematicState:
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric and in Fortran order."""
@@ -109,5 +111,5 @@ class WhiteAccelerationPlant(Plant[KinematicState, Array, None]):
             return super().predict(state, self._noise)
         step = state.v * self.dt_s
         A, B = map(np.ascontiguousarray, self.model.integration_derivatives(state.q, step))
-        P = self._kernel.propagate_velocities(state.P, A, B, self._joints, self.dt_s, self._diagonals)
+        P = self._kernel.propagate_velocities(state.P, A, B, self.joint_ranges, self.dt_s, self.diagonals)
         return KinematicState(self.model.integrate(state.q, step), state.v, P.T)
