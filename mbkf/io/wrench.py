@@ -96,7 +96,7 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
         InvalidInput: A force or moment is NaN, infinite or beyond :data:`LARGEST`; says where first and how many.
     """
     sides = [(one.min(initial=0.0), one.max(initial=0.0)) for one in (force_n, moment_nm)]
-    if all(-LARGEST <= least and most <= LARGEST for least, most in sides):  # not so with a NaN
+    if all(least >= -LARGEST and most <= LARGEST for least, most in sides):  # not so with a NaN
         return
     bad, fault = ~(finite(force_n) & finite(moment_nm)), "are not numbers"
     if not bad.any():

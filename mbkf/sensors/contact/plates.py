@@ -123,10 +123,17 @@ class PlateAreas:
         return np.concatenate([np.array(self._boxes).reshape(-1, 4), edges], axis=1)
 
     def contain(self, points_m: Array) -> BoolArray:
-        """(n, K) True for points (n, 2) over a plate; never for a plate whose corners are not known."""
-        away = points_m[:, None, None] - self._from
-        left = self._along[:, :, 0] * away[..., 1] - self._along[:, :, 1] * away[..., 0] >= 0.0
-        return np.asarray((left.all(axis=-1) | ~left.any(axis=-1)) & self.known)
+        """(n, K) True for points (n, 2) over a plate; never for an unknown point, or a plate without known corners."""
+        (x, y), (x_least, y_least, x_most, y_most) = (
+            points_m.T[:, :, None],
+            np.array(self._boxes).reshape(-1, 4).T,
+        )
+        found = (x >= x_least) & (x <= x_most) & (y >= y_least) & (y <= y_most) & self.known
+        near, plate = np.nonzero(found)
+        away, along = points_m[near, None] - self._from[plate], self._along[plate]
+        left = along[:, :, 0] * away[:, :, 1] - along[:, :, 1] * away[:, :, 0] >= 0.0
+        found[near, plate] = left.all(axis=1) | ~left.any(axis=1)
+        return found
 
     def over(self, plate: int, x: float, y: float) -> bool:
         """True for a point over a plate, as :meth:`contain`; quicker for a single one.

@@ -53,7 +53,7 @@ def test_points_are_over_the_plates_whose_outline_holds_them():
     other_way = replace(PLATE, corners_m=corners[::-1])
     areas = PlateAreas([PLATE, other_way, replace(PLATE, corners_m=None)])
     assert areas.known.tolist() == [True, True, False]
-    points = np.array([middle, beside, *(0.5 * (corners[:, :2] + middle))])
+    points = np.array([middle, beside, [np.nan] * 2, *(0.5 * (corners[:, :2] + middle))])
     over = areas.contain(points)
-    assert over.tolist() == [[True, True, False], [False] * 3, *([[True, True, False]] * 4)]
+    assert over.tolist() == [[True, True, False], *([[False] * 3] * 2), *([[True, True, False]] * 4)]
     assert [[areas.over(k, x, y) for k in range(3)] for x, y in points.tolist()] == over.tolist()
