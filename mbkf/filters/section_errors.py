@@ -113,8 +113,9 @@ class SectionErrors:
         Returns:
             (6, n) changes of the wrench, and (n, 3, 6) of the moment by a wrench, each by level.
         """
-        there = [one.upper_wrenches(q, v, a) for one in self._varied]
         levels = range(len(self._sections.levels))
-        upper = [np.array([one[k] for one in there]).reshape(-1, ROOT).T for k in levels]
-        changes = [upper[k] - state.wrench[0, k][:, None] for k in levels]
+        here = q[None], v[None], a[None]
+        there = [one.upper_wrenches(*here) for one in self._varied]
+        upper = np.concatenate([np.zeros((0, len(levels), ROOT)), *there])
+        changes = [(upper[:, k] - state.wrench[0, k]).T for k in levels]
         return changes, [state.by_root[k][:, 3:] @ self._moved[k] for k in levels]

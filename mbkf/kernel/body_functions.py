@@ -200,6 +200,24 @@ class BodyFunctions(Protocol):
             parts: Mass, centre of mass and inertia about it, row by row, of the root segment's part above.
         """
 
+    def upper_forces(
+        self,
+        tree: Tree,
+        q: In[Array, "T nq"],
+        v: In[Array, "T nv"],
+        a: In[Array, "T nv"],
+        above: In[Int32Array, "L in 1:joints"],
+        parts: In[Array, "L 13"],
+        /,
+    ) -> Made[Array, "upper: T L 6"]:
+        """Wrenches on the parts above sections in T frames without loads, as generalised forces of the root.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            above, parts: As of :meth:`load_derivatives`.
+        """
+
     @requires("above >= 1", "above < joints", "N >= 3*nv")
     def section_state(
         self,

@@ -151,12 +151,17 @@ void tree_force_derivatives(Tree *tree, const double *q, const double *v, const 
     }
 }
 
+void tree_part(const Tree *tree, const Joint *part, Composite *one)
+{
+    *one = tree->composite[1]; /* it moves as the root does */
+    segment_inertia(part, tree->frames + 12, &one->inertia);
+    set_force(one);
+}
+
 void tree_upper(const Tree *tree, const Joint *part, int above, Composite *upper, Derivative *by)
 {
-    *upper = tree->composite[1]; /* which moves as the root does */
-    segment_inertia(part, tree->frames + 12, &upper->inertia);
+    tree_part(tree, part, upper);
     set_gyration(&upper->inertia, upper->velocity, upper->gyration);
-    set_force(upper);
     accumulate(upper, &tree->composite[above]);
     for (int k = 0; k < 6; k++)
         differentiate(upper, &tree->composite[0], tree->axes[k], by + k);

@@ -18,6 +18,9 @@ void tree_force_derivatives(Tree *tree, const double *q, const double *v, const 
 void tree_torques(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
                   const double *wrenches, long m, double *tau, double *by_state);
 
+/* Force of a part that moves with the root, after tree_forces; and the part's motion and inertia. */
+void tree_part(const Tree *tree, const Joint *part, Composite *one);
+
 /* Sum of the segments that a joint carries and of a part that moves with the root, and its derivatives by the root's six
  * dofs, after tree_force_derivatives. */
 void tree_upper(const Tree *tree, const Joint *part, int above, Composite *upper, Derivative *by);

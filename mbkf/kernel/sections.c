@@ -114,6 +114,31 @@ static void differentiate_above(const Tree *tree, const Joint *part, int above, 
     }
 }
 
+/* A part of the root's segment from its row: mass, centre of mass, inertia about it. */
+static Joint part_of(const double *row)
+{
+    Joint part = {.mass = row[0]};
+    memcpy(part.lever, row + 1, sizeof part.lever);
+    memcpy(part.inertia, row + 4, sizeof part.inertia);
+    return part;
+}
+
+void mbkf_upper_forces(int frames, int L, Tree *tree, const double *q, const double *v, const double *a,
+                       const int *above, const double *parts, double *upper)
+{
+    for (int t = 0; t < frames; t++, q += tree->nq, v += tree->nv, a += tree->nv) {
+        tree_forces(tree, q, v, a);
+        for (int k = 0; k < L; k++, upper += ROOT) {
+            const Joint part = part_of(parts + 13 * k);
+            Composite one;
+            tree_part(tree, &part, &one);
+            plus(ROOT, 1.0, tree->composite[above[k]].force, one.force);
+            for (int i = 0; i < ROOT; i++)
+                upper[i] = dot6(tree->axes[i], one.force);
+        }
+    }
+}
+
 void mbkf_load_derivatives(int L, Tree *tree, const double *q, const double *v, const double *a, const char *moves,
                            const double *wrenches, const int *above, const double *transports, const double *parts,
                            double *tau, double *by_state)
@@ -125,12 +150,9 @@ void mbkf_load_derivatives(int L, Tree *tree, const double *q, const double *v, 
     memset(by_state, 0, sizeof *by_state * m * N);
     tree_torques(tree, q, v, a, moves, wrenches, m, tau, torques);
     for (int k = 0; k < L; k++) {
-        const double *one = parts + 13 * k;
+        const Joint part = part_of(parts + 13 * k);
         double moment[WAYS][3], *own = by_root + 3 * ROOT * k, *down = by_state + 3 * k, *up = down + 3L * L;
         const Joint *joint = &tree->joint[above[k]];
-        Joint part = {.mass = one[0]};
-        memcpy(part.lever, one + 1, sizeof part.lever);
-        memcpy(part.inertia, one + 4, sizeof part.inertia);
         set_by_root(tree, transports + 3 * ROOT * k, above[k], own);
         differentiate_above(tree, &part, above[k], own, m, moment[0], down);
         for (int i = 0; i < 3; i++) {

@@ -132,6 +132,11 @@ class CompiledTree:
         motion = _read(q), _read(v), _read(a)
         return self.kernel.load_derivatives(self.handle, *motion, moves, _read(wrenches), *sections)
 
+    def upper_forces(self, q: Array, v: Array, a: Array, sections: SectionTable) -> Array:
+        """(T, L, 6) wrenches on the parts above sections. Args: as :meth:`BodyFunctions.upper_forces`."""
+        motion = _read(q), _read(v), _read(a)
+        return self.kernel.upper_forces(self.handle, *motion, sections.above, sections.parts)
+
     def section(
         self, motion: tuple[Array, Array, Array], carried: Array, transport: Array, above: int, whole: Loads
     ) -> tuple[Array, Array, Array, Array]:

@@ -31,8 +31,6 @@ from mbkf.numerics.rotations import skew
 WAYS = ("top_down", "bottom_up")
 """Ways to the moment, in the order of every array's axis."""
 
-_NO_LOADS = np.zeros(2 * ROOT)
-
 
 @dataclass(frozen=True)
 class SectionState:
@@ -131,15 +129,19 @@ class TrunkSections:
         inertia = np.diag(k_m * size**2 * level.part_inertia_kg_m2)
         return pin.Inertia(k_m * level.part_mass_kg, model.axis_scale(segment) * level.part_com_m, inertia)
 
-    def upper_wrenches(self, q: Array, v: Array, a: Array) -> list[Array]:
-        """(6,) wrench on the part above each level without loads on it, generalised forces of the root.
+    def upper_wrenches(self, q: Array, v: Array, a: Array) -> Array:
+        """(T, L, 6) wrench on the part above each level without loads on it, generalised forces of the root.
 
         Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity.
-            a: (nv,) acceleration.
+            q: (T, nq) configurations.
+            v: (T, nv) velocities.
+            a: (T, nv) accelerations.
         """
-        return [upper.tau(q, v, a, _NO_LOADS)[:ROOT].copy() for upper in self._upper]
+        tree = self._model.tree
+        if tree is not None:
+            return tree.upper_forces(q, v, a, self.table)
+        unloaded = np.zeros((len(q), 2 * ROOT))
+        return np.stack([part.motion_tau(q, v, a, unloaded)[:, :ROOT] for part in self._upper], axis=1)
 
     def moments(self, q: Array, v: Array, a: Array, carried: Array, residual: Array) -> Array:
         """(…, 2, L, 3) moments about the levels by way, axes of the segment above, N m.
@@ -153,8 +155,7 @@ class TrunkSections:
         """
         if q.ndim == 1:
             return np.asarray(self.moments(q[None], v[None], a[None], carried[None], residual[None])[0])
-        unloaded = np.zeros((len(q), 2 * ROOT))
-        upper = np.stack([part.motion_tau(q, v, a, unloaded)[:, :ROOT] for part in self._upper], axis=1)
+        upper = self.upper_wrenches(q, v, a)
         for loaded in np.flatnonzero(carried.any(axis=(1, 2))):
             upper[loaded] -= carried[loaded] @ self._model.spatial_jacobian(q[loaded])[:, :ROOT]
         wrenches = np.stack([upper, upper - residual[:, None]], axis=1)

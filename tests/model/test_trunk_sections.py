@@ -230,3 +230,14 @@ def test_moments_and_forces_that_the_kernel_differentiates_together_are_those_on
     moments = sections.state(s.q, s.v, s.a, NOTHING, whole.tau[:6], whole.by_state[:6]).by_state
     assert_near(found[:18], moments.reshape(18, -1), 1e-12 * worst(moments))
     np.testing.assert_array_equal(found[18:], whole.by_state)
+
+
+@seeds
+def test_wrenches_above_levels_in_a_motion_are_those_of_the_parts_frame_by_frame(seed, monkeypatch):
+    model, sections, s = made(seed)
+    motion = [np.array([one, 0.5 * one]) for one in (s.q, s.v, s.a)]
+    motion[0][1] = model.neutral()
+    found = sections.upper_wrenches(*motion)
+    monkeypatch.setattr(HumanModel, "tree", None)
+    expected = TrunkSections(model).upper_wrenches(*motion)
+    assert_near(found, expected, 1e-12 * worst(expected))
