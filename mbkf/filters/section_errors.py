@@ -76,6 +76,10 @@ class SectionErrors:
         Y = self._inertia.regressor(q, v, a)[:ROOT]
         sized, moved = self._sizes(q, v, a, state)
         found = np.zeros((len(WAYS), len(levels), 3, residual_errors.shape[1] + 4))
+        by_motion = state.by_state[..., : len(errors)].reshape(-1, len(errors)) @ errors
+        by_motion = by_motion.reshape(*found.shape[:3], r)
+        # The motion's part of the residual is among the moment's derivatives.
+        of_residual = self._without_motion(residual_errors, errors, residual[1])
         for k, level in enumerate(levels):
             share, part = self._columns[k]
             upper = np.hstack([sized[k] @ self._along, (Y * share) @ self._inertia.root])
@@ -83,12 +87,8 @@ class SectionErrors:
             R = state.by_root[k][:, 3:]
             for way in range(len(WAYS)):
                 rows = found[way, k]
-                rows[:, :-4] = state.by_root[k] @ upper
-                if way:  # the motion's part of the residual is among the moment's derivatives
-                    rows[:, :-4] -= state.by_root[k] @ self._without_motion(
-                        residual_errors, errors, residual[1]
-                    )
-                rows[:, :r] += state.by_state[way, k][:, : len(errors)] @ errors
+                rows[:, :-4] = state.by_root[k] @ (upper - of_residual if way else upper)
+                rows[:, :r] += by_motion[way, k]
                 rows[:, :r] += (moved[k] @ state.wrench[way, k]).T @ self._along
                 rows[:, -4:-1] = R @ skew(state.wrench[way, k, :3]) * level.sd_m
                 rows[:, -1] = by_part
