@@ -42,13 +42,6 @@ class Readings(NamedTuple):
         total[:n, :n] += self.matrix
         return total
 
-    def apply(self, vector: Array) -> Array:
-        """(N,) Hᵀ R⁻¹ H times a vector (N,)."""
-        total = (self.rows @ vector) @ self.rows
-        n = len(self.vector)
-        total[:n] += self.matrix @ vector[:n]
-        return total
-
     @property
     def whole_vector(self) -> Array:
         """(N,) Hᵀ R⁻¹ y of all readings."""

@@ -10,14 +10,8 @@
 #include "joints.h"
 #include "product.h"
 #include "symmetric.h"
+#include "transition.h"
 #include "vectorised.h"
-
-/* Phi of mbkf/numerics/rate_transition.py: A, B (nv x nv), joints (J x 2), push (orders), rates (orders x orders). */
-typedef struct {
-    int nv, orders, J;
-    const double *A, *B, *push, *rates;
-    const int *joints;
-} Transition;
 
 /* x += a l, or x = a l. */
 static inline void plus_row(int N, int is_first, double a, const double *l, double *x)

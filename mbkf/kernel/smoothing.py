@@ -1,6 +1,8 @@
-"""Backward pass of a smoother by the compiled kernel (``smoothing.c``), which leaves out zeros of Φ and Λ."""
+"""Passes of a smoother by the compiled kernel (``smoothing.c``, ``linear_step.c``), without the zeros of Φ and Λ."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,6 +10,50 @@ from mbkf.conventions import Array
 from mbkf.kernel.loading import library
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.numerics.transition import RateTransition, Transition
+
+
+class LinearReadings(NamedTuple):
+    """A frame's readings of an error, Λ d = λ in the mean.
+
+    Attributes:
+        matrix: (n, n) Λ on the first n components.
+        vector: (n,) its λ.
+        rows: (m, N) whitened Jacobian H of the other readings, which add HᵀH to Λ.
+        values: (m,) their innovations y, which add Hᵀy to λ.
+        added: (N,) added to λ; None for nothing.
+    """
+
+    matrix: Array
+    vector: Array
+    rows: Array
+    values: Array
+    added: Array | None
+
+
+def linear_step(
+    P: Array, before: Array, offset: Array, readings: LinearReadings, transition: Transition
+) -> tuple[Array, Array]:
+    """(N,) g = λ − Λ d and (N,) d + P g with d = Φ δ + o: a filter's step in corrections of a trajectory.
+
+    Args:
+        P: (N, N) posterior covariance.
+        before: (N,) δ of the frame before.
+        offset: (N,) o from the trajectory to its prediction of the frame.
+        readings: Innovations and information at the trajectory.
+        transition: Φ of the step into the frame.
+    """
+    kernel, (matrix, vector, rows, values, added) = library(), readings
+    if kernel is not None and isinstance(transition, RateTransition):
+        known = matrix, vector, rows, values, np.zeros(len(P)) if added is None else added
+        A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
+        phi = A, B, transition.joints, transition.push, transition.rates
+        return kernel.linear_step(P, before, offset, *known, *phi)
+    moved, n = transition.forward(before) + offset, len(vector)
+    gradient = (values - rows @ moved) @ rows
+    gradient[:n] += vector - matrix @ moved[:n]
+    if added is not None:
+        gradient += added
+    return gradient, moved + P @ gradient
 
 
 class SparseBackwardPass(BackwardPass):

@@ -63,6 +63,38 @@ class SmoothingFunctions(Protocol):
             A, B, joints, push, rates: Φ, as :meth:`curvature_before_motion` takes it.
         """
 
+    @requires("nv + orders*nv <= N", "n <= N")
+    def linear_step(
+        self,
+        P: In[Array, "N N symmetric"],
+        before: In[Array, "N"],
+        offset: In[Array, "N"],
+        information: In[Array, "n n symmetric"],
+        vector: In[Array, "n"],
+        rows: In[Array, "m N"],
+        values: In[Array, "m"],
+        added: In[Array, "N"],
+        A: In[Array, "nv nv"],
+        B: In[Array, "nv nv"],
+        joints: In[Int32Array, "J 2 in 0:nv+1"],
+        push: In[Array, "orders"],
+        rates: In[Array, "orders orders"],
+        /,
+    ) -> tuple[Made[Array, "gradient: N"], Made[Array, "after: N"]]:
+        """Gives g = λ − Λ d and d + P g with d = Φ δ + o (``linear_step.c``).
+
+        Args:
+            P: Posterior covariance.
+            before: δ, correction of the trajectory in the frame before.
+            offset: o, from the trajectory to its prediction of the frame.
+            information: Part of Λ on the first n components.
+            vector: Its λ.
+            rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
+            values: Their innovations y, which add Hᵀy to λ.
+            added: Added to λ.
+            A, B, joints, push, rates: Φ, as :meth:`curvature_before_motion` takes it.
+        """
+
     def smoothed_covariance(
         self,
         P: In[Array, "N N symmetric"],

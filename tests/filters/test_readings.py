@@ -35,11 +35,6 @@ def test_the_whole_is_what_all_rows_say():
     np.testing.assert_allclose(READINGS.whole_vector, values @ rows, atol=1e-12)
 
 
-def test_applying_is_multiplying():
-    x = RNG.normal(size=N)
-    np.testing.assert_allclose(READINGS.apply(x), READINGS.whole_matrix @ x, atol=1e-12)
-
-
 def test_the_first_rows_of_each_part_are_the_readings_that_count():
     rows, values = READINGS.counted
     np.testing.assert_array_equal(rows, ROWS[[0, 1, 2]])

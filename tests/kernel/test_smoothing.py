@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.kernel.smoothing import SparseBackwardPass
+from mbkf.kernel.smoothing import LinearReadings, SparseBackwardPass, linear_step
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.numerics.transition import DenseTransition, RateTransition
 from tests.kernel.test_covariance import banded_rows, covariance, information
@@ -135,3 +135,20 @@ def test_a_covariance_is_that_of_the_frame_asked_for(either_kernel):
         np.testing.assert_allclose(back.covariance(P), BackwardPass.covariance(back, P), atol=1e-9 * worst(P))
     with pytest.raises(ValueError, match="no covariances"):
         SparseBackwardPass(15, covariances=False).covariance(one[0])
+
+
+@pytest.mark.parametrize("is_dense", [False, True])
+@pytest.mark.parametrize(("n", "readings", "adds"), [(9, 7, False), (20, 4, True), (39, 0, True)])
+def test_a_linear_step_is_that_of_whole_matrices(either_kernel, is_dense, n, readings, adds):
+    rng = np.random.default_rng(12)
+    N, phi = 39, transition(rng, 9, 2)
+    P, matrix, rows = covariance(rng, N), information(rng, n, n + 4), banded_rows(rng, readings, N)
+    before, offset, added = rng.normal(size=(3, N))
+    vector, values = rng.normal(size=n), rng.normal(size=readings)
+    moved, gradient = phi.matrix(N) @ before + offset, values @ rows
+    gradient[:n] += vector
+    gradient += (added if adds else 0.0) - whole(matrix, rows) @ moved
+    known = LinearReadings(matrix, vector, rows, values, added if adds else None)
+    found = linear_step(P, before, offset, known, DenseTransition(phi.matrix(N)) if is_dense else phi)
+    np.testing.assert_allclose(found[0], gradient, rtol=0.0, atol=1e-12 * worst(gradient))
+    np.testing.assert_allclose(found[1], moved + P @ gradient, rtol=0.0, atol=1e-12 * worst(P @ gradient))

@@ -19,7 +19,7 @@ from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.filter import Decisions, Readings, Step
 from mbkf.kernel.covariance import informed_with_rows
-from mbkf.kernel.smoothing import SparseBackwardPass
+from mbkf.kernel.smoothing import LinearReadings, SparseBackwardPass, linear_step
 from mbkf.numerics.transition import Transition
 
 FURTHEST_RAD = 0.5
@@ -160,11 +160,12 @@ def _forward(
         prior = plant.predict(before, decisions.noise)
         transition = plant.step_transition(before, prior)
         kalman.inflate(prior.P, decisions.blocks)
-        delta = transition.forward(delta) + plant.difference(mean, prior)
         readings = kalman.linearise(mean, decisions)
         P = informed_with_rows(prior.P, readings.matrix, readings.rows, room)
-        vector = readings.whole_vector - readings.apply(delta)
-        delta += P @ vector
+        known = LinearReadings(
+            readings.matrix, readings.vector, readings.rows, readings.values, readings.added
+        )
+        vector, delta = linear_step(P, delta, plant.difference(mean, prior), known, transition)
         passed.append(_Frame(P, delta, readings, vector, transition))
     return passed
 
