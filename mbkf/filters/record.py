@@ -275,7 +275,8 @@ class FrameRecorder:
             if body is not None:
                 motion = body.position_variance, body.velocity_variance, body.wrench_variance.ravel()
                 parts[0] = np.concatenate(motion)
-                parts[1] = level if body.level_variance is None else level + body.level_variance.ravel()
+                if levels and body.level_variance is not None:
+                    parts[1] = level + body.level_variance.ravel()
                 parts[2] = parts[2] + body.torque_variance
             variance = np.concatenate(parts)
             self._held = _Held(body, levels, variance, np.sqrt(variance).view(np.uint8))
