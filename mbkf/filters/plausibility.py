@@ -16,6 +16,7 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.estimate import Posterior
 from mbkf.kernel.loading import library
 from mbkf.model.body import Body
+from mbkf.model.motion_frames import motion_frames
 from mbkf.sensors.contact.possible import MOST_WEIGHTS
 from mbkf.sensors.gating import TRACK_LOSS_M
 
@@ -57,8 +58,9 @@ def moved_away(filtered: Sequence[Posterior], smoothed: Sequence[Posterior], mod
     ]
     if not pairs:
         return False
-    places = np.array([[model.placements(one.q)[1] for one in pair] for pair in pairs])
-    moved = np.linalg.norm(places[:, 0] - places[:, 1], axis=-1) > TRACK_LOSS_M
+    q = np.array([[one.q for one in pair] for pair in pairs]).swapaxes(0, 1)
+    before_m, after_m = (motion_frames(model, of_all)[0][:, :, 3] for of_all in q)
+    moved = np.linalg.norm(after_m - before_m, axis=-1) > TRACK_LOSS_M
     return bool((2 * np.count_nonzero(moved, axis=1) > moved.shape[1]).any())
 
 

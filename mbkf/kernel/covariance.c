@@ -129,9 +129,9 @@ static void propagate(int N, int nv, int J, const double *P, const double *A, co
     add_noise(3, nv, N, noise, sd, after);
 }
 
-void mbkf_predict(int N, int J, Tree *tree, const double *P, const double *q, const double *v, const double *a,
-                  const int *joints, const Singer *singer, const double *noise, const double *sd, double *P_after,
-                  double *q_after, double *v_after, double *a_after)
+void mbkf_predict(int N, int J, int m, Tree *tree, const double *P, const double *q, const double *v, const double *a,
+                  const int *joints, const Singer *singer, const double *noise, const double *sd, const double *walk,
+                  double *P_after, double *q_after, double *v_after, double *a_after)
 {
     const int nv = tree->nv;
     const long square = (long)nv * nv;
@@ -147,6 +147,8 @@ void mbkf_predict(int N, int J, Tree *tree, const double *P, const double *q, co
     mbkf_integrate(tree, q, step, q_after);
     mbkf_integration_derivatives(tree, step, A, B);
     propagate(N, nv, J, P, A, B, joints, singer, noise, sd, P_after, B + square);
+    for (int k = 0; k < m; k++)
+        P_after[(long)(N - m + k) * (N + 1)] += walk[k];
 }
 
 void mbkf_propagate_velocities(int nv, int J, const double *P, const double *A, const double *B, const int *joints,

@@ -53,7 +53,7 @@ class OrientationNoise(NamedTuple):
 class StateFunctions(Protocol):
     """Covariances of a state (N components), smoothing, variances and orientations."""
 
-    @requires("3*nv <= N")
+    @requires("3*nv + m <= N")
     @unlocked
     def predict(
         self,
@@ -66,6 +66,7 @@ class StateFunctions(Protocol):
         singer: Singer,
         noise: In[Array, "3 3"],
         sd: In[Array, "nv"],
+        walk: In[Array, "m"],
         /,
     ) -> tuple[
         Made[Array, "P_after: N N"],
@@ -83,6 +84,7 @@ class StateFunctions(Protocol):
             singer: Steps of the plant.
             noise: Covariance of (q, v, a) for σ_a = 1.
             sd: σ_a.
+            walk: Variance that the last m states gain, random walks.
         """
 
     @unlocked

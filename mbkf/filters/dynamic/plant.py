@@ -203,9 +203,8 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         sd = self.acceleration_sd if noise is None else noise
         if self._kernel is None or (tree := self.model.tree) is None:
             return super().predict(state, self.process_noise(sd))
-        moved = self._kernel.predict(tree.handle, state.P, state.q, state.v, state.a, *self._constants, sd)
-        P, q, v, a = moved
-        self._add_walk(P)
+        motion = state.P, state.q, state.v, state.a
+        P, q, v, a = self._kernel.predict(tree.handle, *motion, *self._constants, sd, self._walk)
         return DynamicState(q, v, a, state.w, P.T, state.extra)
 
     def process_noise(self, sd: Array) -> Array:
