@@ -137,6 +137,15 @@ def test_groups_of_fields_that_are_written_at_once_hold_each_its_own(name, body)
         np.testing.assert_allclose(row["level_sd"][0] ** 2 - offset, spread.level_variance, rtol=1e-9)
 
 
+def test_offsets_are_those_of_the_frames_own_stretch(body):
+    tracking, found = estimates("dynamic")
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1], body)
+    for t in (0, round(OFFSETS_HELD_S / DT), round(OFFSETS_HELD_S / DT) + 1):
+        row, spread = recorder.row(t, recording().markers_m[t], found[t], 0.0)
+        np.testing.assert_array_equal(row["torque_offset"][0], spread.torque_offset)
+        np.testing.assert_allclose(row["torque_sd"][0], spread.torque, rtol=1e-12)
+
+
 def test_stretches_begin_with_starts_and_after_the_time_that_offsets_are_held():
     stretches, frames = Stretches(DT), round(OFFSETS_HELD_S / DT)
     starts = {0, frames + 3}

@@ -76,6 +76,18 @@ def test_wrenches_and_motion_come_with_the_states_spread():
     np.testing.assert_array_equal(tracking.covariance(found[5]), stated[: 2 * nv, : 2 * nv])
 
 
+def test_dofs_that_markers_observe_are_those_of_the_frame():
+    """A limb out of sight between two frames that show it."""
+    report, shown = made_filter("dynamic").report, estimates("dynamic")[1][5]
+    step, hidden = shown.record.step, np.array([40, 41])
+    decisions = step.decisions._replace(notes=replace(step.decisions.notes, unmarked=hidden))
+    unseen = shown._replace(record=shown.record._replace(step=step._replace(decisions=decisions)))
+    before, between, after = (report.errors(one).seen for one in (shown, unseen, shown))
+    assert np.isin(hidden, before).all()
+    np.testing.assert_array_equal(between, np.setdiff1d(before, hidden))
+    np.testing.assert_array_equal(after, before)
+
+
 def test_where_only_white_noise_is_expected_the_spread_is_the_filters():
     tracking = made_filter("dynamic")
     tracking.kalman.settings = settings_with(innovation_share=0.0)
