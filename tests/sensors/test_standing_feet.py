@@ -30,7 +30,7 @@ N = PLANT.layout.size
 
 
 def at(q, v):
-    state = DynamicState(q, v, np.zeros(MODEL.nv), np.zeros(12), np.eye(N))
+    state = DynamicState(q, v, np.zeros(MODEL.nv), np.zeros(12), np.eye(N), np.zeros(6))
     return OperatingPoint(state, None)
 
 
