@@ -79,7 +79,8 @@ void mbkf_coordinate_deviations(int nq, int n, int k, int A, int nv, const doubl
         for (int i = 0; i < k && diagonals[set]; i++)
             deviations[set * A + single_columns[i]] = diagonals[set][single_dofs[i]];
     for (int i = 0; i < SETS * A; i++)
-        deviations[i] = deviations[i] > 0.0 ? deviations[i] : 0.0; /* rounding may leave zero a little below it */
+        if (deviations[i] < 0.0) /* zero, but for rounding; NaN stays */
+            deviations[i] = 0.0;
     for (int i = 0; i < A && offset; i++)
         deviations[2 * A + i] += zero[i];
     for (int i = 0; i < 2 * A; i++)

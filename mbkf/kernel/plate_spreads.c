@@ -43,6 +43,6 @@ void mbkf_plate_changes(int n, const double *change, const double *noise, double
     for (long i = 0; i < 6L * n; i++) {
         const double expected = white * noise[i], beyond = second[i] * second[i] - expected * expected;
         within[i] = share * change[i];
-        within[6L * n + i] = beyond > 0.0 ? share_of_second * copysign(sqrt(beyond), second[i]) : 0.0;
+        within[6L * n + i] = beyond <= 0.0 ? 0.0 : share_of_second * copysign(sqrt(beyond), second[i]);
     }
 }

@@ -54,6 +54,16 @@ def test_a_variance_that_rounding_leaves_below_zero_is_zero():
 
 
 @pytest.mark.usefixtures("either_kernel")
+def test_a_variance_that_is_not_known_stays_unknown():
+    _, model, clinical = case(0)
+    one = of(clinical, np.eye(model.nv), np.full((model.nv, model.nv), np.nan))
+    found = CoordinateVariances(clinical).deviations(
+        model.neutral(), one._replace(velocity_blocks=None), None
+    )
+    assert np.isfinite(found[0]).all() and np.isnan(found[1]).all()
+
+
+@pytest.mark.usefixtures("either_kernel")
 def test_at_a_singularity_they_are_very_large_and_finite():
     """Both other angles of the joint; all that moves another joint stays what it is."""
     _, model, clinical = case(0)

@@ -78,6 +78,7 @@ def test_noise_of_moments_is_that_about_the_plates_own_origins():
 def test_changes_within_a_frame_are_those_of_the_reference(seed, monkeypatch):
     """Beyond the noise with their sign, and zero where noise explains them."""
     change = 10.0 * np.random.default_rng(seed).normal(size=(2, 2, 6))
+    change[:, 1, 4] = np.nan
     noise = np.random.default_rng(seed).choice([0.0, 2.0, 8.0], (2, 6))
     found = plate_noise.changes_within(change, noise, (0.005, 0.15))
     monkeypatch.setattr(plate_noise, "library", lambda: None)
