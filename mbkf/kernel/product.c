@@ -11,6 +11,8 @@
 static void by_blas(int part, int rows, int columns, int inner, double factor, const double *A, int lda,
                     const double *B, int ldb, double keep, const double *D, double *C, int ldc)
 {
+    if (!rows || !columns) /* BLAS would print that a stride is 0 */
+        return;
     if (keep != 0.0 && D != C)
         for (int j = 0; j < columns; j++)
             memcpy(C + (long)j * ldc, D + (long)j * ldc, sizeof(double) * rows);

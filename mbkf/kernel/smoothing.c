@@ -343,7 +343,7 @@ static void without_certain(int N, int n, int m, const double *L, const double *
     work += N;
     while (ahead < count && known[ahead] < n)
         ahead++;
-    if (count == N) {
+    if (count == N || !ahead) {
         before_either(N, n, m, L, X, LP, information, rows, before, work);
         return;
     }

@@ -137,6 +137,21 @@ def test_a_covariance_is_that_of_the_frame_asked_for(either_kernel):
         SparseBackwardPass(15, covariances=False).covariance(one[0])
 
 
+@pytest.mark.usefixtures("products")
+@pytest.mark.parametrize("others", [0, 2])
+def test_a_configuration_may_be_certain_altogether(others):
+    P, matrix, rows, vector, phi = filtered(np.random.default_rng(3), 1, 4, 2, 6, 5)[0]
+    certain = len(P) - others
+    assert certain >= len(matrix) > 0
+    P[:certain] = P[:, :certain] = 0.0
+    by_parts, by_matrices = SparseBackwardPass(len(P)), BackwardPass(len(P))
+    for back in (by_parts, by_matrices):
+        for _ in range(2):
+            back.through_frame(P, matrix, rows, vector, phi)
+    difference = by_parts.curvature - by_matrices.curvature
+    assert worst(difference) <= 1e-9 * worst(by_matrices.curvature)
+
+
 @pytest.mark.parametrize("is_dense", [False, True])
 @pytest.mark.parametrize(("n", "readings", "adds"), [(9, 7, False), (20, 4, True), (39, 0, True)])
 def test_a_linear_step_is_that_of_whole_matrices(either_kernel, is_dense, n, readings, adds):
