@@ -339,7 +339,7 @@ class ClinicalAngles:
             InvalidInput: The angles are read in other axes than the body's own.
         """
         q, angles = self._with_angles(q, angles)
-        return self._conjugate(q, self._checked("tau", tau, self.model.nv), angles, 1)
+        return self._conjugate(q, np.asarray(tau, dtype=float), angles, 1)
 
     def moments_sd(self, q: Array, tau_sd: Array, angles: Array | None = None) -> Array:
         """(…, T, A) standard deviations √Σ B² sd² of the moments, for independent forces.
@@ -356,6 +356,9 @@ class ClinicalAngles:
         """(…, T, A) sums of forces (…, T, nv) by the elements of Bᵀ to a power."""
         if self._axes:
             raise InvalidInput("moments belong to the angles in the body's own axes")
+        if forces.shape[-2:] != (len(q), self.model.nv):
+            name = "tau" if power == 1 else "tau_sd"
+            raise ShapeError(name, f"(…, {len(q)}, {self.model.nv})", forces.shape)
         B = velocity_map(self._cardan(angles), self._parity) ** power
         of_root = (self._root_axes @ self._root_rotation(q)) ** power
         found = np.empty((*forces.shape[:-1], len(self.names)))
@@ -390,6 +393,6 @@ class ClinicalAngles:
     @staticmethod
     def _checked(name: str, values: Array, width: int) -> Array:
         values = np.asarray(values, dtype=float)
-        if values.ndim < 2 or values.shape[-1] != width:
+        if values.ndim != 2 or values.shape[1] != width:
             raise ShapeError(name, f"(T, {width})", values.shape)
         return values

@@ -206,6 +206,10 @@ def test_wrong_shapes_are_refused(model, clinical):
         clinical.angles(model.neutral())
     with pytest.raises(ShapeError, match="tau"):
         clinical.moments(model.neutral()[None], np.zeros((1, 3)))
+    with pytest.raises(ShapeError, match="tau_sd"):
+        clinical.moments_sd(model.neutral()[None], np.zeros((2, model.nv)))
+    with pytest.raises(ShapeError, match="q must have shape"):
+        clinical.angles(model.neutral()[None, None])
     with pytest.raises(ShapeError, match="angles"):
         clinical.rate_matrices(model.neutral()[None], np.zeros((2, model.nv)))
 
