@@ -24,7 +24,7 @@ class DofVariances(NamedTuple):
         position: (nv,) diagonal of the first.
         velocity: (nv,) diagonal of the second.
         blocks: (n + 1, 3, 3) blocks of the first, those of :attr:`CoordinateVariances.dofs`.
-        velocity_blocks: The same of the second; None for independent velocities.
+        velocity_blocks: (n + 1, 3, 3) blocks of the second; None for independent velocities.
     """
 
     position: Array

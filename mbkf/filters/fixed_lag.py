@@ -21,8 +21,8 @@ class SmoothingSettings:
     Attributes:
         window_s: Length of a window that is smoothed at once, at least.
         ahead_s: Time beyond its end whose readings are used, too.
-        frames: Frames of both together, at least. Frames beyond a window's end are worked through again in the next
-            one, so short windows at a low rate cost more.
+        frames: Frames of both together, at least: as many as at 200 Hz. Frames beyond a window's end are worked through
+            again in the next one, 12 % of all at 100 Hz; with 1.5 s alone they were 27 %.
     """
 
     window_s: float = 1.5

@@ -102,7 +102,7 @@ class LimbWatch:
         step = None if estimate.started else estimate.record.step
         if step is not None and last is not None:
             squared = step.decisions.notes.squared_m2
-            # The sum of squares, which leaves it open in few frames, costs a fifth of the maximum.
+            # The sum of squares is never less than the maximum's square, and costs a fifth of its time.
             if squared is not None and squared @ squared > JUMP_M**4 and squared.max() > JUMP_M**2:
                 mend = self._sudden(squared, Look(number, step.prior.state.q, markers_m), last)
                 if mend is not None:

@@ -13,8 +13,8 @@ def waits(name):
 """
 
 
-def told(*lines):
-    """What a fresh process prints."""
+def printed(*lines):
+    """Words that a fresh process prints."""
     program = "\n".join(["import sys", WAITS, "from mbkf.numerics.postponed import postpone", *lines])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     return done.stdout.split()
@@ -22,7 +22,7 @@ def told(*lines):
 
 def test_scipy_does_not_wake_them():
     names = f"[name for name in {UNUSED} if waits(name)]"
-    found = told("import numpy", "postpone()", "import scipy.linalg", f"print(*{names})")
+    found = printed("import numpy", "postpone()", "import scipy.linalg", f"print(*{names})")
     assert set(found) == set(UNUSED)
 
 
@@ -36,13 +36,13 @@ def test_scipy_does_not_wake_them():
         ("f2py", "callable(numpy.f2py.get_include)"),
     ],
 )
-def test_what_is_asked_for_is_there(name, asked):
+def test_a_module_is_there_at_its_first_use(name, asked):
     shows = f"print(waits('{name}'), {asked}, waits('{name}'))"
-    assert told("import numpy", "postpone()", shows) == ["True", "True", "False"]
+    assert printed("import numpy", "postpone()", shows) == ["True", "True", "False"]
 
 
-def test_what_is_loaded_stays_as_it_is():
-    found = told(
+def test_a_module_that_is_loaded_stays_as_it_is():
+    found = printed(
         "import numpy, numpy.testing as before",
         "postpone()",
         "print(numpy.testing is before, waits('testing'))",
@@ -51,5 +51,5 @@ def test_what_is_loaded_stays_as_it_is():
 
 
 def test_without_numpy_nothing_is_loaded():
-    found = told("postpone()", "print([name for name in sys.modules if name.startswith('numpy')])")
+    found = printed("postpone()", "print([name for name in sys.modules if name.startswith('numpy')])")
     assert found == ["[]"]

@@ -45,7 +45,7 @@ class _Frame(NamedTuple):
 
 
 class WindowMemory:
-    """What one window leaves to the next.
+    """Memory that windows of one run share.
 
     Attributes:
         covariances: Arrays (N, N) to work in: fresh memory costs as much as the products that go there.

@@ -179,16 +179,7 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
             return _ALL_SEEN if legible else _LOST
         learned = {j: one for j, one in at.prepared.items() if j in gone}
         if not learned:
-            return CoordinationDecision(
-                NO_DOFS,
-                NO_NUMBERS,
-                NO_NUMBERS,
-                NO_NUMBERS,
-                NO_NUMBERS,
-                gone,
-                legible,
-                notes.unobserved,
-            )
+            return _ALL_SEEN._replace(gone=gone, legible=legible, unobserved=notes.unobserved)
         features, nv = self.features(at.state.q, at.state.v), self._model.nv
         mean, sd = np.zeros((2, 2 * nv))
         for relation in {id(one.relation): one.relation for one in learned.values()}.values():
