@@ -95,6 +95,8 @@ ELSEWHERE = {
     "sensors.scaled_markers.ScaledReading.by_factors": "sensors/test_scaled_markers.py",
     "filters.dynamic.level_rows.LevelRows.at": "filters/dynamic/test_level_rows.py",
     "filters.section_errors.SectionErrors.at": "filters/test_section_errors.py",
+    "model.motion_frames.motion_frames": "model/test_motion_frames.py",
+    "model.newton_euler.NewtonEuler.compiled_loads": "model/test_trunk_sections.py",
     "model.trunk_sections.SectionState.by_root": "model/test_trunk_sections.py",
     "model.trunk_sections.SectionState.by_state": "model/test_trunk_sections.py",
     "model.trunk_sections.TrunkSections.by_root": "model/test_trunk_sections.py",
