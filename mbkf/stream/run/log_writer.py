@@ -34,7 +34,8 @@ MOST_HELD_BYTES = 256 * 1024 * 1024
 """Most memory held while nothing can be written; the oldest rows are dropped first."""
 
 MOST_LATER = 2000
-"""Rows of so many frames may wait to be made, while writing takes long."""
+"""Calls that make rows and wait for the log's thread, at most, two a frame: ten seconds at 100 Hz. While writing takes
+longer, each further call makes the oldest rows itself."""
 
 
 def arrived(rows: NDArray) -> int:
@@ -130,17 +131,17 @@ class LogWriter:
             self._logs[2].put(row)
 
     def _make_later(self, make: Callable[[], None]) -> None:
-        """Leaves rows to the log's thread: who brings them has a frame to answer."""
+        """Leaves rows to the log's thread, so that the calling thread passes its frame on at once."""
         self._later.append(make)
-        if len(self._later) > MOST_LATER:
-            self._make_rows()
+        self._make_rows(MOST_LATER)
 
-    def _make_rows(self) -> None:
-        """Makes the rows that wait, in their order."""
-        with self._making:
-            while self._later:
-                self._later.popleft()()
-                time.sleep(0.0)  # another thread may go on
+    def _make_rows(self, waiting: int = 0) -> None:
+        """Makes rows, the oldest first, until so many calls that make some are left."""
+        while len(self._later) > waiting:
+            with self._making:  # taken and made under one lock: rows keep their order
+                if len(self._later) > waiting:
+                    self._later.popleft()()
+            time.sleep(0.0)  # another thread may go on
 
     def _put_recorded(self, file: FrameLogWriter, rows: NDArray) -> None:
         with self._changed:
@@ -152,9 +153,10 @@ class LogWriter:
             self._closing = True
             self._changed.notify_all()
         self._thread.join()
-        with suppress(Exception):
-            self._make_rows()
-        for log in self._logs:  # rows left by a thread that died
+        while self._later:  # calls and rows left by a thread that died
+            with suppress(Exception):
+                self._make_rows()
+        for log in self._logs:
             with suppress(Exception):
                 self._flush(log)
         self._log.close()
@@ -176,8 +178,11 @@ class LogWriter:
             with self._changed:
                 self._changed.wait_for(lambda: self._closing, pause)
                 closing = self._closing
-            self._make_rows()
-            pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
+            frames, *others = self._logs
+            done = [self._flush(frames)]
+            self._make_rows()  # after the frames, so that the plates' samples of all of them are made
+            done += [self._flush(log) for log in others]
+            pause = EVERY_S if all(done) else AGAIN_S
             unreported_s += pause
             if self._report is not None and unreported_s >= REPORTED_S:
                 unreported_s = 0.0

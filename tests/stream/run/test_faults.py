@@ -4,6 +4,7 @@ import errno
 import json
 import subprocess
 import sys
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from mbkf.stream.run.log_writer import LogWriter
 from mbkf.stream.source import FARTHEST_M, PlateSamples, SourceFrame
 from mbkf.trial.live.log import FRAMES_FILE, LiveLog, LiveStream, blank
 from mbkf.trial.live.recording import open_recording
+from tests.dynamics import plate
 from tests.stream.scripted import (
     Collected,
     assert_same,
@@ -266,22 +268,63 @@ def test_frames_that_are_missing_in_the_recording_are_counted(tmp_path, monkeypa
     assert writer.unrecorded == 3
 
 
+def recording_writer(tmp_path, plates=0, died=None):
+    """A writer of a run that is recorded; its thread writes nothing before the log is closed."""
+    stream = LiveStream("x", 100.0, 0.0, (plate(0.0, 0.0),) * plates)
+    files = open_recording(tmp_path, stream, tmp_path / "x.c3d")
+    log = LiveLog(tmp_path / "log", stream, ROWS, {}, [], files)
+    return LogWriter(log, [].append, died=died), log, files
+
+
+def bare_frame(number):
+    none = np.zeros((0, 3))
+    return number, SourceFrame(number, 0.0, none, none, PlateSamples.none(0)), PlateSamples.none(0)
+
+
 def test_frames_that_wait_for_the_log_s_thread_stay_few_and_in_order(tmp_path, monkeypatch):
+    """Beyond the limit a frame costs its caller one frame's rows, not those of all that wait."""
     monkeypatch.setattr(log_writer, "EVERY_S", 60.0)
     monkeypatch.setattr(log_writer, "MOST_LATER", 3)
-    stream = LiveStream("x", 100.0, 0.0, ())
-    files = open_recording(tmp_path, stream, tmp_path / "x.c3d")
-    made, append = [], files.markers.append
-    monkeypatch.setattr(files.markers, "append", lambda rows: made.extend(rows["number"]) or append(rows))
-    writer = LogWriter(LiveLog(tmp_path / "log", stream, ROWS, {}, [], files), [].append)
-    none, waiting = np.zeros((0, 3)), []
+    writer, _, files = recording_writer(tmp_path)
+    waiting = []
     for number in range(10):
-        frame = SourceFrame(number, 0.0, none, none, PlateSamples.none(0))
-        writer.record(number, frame, PlateSamples.none(0))
+        writer.record(*bare_frame(number))
         waiting.append(len(writer._later))
-    assert max(waiting) == 3
+    assert waiting == [1, 2, *[3] * 8]
     assert writer.close() == (0, 0)
-    assert made == list(range(10))
+    assert read_frame_log(files.markers.path).rows["number"].tolist() == list(range(10))
+
+
+def test_samples_of_frames_in_the_log_are_written_in_the_round_of_these_frames(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_writer, "EVERY_S", 60.0)
+    writer, log, _ = recording_writer(tmp_path, plates=1)
+    append, append_samples, threads = log.frames.append, log.plates.append, []
+
+    def answered_meanwhile(rows):
+        writer.put_samples(PlateSamples(np.arange(10), np.ones((10, 1, 6))))
+        append(rows)
+
+    def written_by(rows):
+        threads.append((threading.current_thread().name, len(rows)))
+        append_samples(rows)
+
+    monkeypatch.setattr(log.frames, "append", answered_meanwhile)
+    monkeypatch.setattr(log.plates, "append", written_by)
+    writer.put_row(row(log, 0))
+    assert writer.close() == (1, 0)
+    assert threads == [("mbkf-log", 10)]
+
+
+def test_a_frame_that_cannot_be_recorded_ends_the_run_and_costs_no_other_frame(tmp_path, monkeypatch):
+    monkeypatch.setattr(log_writer, "EVERY_S", 60.0)
+    errors = []
+    writer, _, files = recording_writer(tmp_path, died=errors.append)
+    for number in range(6):
+        wrong = {1: "?", 3: "!"}.get(number, number)
+        writer.record(wrong, *bare_frame(number)[1:])
+    writer.close()
+    assert len(errors) == 1 and isinstance(errors[0], ValueError)
+    assert read_frame_log(files.markers.path).rows["number"].tolist() == [0, 2, 4, 5]
 
 
 def test_a_full_disk_ends_in_one_line_and_the_log_is_recovered(tmp_path, capture, subject):

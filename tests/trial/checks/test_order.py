@@ -5,12 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.trial.checks.order import in_place_of, order_finding
 from tests.checked import evidence, plates
 
 
 def exchanged(one, other):
     return in_place_of(one, other), in_place_of(other, one)
+
+
+def read_by(motion, read):
+    """The evidence with other readings of the plates."""
+    raw = plate_wrenches(read, motion.times_s, motion.rate_hz)
+    return replace(motion, plates=read, given=motion.averaged(raw), raw=raw)
 
 
 def test_plates_of_a_squat_in_each_others_place_are_found_and_put_right():
@@ -22,10 +29,10 @@ def test_plates_of_a_squat_in_each_others_place_are_found_and_put_right():
         for one, k in zip(right, (1.1, 0.9), strict=True)
     )
     motion = replace(given, asked=given.gives(uneven).sum(axis=1))
-    assert order_finding(replace(motion, plates=uneven, given=motion.gives(uneven)))[0] is None
-    read = exchanged(*uneven)
-    found, back = order_finding(replace(motion, plates=read, given=motion.gives(read)))
+    assert order_finding(read_by(motion, uneven))[0] is None
+    found, back = order_finding(read_by(motion, exchanged(*uneven)))
     assert found is not None and found.verdict == "outside"
+    assert found.value > 1e6  # in each other's place they are the loads of the motion
     assert found.name == "order of plates '1' and '2'"
     for one, again in zip(uneven, back, strict=True):
         np.testing.assert_array_equal(again.force_n, one.force_n)
