@@ -75,6 +75,17 @@ def test_a_single_ghost_far_away_does_not_change_the_size():
     assert body_extent_m(with_ghost) == pytest.approx(body_extent_m(points), rel=0.15)
 
 
+def test_size_is_the_median_over_frames_of_the_longest_side_without_outermost_tenths():
+    points = np.full((4, 11, 3), np.nan)
+    for frame, seen in enumerate((11, 9, 4, 3)):  # three markers show no size
+        points[frame, :seen] = np.outer(np.arange(seen), (0.1, 0.2, 1.0))
+    assert [body_extent_m(points[[frame]]) for frame in range(3)] == pytest.approx([8.0, 8.0, 3.0])
+    assert np.isnan(body_extent_m(points[[3]]))
+    assert body_extent_m(points) == pytest.approx(8.0)
+    points[0, 0, 1] = np.nan  # a marker without one coordinate is not seen: ten are left
+    assert body_extent_m(points[[0]]) == pytest.approx(7.2)
+
+
 def test_size_of_nothing_is_unknown_and_accepted():
     assert np.isnan(body_extent_m(np.full((3, 8, 3), np.nan)))
     assert np.isnan(body_extent_m(np.zeros((0, 8, 3))))

@@ -1,6 +1,7 @@
 """Readers and motions of other installed packages: found by every command, and left out where they are broken."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -164,6 +165,22 @@ def test_motions_of_an_installed_package_are_known(tmp_path):
     assert (tmp_path / "made" / "trial.c3d").is_file()
     unknown = mbkf_command(site, "synth", "--motion", "sl0w_squat", "--out", tmp_path / "made")
     assert unknown.returncode == 2 and "did you mean slow_squat" in unknown.stderr
+
+
+@pytest.mark.parametrize("place", ["archive", "egg"])
+def test_packages_in_archives_and_eggs_are_found(tmp_path, monkeypatch, place):
+    name = f"{place}_reader"
+    site = install(tmp_path / "site", name, "")
+    if place == "archive":
+        site = Path(shutil.make_archive(str(tmp_path / "packages"), "zip", site))
+    else:
+        site = site.rename(tmp_path / "packages.egg")
+        info = (site / f"{name}-1.dist-info").rename(site / "EGG-INFO")
+        (info / "METADATA").rename(info / "PKG-INFO")
+    monkeypatch.syspath_prepend(site)
+    monkeypatch.setattr(installed, "_imported", set())
+    installed.import_installed(installed.READERS)
+    assert sys.modules.pop(name).__name__ == name
 
 
 @pytest.mark.slow

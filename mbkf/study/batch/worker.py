@@ -75,7 +75,7 @@ def answer(packed: bytes, line: Line) -> object:
         line: Where its progress goes.
     """
     try:
-        import numpy  # noqa: F401  # every task needs it, but for the parts that wait
+        import numpy  # noqa: F401  # first, so that its unused parts can be postponed
 
         postpone()
         return pickle.loads(packed)(line.progress)

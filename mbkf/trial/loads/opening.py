@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
 from mbkf.filters.contact_opening import Noted
 from mbkf.model.body import Body
 from mbkf.numerics.runs import runs
@@ -52,7 +52,8 @@ LEFT_S = 0.1
 """A contact closes when the mean of its force over such a time is small, or is not judged for :data:`LASTING_S`."""
 
 
-_NOTHING = np.zeros(3)
+_NO_FORCE_N = read_only(np.zeros(3))
+"""Force of other contacts than the feet where none are open."""
 
 
 class _Kept(NamedTuple):
@@ -119,7 +120,7 @@ class ContactOpener:
     def _judge(self, one: Noted) -> None:
         """Judges a frame."""
         estimate, plates = one
-        others_n = _NOTHING if estimate.support is None else estimate.support[:, :3].sum(axis=0)
+        others_n = _NO_FORCE_N if estimate.support is None else estimate.support[:, :3].sum(axis=0)
         read = estimate.contact is not None and Contact.UNMEASURED not in estimate.contact
         judged = bool(read and estimate.tracked and force_read(plates)[0])
         on_feet_n = estimate.wrench[0, :3] + estimate.wrench[1, :3]

@@ -133,13 +133,13 @@ def stands_still(markers: MarkerTrajectories, share: float = 0.5) -> bool:
 
 
 def faced_forward(standing: Standing) -> Standing:
-    """The same, turned and moved so that the body faces forward with its root above the origin."""
+    """The person turned and moved so that the body faces forward with its root above the origin."""
+    from scipy.spatial.transform import Rotation  # loads slowly
+
     model, q = standing.model, standing.q.copy()
     rotations, origins = model.placements(q)
     joint = model.root.joint_id
     forward = rotations[joint][:, 0]
-    from scipy.spatial.transform import Rotation  # loads slowly
-
     turn = Rotation.from_euler("z", -np.arctan2(forward[1], forward[0]))
     middle = np.array([*origins[joint][:2], 0.0])
     root = q[model.root.q]

@@ -82,7 +82,7 @@ def _velocity_maps(
     angles, axis = own.angles(known), np.concatenate([np.arange(j.v.stop - j.v.start) % 3 for j in joints])
     # No coordinate mixes two joints, so one axis of all joints is taken at a time.
     turned = (axis == np.arange(3)[:, None, None]).astype(float)
-    by_axis = own.moments(known, np.broadcast_to(turned, (3, *known.shape[:1], len(axis))), angles)
+    by_axis = own.moments(known, np.broadcast_to(turned, (3, len(known), len(axis))), angles)
     maps = {}
     for segment in segments:
         (joint,) = (one for one in own.model.description.clinical_joints if one.distal == segment)
