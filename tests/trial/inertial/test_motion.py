@@ -91,6 +91,41 @@ def test_exchanged_sides_are_told(walk, monkeypatch):
     assert any("exchanged" in text for text in found.result.warnings)
 
 
+def strapped_on_reversed(one, about):
+    """A sensor that is turned by 180° about the direction of its force (3,) at rest."""
+    turn = 2.0 * np.outer(about, about) / (about @ about) - np.eye(3)
+    return replace(
+        one,
+        specific_force_mps2=one.specific_force_mps2 @ turn,
+        angular_velocity_rad_s=one.angular_velocity_rad_s @ turn,
+    )
+
+
+def test_a_run_begun_anew_is_that_of_sensors_known_to_be_reversed(walk, monkeypatch):
+    monkeypatch.setattr(misfit, "LOOKED_AT_S", 0.1)
+    reversed_one, planned = frozenset({"pelvis"}), motion._planned
+    moving, still = [between(one, 0.0, 1.5) for one in walk.moving], list(walk.standing)
+    k = [one.name for one in moving].index("pelvis")
+    about = still[k].specific_force_mps2.mean(axis=0)
+    still[k], moving[k] = (strapped_on_reversed(one, about) for one in (still[k], moving[k]))
+
+    def run():
+        settings = InertialMotionSettings(smooth=False)
+        return inertial_motion(moving, walk.subject, standing=still, posture=walk.posture, settings=settings)
+
+    with monkeypatch.context() as known:
+        known.setattr(motion, "_planned", lambda *given: replace(planned(*given), turned=reversed_one))
+        expected = run()
+    monkeypatch.setattr(motion, "mounted_reversed", lambda *_: SensorPlacement(reversed_one))
+    found = run()
+    np.testing.assert_array_equal(found.result.q, expected.result.q)
+    np.testing.assert_array_equal(found.result.angles_sd, expected.result.angles_sd)
+    for one, other in zip(found.mounts, expected.mounts, strict=True):
+        np.testing.assert_array_equal(one.rotation, other.rotation)
+    assert found.worn.turned == reversed_one
+    assert any("the sensors of pelvis are strapped on" in text for text in found.result.warnings)
+
+
 def test_standing_in_the_recording_is_where_the_motion_begins():
     one = worn("squat", 1.2)
     joined = tuple(
