@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,7 +157,7 @@ class LogWriter:
         while self._later:  # calls and rows left by a thread that died
             with suppress(Exception):
                 self._make_rows()
-        for log in self._logs:
+        for log in reversed(self._logs):  # the answered frames last
             with suppress(Exception):
                 self._flush(log)
         self._log.close()
@@ -178,11 +179,7 @@ class LogWriter:
             with self._changed:
                 self._changed.wait_for(lambda: self._closing, pause)
                 closing = self._closing
-            frames, *others = self._logs
-            done = [self._flush(frames)]
-            self._make_rows()  # after the frames, so that the plates' samples of all of them are made
-            done += [self._flush(log) for log in others]
-            pause = EVERY_S if all(done) else AGAIN_S
+            pause = EVERY_S if self._write_waiting() else AGAIN_S
             unreported_s += pause
             if self._report is not None and unreported_s >= REPORTED_S:
                 unreported_s = 0.0
@@ -190,10 +187,18 @@ class LogWriter:
             if closing:
                 return
 
-    def _flush(self, log: _Log) -> bool:
-        """Writes the waiting rows of one file; False where that failed."""
+    def _write_waiting(self) -> bool:
+        """Writes what waits, the answered frames last: where the run is killed, their samples are in the log."""
+        frames, *others = self._logs
         with self._changed:
-            rows = list(log.rows)
+            answered = len(frames.rows)
+        self._make_rows()
+        return all([*map(self._flush, others), self._flush(frames, answered)])
+
+    def _flush(self, log: _Log, most: int | None = None) -> bool:
+        """Writes the waiting rows of one file, or so many of them; False where that failed."""
+        with self._changed:
+            rows = list(islice(log.rows, most))
         if not rows:
             return True
         # As bytes: numpy joins records field by field.

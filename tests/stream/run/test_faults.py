@@ -4,7 +4,6 @@ import errno
 import json
 import subprocess
 import sys
-import threading
 from dataclasses import replace
 
 import numpy as np
@@ -295,24 +294,31 @@ def test_frames_that_wait_for_the_log_s_thread_stay_few_and_in_order(tmp_path, m
     assert read_frame_log(files.markers.path).rows["number"].tolist() == list(range(10))
 
 
-def test_samples_of_frames_in_the_log_are_written_in_the_round_of_these_frames(tmp_path, monkeypatch):
+def test_frames_reach_the_log_after_their_samples_and_after_the_recording(tmp_path, monkeypatch):
+    """A frame that is answered while the log is written waits for the next round, as its samples do."""
     monkeypatch.setattr(log_writer, "EVERY_S", 60.0)
-    writer, log, _ = recording_writer(tmp_path, plates=1)
-    append, append_samples, threads = log.frames.append, log.plates.append, []
+    writer, log, files = recording_writer(tmp_path, plates=1)
+    append_frames, append_samples, found = log.frames.append, log.plates.append, []
 
-    def answered_meanwhile(rows):
-        writer.put_samples(PlateSamples(np.arange(10), np.ones((10, 1, 6))))
-        append(rows)
+    def answer(number):
+        writer.record(*bare_frame(number))
+        writer.put_samples(PlateSamples(np.arange(10 * number, 10 * number + 10), np.ones((10, 1, 6))))
+        writer.put_row(row(log, number))
 
-    def written_by(rows):
-        threads.append((threading.current_thread().name, len(rows)))
+    def samples(rows):
+        if not found:
+            answer(1)
         append_samples(rows)
 
-    monkeypatch.setattr(log.frames, "append", answered_meanwhile)
-    monkeypatch.setattr(log.plates, "append", written_by)
-    writer.put_row(row(log, 0))
-    assert writer.close() == (1, 0)
-    assert threads == [("mbkf-log", 10)]
+    def frames(rows):
+        append_frames(rows)
+        found.append((log.frames.rows, log.plates.rows, files.markers.rows))
+
+    monkeypatch.setattr(log.plates, "append", samples)
+    monkeypatch.setattr(log.frames, "append", frames)
+    answer(0)
+    assert writer.close() == (2, 0)
+    assert found == [(1, 10, 1), (2, 20, 2)]
 
 
 def test_a_frame_that_cannot_be_recorded_ends_the_run_and_costs_no_other_frame(tmp_path, monkeypatch):
