@@ -41,22 +41,48 @@ def write_packed(file: h5py.File, key: str, values: NDArray[np.generic]) -> h5py
         values: (T, …) array that is not empty.
     """
     chunks = -(-values.nbytes // CHUNK_BYTES)
-    rows = -(-len(values) // chunks)
-    dataset = file.create_dataset(
+    dataset = packed_dataset(file, key, values.shape, values.dtype, -(-len(values) // chunks))
+    put_packed(dataset, values)
+    return dataset
+
+
+def packed_dataset(
+    file: h5py.File, key: str, shape: tuple[int, ...], dtype: np.dtype, rows: int
+) -> h5py.Dataset:
+    """Makes a dataset that :func:`put_packed` fills.
+
+    Args:
+        file: The file.
+        key: Name of the dataset.
+        shape: Shape of the array.
+        dtype: Type of its numbers.
+        rows: Rows of a chunk.
+    """
+    return file.create_dataset(
         key,
-        values.shape,
-        values.dtype,
-        chunks=(rows, *values.shape[1:]),
+        shape,
+        dtype,
+        chunks=(rows, *shape[1:]),
         compression="gzip",
         compression_opts=LEVEL,
         shuffle=True,
     )
-    for begin in range(0, len(values), rows):
-        chunk = values[begin : begin + rows]
+
+
+def put_packed(dataset: h5py.Dataset, values: NDArray[np.generic], begin: int = 0) -> None:
+    """Writes rows of a dataset of :func:`packed_dataset`.
+
+    Args:
+        dataset: The dataset.
+        values: (N, …) the rows: whole chunks, but for the last of the dataset.
+        begin: Number of the first row, where a chunk begins.
+    """
+    rows, *rest = dataset.chunks
+    for first in range(0, len(values), rows):
+        chunk = values[first : first + rows]
         if len(chunk) < rows:  # the last chunk is as long as the others
-            chunk = np.concatenate([chunk, np.zeros((rows - len(chunk), *values.shape[1:]), values.dtype)])
-        dataset.id.write_direct_chunk((begin, *[0] * (values.ndim - 1)), packed(chunk))
-    return dataset
+            chunk = np.concatenate([chunk, np.zeros((rows - len(chunk), *rest), values.dtype)])
+        dataset.id.write_direct_chunk((begin + first, *[0] * len(rest)), packed(chunk))
 
 
 def packed(values: NDArray[np.generic]) -> bytes:

@@ -18,7 +18,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.dimensions import AXES, axes_text
 from mbkf.io.hdf5 import array
-from mbkf.io.packed_arrays import write_packed
+from mbkf.io.packed_arrays import packed_dataset, put_packed, write_packed
 from mbkf.io.quantities import Quantity, attributes, quantities
 from mbkf.io.utf8 import without_noughts
 
@@ -102,13 +102,16 @@ class RecordPieces:
         """Writes the arrays of a further piece.
 
         Args:
-            record: The piece.
+            record: The piece, as long as the first one unless it is the last.
             begin: Its first frame.
         """
         for one in _arrays(record):
             if one.axes[0] == TIME:
-                value = getattr(record, one.name)
-                self._file[one.key][begin : begin + len(value)] = value
+                value, dataset = getattr(record, one.name), self._file[one.key]
+                if dataset.chunks is None:
+                    dataset[begin : begin + len(value)] = value
+                else:
+                    put_packed(dataset, value, begin)
 
     def finish(self, record: object) -> None:
         """Writes attributes and remarks.
@@ -175,18 +178,14 @@ def write_array(file: h5py.File, one: Quantity, value: Array, frames: int | None
         value: The array, or its first frames.
         frames: Frames of the whole array, if it has an axis of time; None: the array is whole.
     """
-    whole = frames is None or one.axes[0] != TIME or len(value) == frames
-    if whole and value.size > _PACKED_FROM:
-        dataset = write_packed(file, one.key, value)
-    elif whole:
-        dataset = file.create_dataset(one.key, data=value)
+    if frames is None or one.axes[0] != TIME or len(value) == frames:
+        packs = value.size > _PACKED_FROM
+        dataset = write_packed(file, one.key, value) if packs else file.create_dataset(one.key, data=value)
+    elif value.size > _PACKED_FROM:  # each piece is a chunk
+        dataset = packed_dataset(file, one.key, (frames, *value.shape[1:]), value.dtype, len(value))
+        put_packed(dataset, value)
     else:
-        shape = (frames, *value.shape[1:])
-        packed: dict[str, Any] = {}
-        if value.size > _PACKED_FROM:  # a piece is compressed once
-            packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-        chunks = value.shape if value.size else None
-        dataset = file.create_dataset(one.key, shape, value.dtype, chunks=chunks, **packed if chunks else {})
+        dataset = file.create_dataset(one.key, (frames, *value.shape[1:]), value.dtype)
         dataset[: len(value)] = value
     unit = one.unit.text
     _describe(dataset, unit=unit, units=unit, long_name=one.meaning, axes=axes_text(one.axes))

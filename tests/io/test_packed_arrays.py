@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 
-from mbkf.io.packed_arrays import CHUNK_BYTES, packed, write_packed
+from mbkf.io.packed_arrays import CHUNK_BYTES, packed, packed_dataset, put_packed, write_packed
 
 RNG = np.random.default_rng(3)
 ARRAYS = {
@@ -56,3 +56,14 @@ def test_chunks_share_the_frames_evenly(tmp_path):
     with h5py.File(tmp_path / "a.h5", "w") as file:
         dataset = write_packed(file, "a", np.zeros((CHUNK_BYTES // 8 + 1, 1)))
         assert dataset.chunks == (CHUNK_BYTES // 16 + 1, 1)
+
+
+def test_pieces_are_the_chunks_of_a_dataset(tmp_path):
+    values = np.asfortranarray(np.random.default_rng(8).standard_normal((2 * 700 + 123, 4, 3)))
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        dataset = packed_dataset(file, "a", values.shape, values.dtype, 700)
+        for begin in (0, 700, 1400):
+            put_packed(dataset, values[begin : begin + 700], begin)
+    with h5py.File(tmp_path / "a.h5") as file:
+        np.testing.assert_array_equal(file["a"][()], values)
+        assert file["a"].id.get_num_chunks() == 3
