@@ -29,6 +29,7 @@ FILES = (
     "body_functions.py",
     "contact_functions.py",
     "force_functions.py",
+    "inertial_functions.py",
     "smoothing_functions.py",
     "state_functions.py",
     "tracking_functions.py",

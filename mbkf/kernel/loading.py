@@ -13,6 +13,7 @@ from mbkf.kernel.body_functions import BodyFunctions
 from mbkf.kernel.contact_functions import ContactFunctions
 from mbkf.kernel.declaration import fingerprint
 from mbkf.kernel.force_functions import ForceFunctions
+from mbkf.kernel.inertial_functions import InertialFunctions
 from mbkf.kernel.smoothing_functions import SmoothingFunctions
 from mbkf.kernel.state_functions import StateFunctions
 from mbkf.kernel.tracking_functions import TrackingFunctions
@@ -27,6 +28,7 @@ class Library(
     BodyFunctions,
     ContactFunctions,
     ForceFunctions,
+    InertialFunctions,
     SmoothingFunctions,
     StateFunctions,
     TrackingFunctions,

@@ -34,6 +34,15 @@ class SectionTable(NamedTuple):
     parts: Array
 
 
+class WornTable(NamedTuple):
+    """Sensors worn on a body. Fields: as arguments of :meth:`InertialFunctions.worn_readings`."""
+
+    joint_ids: Int32Array
+    places: Array
+    mounted: Array
+    weights: Array
+
+
 class CompiledTree:
     """A Pinocchio model's equations in compiled code (:class:`mbkf.kernel.body_functions.BodyFunctions`).
 
@@ -154,6 +163,34 @@ class CompiledTree:
             _read(residual),
             _read(by_state),
         )
+
+    def worn(
+        self,
+        motion: tuple[Array, Array, Array],
+        table: WornTable,
+        known: tuple[Array, Array, Array],
+        places: tuple[int, int, int],
+    ) -> tuple[Array, Array]:
+        """(6 S, N) rows and (6 S,) innovations. Args: as :meth:`InertialFunctions.worn_readings`."""
+        q, v, a = motion
+        biases, turns, measured = known
+        return self.kernel.worn_readings(
+            self.handle,
+            _read(q),
+            _read(v),
+            _read(a),
+            *table,
+            _read(biases),
+            _read(turns),
+            _read(measured),
+            *places,
+        )
+
+    def carried_points(
+        self, q: Array, v: Array, joint_ids: Int32Array, points_m: Array
+    ) -> tuple[Array, Array, Array]:
+        """(n, 6), (n, 6, 2 nv) and (n, 3, nv). Args: as :meth:`InertialFunctions.carried_points`."""
+        return self.kernel.carried_points(self.handle, _read(q), _read(v), joint_ids, _read(points_m))
 
     def mass_inverse(self, q: Array, moving: BoolArray) -> tuple[Array, Array]:
         """(nv, nv) mass matrix, and the inverse of its part of the moving dofs; the rest of that is 0.

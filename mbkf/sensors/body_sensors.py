@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.kernel.tree import WornTable
 from mbkf.model.layout import ExtraState
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import exponential_and_left_jacobian, skew
@@ -82,6 +83,12 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         self._mounted = quaternion_matrices(np.array([mount.rotation for mount in sensor.mounts]))
         deviations = np.repeat([s.worn_rate_sd_rad_s, s.worn_force_sd_m_s2], 3)
         self._weight = np.tile(1.0 / deviations, len(sensor.mounts))
+        self._table = WornTable(
+            np.array([sensor.model.joint(mount.segment).joint_id for mount in sensor.mounts], dtype=np.int32),
+            np.array([mount.position_m for mount in sensor.mounts], dtype=float).reshape(-1, 3),
+            self._mounted,
+            self._weight,
+        )
         self._observed = observed_dofs(sensor.model, [mount.segment for mount in sensor.mounts])
 
     def states(self) -> Sequence[ExtraState]:
@@ -102,8 +109,33 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
         """Rows on the whole state; missing readings are left out, component by component."""
         if decision is None:
             return None
-        state, layout, count = at.state, self.layout, len(self.sensor.mounts)
+        state, layout = at.state, self.layout
         bias, turn = (state.extra[layout.extra_index(name)].reshape(-1, 3) for name in (BIASES, TURNS))
+        tree = self.sensor.model.tree
+        if tree is None:
+            rows, innovation = self._reference_rows(state, bias, turn, decision)
+        else:
+            places = layout[BIASES].start, layout[TURNS].start, layout.size
+            rows, innovation = tree.worn(
+                (state.q, state.v, state.a), self._table, (bias, turn, decision), places
+            )
+        there = np.isfinite(innovation)
+        if not there.all():
+            rows, innovation = rows[there], innovation[there]
+        return Rows(rows, innovation, readings=len(innovation))
+
+    def _reference_rows(
+        self, state: LoadedState, bias: Array, turn: Array, measured: Array
+    ) -> tuple[Array, Array]:
+        """(6 S, N) whitened rows and (6 S,) innovations, NaN of missing readings.
+
+        Args:
+            state: The state.
+            bias: (S, 3) of the gyroscopes.
+            turn: (S, 3) of the mounts.
+            measured: (S, 6) readings.
+        """
+        layout, count = self.layout, len(self.sensor.mounts)
         reading = self.sensor.reading(state.q, state.v, state.a)
         exponential, left = exponential_and_left_jacobian(turn)
         since = exponential @ self._mounted
@@ -118,11 +150,8 @@ class BodySensors(Block[LoadedState, None, Array | None, None]):
             since, left, values
         )
         values[:, 0] += bias
-        short = decision.reshape(-1) - values.reshape(-1)
-        there = np.flatnonzero(np.isfinite(short))
-        weight = self._weight[there]
-        rows = jacobian.reshape(len(short), -1)[there] * weight[:, None]
-        return Rows(rows, short[there] * weight, readings=len(there))
+        short = measured.reshape(-1) - values.reshape(-1)
+        return jacobian.reshape(len(short), -1) * self._weight[:, None], short * self._weight
 
 
 def _by_turn(since: Array, left: Array, values: Array) -> Array:

@@ -12,6 +12,7 @@ A foot at rest for longer than a step takes stays at its place p₀: 0 = (p − 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import NamedTuple
@@ -19,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, Int32Array
 from mbkf.model.body import Body
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
@@ -76,6 +77,22 @@ class StandingDecision(NamedTuple):
     places: Places = (None, None)
 
 
+class _Carried(NamedTuple):
+    """A point of a foot as it moves.
+
+    Attributes:
+        place_m: (3,) where it is in the world.
+        velocity: (6,) its linear and its foot's angular velocity, in the foot's axes.
+        by_motion: (6, 2 nv) derivatives of these by q and v.
+        by_q: (3, nv) derivatives of its place by q.
+    """
+
+    place_m: Array
+    velocity: Array
+    by_motion: Array
+    by_q: Array
+
+
 class Rest(NamedTuple):
     """Number of frames for which right and left foot have been at rest, and the places at which they stay."""
 
@@ -111,7 +128,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         self._model, self.settings = model, settings
         self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
         self._data = pin.Data(model.pin_model)
-        self._supports = [model.supports[model.joint(name).joint_id] for name in model.roles.feet]
+        self._joints = [model.joint(name).joint_id for name in model.roles.feet]
         self._lever_m = settings.standing_lever_m * max(settings.stance_s / dt_s, 1.0) ** 0.5
         self._stays_after = round(settings.stays_after_s / dt_s)
         self._on_floor_m = np.zeros((2, SOLE_ENDS))
@@ -167,51 +184,75 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         at_rest, turning, rolling, places = decision
         if not (at_rest or rolling):
             return []
-        s, q, v = self.settings, at.state.q, at.state.v
-        pin.computeForwardKinematicsDerivatives(self._model.pin_model, self._data, q, v, self._still)
-        soles, spatial, found = self._feet.at(q, self._still).soles, self._model.spatial_jacobian(q), []
+        s, soles = self.settings, self._feet.at(at.state.q, self._still).soles
+        ends = np.array(soles)[:, :SOLE_ENDS]
+        rolled = [int(np.argmin(ends[foot, :, 2] - self._on_floor_m[foot])) for foot in rolling]
+        points = [(foot, point) for foot in at_rest for point in (ends[foot].mean(axis=0), *ends[foot])]
+        points += [(foot, ends[foot, k]) for foot, k in zip(rolling, rolled, strict=True)]
+        carried, found = self._carried(at.state.q, at.state.v, points), []
         for foot, turns in zip(at_rest, turning, strict=True):
-            ends, lever = np.array(soles[foot][:SOLE_ENDS]), self._lever_m * turns
+            lever = self._lever_m * turns
             speed, height = (
                 hypot(s.standing_speed_m_s, lever),
                 hypot(s.standing_height_m, 0.5 * s.stance_s * lever),
             )
             turn = hypot(s.standing_turn_rad_s, lever / s.standing_lever_m)
-            found.append(self._still_rows(foot, ends.mean(axis=0), np.repeat([speed, turn], 3)))
-            for end, on_floor in zip(ends, self._on_floor_m[foot], strict=True):
-                found.append(self._floor_rows(spatial, foot, end, on_floor, height))
+            middle = next(carried)
+            found.append(_still_rows(middle, np.repeat([speed, turn], 3)))
+            found += [_floor_row(next(carried), on_floor, height) for on_floor in self._on_floor_m[foot]]
             place = places[foot]
             if place is not None:
-                found.append(self._place_rows(spatial, foot, ends.mean(axis=0), place))
-        for foot in rolling:
-            ends = np.array(soles[foot][:SOLE_ENDS])
-            k = int(np.argmin(ends[:, 2] - self._on_floor_m[foot]))
-            found.append(self._still_rows(foot, ends[k], np.full(3, s.rolling_speed_m_s)))
-            found.append(
-                self._floor_rows(spatial, foot, ends[k], self._on_floor_m[foot, k], s.rolling_height_m)
-            )
+                found.append(_place_rows(middle, place, s.staying_m))
+        for foot, k in zip(rolling, rolled, strict=True):
+            end = next(carried)
+            found.append(_still_rows(end, np.full(3, s.rolling_speed_m_s)))
+            found.append(_floor_row(end, self._on_floor_m[foot, k], s.rolling_height_m))
         return found
 
-    def _still_rows(self, foot: int, point_m: Array, sds: Array) -> Rows:
-        """Rows of a foot's world point (3,) at rest, with spreads (3,) m/s; (6,) for a foot that does not turn."""
-        joint = self._model.joint(self._model.roles.feet[foot]).joint_id
-        by_q, by_v = pin.getJointVelocityDerivatives(self._model.pin_model, self._data, joint, pin.LOCAL)
-        to_point = np.eye(6)
-        to_point[:3, 3:] = -skew(self._data.oMi[joint].actInv(point_m))
-        to_point = to_point[: len(sds)] / sds[:, None]
-        return Rows(np.hstack([to_point @ by_q, to_point @ by_v]), -to_point @ self._data.v[joint].vector)
+    def _carried(self, q: Array, v: Array, points: Sequence[tuple[int, Array]]) -> Iterator[_Carried]:
+        """Points of feet, by foot and place in the world, as they move.
 
-    def _place_rows(self, spatial: Array, foot: int, point_m: Array, place_m: Array) -> Rows:
-        """Rows of a foot's world point (3,) that stays at a place (2,); ``spatial`` (6, nv) at the world's origin."""
-        sd = self.settings.staying_m
-        return Rows(self._moves(spatial, foot, point_m)[:2] / sd, (place_m - point_m[:2]) / sd)
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            points: They.
+        """
+        joints = np.array([self._joints[foot] for foot, _ in points], dtype=np.int32)
+        places = np.array([place for _, place in points])
+        tree = self._model.tree
+        found = (
+            self._reference(q, v, joints, places)
+            if tree is None
+            else tree.carried_points(q, v, joints, places)
+        )
+        return map(_Carried, places, *found)
 
-    def _floor_rows(self, spatial: Array, foot: int, point_m: Array, height_m: float, sd_m: float) -> Rows:
-        """A row of a foot's world point (3,) whose height, when the sole touches the floor, is known with a spread."""
-        jacobian = self._moves(spatial, foot, point_m)
-        return Rows(jacobian[2:3] / sd_m, np.array([(height_m - point_m[2]) / sd_m]))
+    def _reference(self, q: Array, v: Array, joints: Int32Array, places: Array) -> tuple[Array, Array, Array]:
+        """(n, 6), (n, 6, 2 nv), (n, 3, nv): as :meth:`mbkf.kernel.tree.CompiledTree.carried_points`."""
+        model, data = self._model.pin_model, self._data
+        pin.computeForwardKinematicsDerivatives(model, data, q, v, self._still)
+        spatial, found = self._model.spatial_jacobian(q), []
+        for joint, place in zip(joints.tolist(), places, strict=True):
+            by_q, by_v = pin.getJointVelocityDerivatives(model, data, joint, pin.LOCAL)
+            to_point = np.eye(6)
+            to_point[:3, 3:] = -skew(data.oMi[joint].actInv(place))
+            moves = (spatial[:3] - skew(place) @ spatial[3:]) * self._model.supports[joint]
+            found.append((to_point @ data.v[joint].vector, to_point @ np.hstack([by_q, by_v]), moves))
+        velocities, by_motion, by_q = map(np.array, zip(*found, strict=True))
+        return velocities, by_motion, by_q
 
-    def _moves(self, spatial: Array, foot: int, point_m: Array) -> Array:
-        """(3, nv) world Jacobian of a foot's world point (3,): u + ω × p, of the dofs that move the foot."""
-        moved = (spatial[:3] - skew(point_m) @ spatial[3:]) * self._supports[foot]
-        return np.asarray(moved)
+
+def _still_rows(point: _Carried, sds: Array) -> Rows:
+    """Rows of a point at rest, with spreads (3,) m/s; (6,) for one whose foot does not turn."""
+    count = len(sds)
+    return Rows(point.by_motion[:count] / sds[:, None], -point.velocity[:count] / sds)
+
+
+def _place_rows(point: _Carried, place_m: Array, sd_m: float) -> Rows:
+    """Rows of a point that stays at a place (2,) on the floor, with a spread."""
+    return Rows(point.by_q[:2] / sd_m, (place_m - point.place_m[:2]) / sd_m)
+
+
+def _floor_row(point: _Carried, height_m: float, sd_m: float) -> Rows:
+    """A row of a point whose height, when the sole touches the floor, is known with a spread."""
+    return Rows(point.by_q[2:] / sd_m, np.array([(height_m - point.place_m[2]) / sd_m]))
