@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.files_read import check_input, own_files_read, read_bytes
@@ -45,6 +46,19 @@ toe_off_percent: of the cycle. measured, valid: whether every load in it was mea
 its side, or the axis of the force. percent: 0 to 100 of the cycle. value, sd: in ``unit``. Angles and torques have the
 axes and signs of the convention that the result was reconstructed with; those of the midline are as the right side
 sees them."""
+
+
+DIFFERENT = ("value", "sd")
+"""Columns that differ in nearly every row."""
+
+
+def repeated(schema: pa.Schema) -> list[str]:
+    """Columns whose distinct values Parquet stores once; for the others it would count these in vain.
+
+    Args:
+        schema: The table's.
+    """
+    return [name for name in schema.names if name not in DIFFERENT]
 
 
 def read_curves(path: Path) -> pa.Table:
@@ -84,7 +98,13 @@ def write_curves_table(curves: pa.Table, path: Path) -> None:
         OSError: It cannot be written.
     """
     with replacing(path) as partial, partial.open("wb") as file:
-        pq.write_table(curves, file, compression="zstd", write_page_checksum=True)
+        pq.write_table(
+            curves,
+            file,
+            compression="zstd",
+            use_dictionary=repeated(curves.schema),
+            write_page_checksum=True,
+        )
 
 
 def curves_of(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> pa.Table:
@@ -125,8 +145,8 @@ def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]
         for column in ([c.value for c in curves], [c.sd for c in curves])
     )
 
-    def same(value: object) -> list[object]:
-        return [value] * (n * POINTS)
+    def same(value: float, kind: type) -> Array:
+        return np.full(n * POINTS, value, kind)
 
     def each(words: list[str]) -> pa.Array:
         distinct = list(dict.fromkeys(words))
@@ -136,12 +156,12 @@ def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]
     return pa.table(
         {
             "side": each([SIDES[cycle.side]] * n),
-            "cycle": same(number),
-            "start_s": same(cycle.start_s),
-            "duration_s": same(cycle.seconds),
-            "toe_off_percent": same(cycle.off_percent),
-            "measured": same(bool(r.measured[inside].all())),
-            "valid": same(bool(r.valid[inside].all())),
+            "cycle": same(number, np.int32),
+            "start_s": same(cycle.start_s, np.float64),
+            "duration_s": same(cycle.seconds, np.float64),
+            "toe_off_percent": same(cycle.off_percent, np.float32),
+            "measured": same(r.measured[inside].all(), np.bool_),
+            "valid": same(r.valid[inside].all(), np.bool_),
             "quantity": each([c.quantity for c in curves]),
             "name": each([c.name for c in curves]),
             "unit": each([c.unit for c in curves]),

@@ -17,7 +17,7 @@ from mbkf.io.files_read import read_state
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results_folder import RUN_ID, SUMMARY_FILE
 from mbkf.io.utf8 import storable
-from mbkf.study.batch.curves import SCHEMA, read_curves
+from mbkf.study.batch.curves import SCHEMA, read_curves, repeated
 from mbkf.study.batch.outcome import Outcome, Status
 from mbkf.study.batch.plan import Plan, Trial
 from mbkf.study.batch.trial import CURVES_FILE
@@ -165,7 +165,7 @@ def _curves(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> Iterator[pa.Ta
             (trial.person.name, trial.person.session, trial.name or trial.path.stem)
         ):
             table = table.add_column(
-                place, OWN.names[place], pa.array([storable(name)] * len(table), pa.string())
+                place, OWN.names[place], pa.repeat(pa.scalar(storable(name), pa.string()), len(table))
             )
         yield table
 
@@ -180,7 +180,9 @@ def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table | list[Row]])
     with ExitStack() as files:
         partials = [path.with_suffix(end) for end in (".parquet", ".csv")]
         parquet, text = (files.enter_context(partial.open("wb")) for partial in partials)
-        columns = files.enter_context(pq.ParquetWriter(parquet, schema, compression="zstd"))
+        columns = files.enter_context(
+            pq.ParquetWriter(parquet, schema, compression="zstd", use_dictionary=repeated(schema))
+        )
         rows = files.enter_context(pa_csv.CSVWriter(text, plain))
         beside = files.enter_context(ThreadPoolExecutor(1))
         written: Future[None] | None = None
