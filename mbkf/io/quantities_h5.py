@@ -11,12 +11,13 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Iterable, Sequence
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.dimensions import AXES, axes_text
+from mbkf.io.dimensions import AXES, Axis, Unit, axes_text
 from mbkf.io.hdf5 import array
 from mbkf.io.packed_arrays import packed_dataset, put_packed, write_packed
 from mbkf.io.quantities import Quantity, attributes, quantities
@@ -75,8 +76,9 @@ def write_arrays(file: h5py.File, record: object, frames: int | None = None) -> 
         frames: Frames of the whole record, of which more are to come; None: the record is whole.
     """
     spreads: dict[str, list[str]] = {}
+    scales = AxisScales(file)
     for one in _arrays(record):
-        write_array(file, one, getattr(record, one.name), frames)
+        write_array(scales, one, getattr(record, one.name), frames)
         if one.beside:
             spreads.setdefault(one.beside, []).append(one.key)
     for key, beside in spreads.items():
@@ -169,15 +171,46 @@ def write_labels(file: h5py.File, key: str, labels: Sequence[str], meaning: str)
     dataset.make_scale(key)
 
 
-def write_array(file: h5py.File, one: Quantity, value: Array, frames: int | None = None) -> None:
+class AxisScales:
+    """Dimension scales of a file, each looked up once: nearly every array has the axis of time.
+
+    Attributes:
+        file: The file.
+    """
+
+    def __init__(self, file: h5py.File) -> None:
+        """Args: the file."""
+        self.file = file
+        self._scales: dict[str, h5py.Dataset] = {}
+        self._labels: dict[str, tuple[str, ...]] = {}
+
+    def of(self, axis: Axis) -> h5py.Dataset:
+        """The scale of an axis; labels that are the same in every file are written at their first use."""
+        if axis.names not in self._scales:
+            if axis.labels and axis.names not in self.file:
+                write_labels(self.file, axis.names, axis.labels, axis.meaning)
+            self._scales[axis.names] = self.file[axis.names]
+        return self._scales[axis.names]
+
+    def labels(self, axis: Axis) -> tuple[str, ...]:
+        """The labels of an axis."""
+        if axis.names not in self._labels:
+            self._labels[axis.names] = tuple(self.of(axis).asstr()[:])
+        return self._labels[axis.names]
+
+
+def write_array(scales: AxisScales, one: Quantity, value: Array, frames: int | None = None) -> None:
     """Writes an array with unit, meaning, codes and labelled axes; labels that a trial decides on are there already.
 
     Args:
-        file: The file.
+        scales: Scales of the file.
         one: Declaration of the array.
         value: The array, or its first frames.
         frames: Frames of the whole array, if it has an axis of time; None: the array is whole.
     """
+    import h5py
+
+    file = scales.file
     if frames is None or one.axes[0] != TIME or len(value) == frames:
         packs = value.size > _PACKED_FROM
         dataset = write_packed(file, one.key, value) if packs else file.create_dataset(one.key, data=value)
@@ -197,22 +230,34 @@ def write_array(file: h5py.File, one: Quantity, value: Array, frames: int | None
         if axis.names == one.key:
             dataset.make_scale(one.key)
             continue
-        if axis.labels and axis.names not in file:
-            write_labels(file, axis.names, axis.labels, axis.meaning)
-        dataset.dims[number].attach_scale(file[axis.names])
+        h5py.h5ds.attach_scale(dataset.id, scales.of(axis).id, number)
     if one.unit.by_label:
-        labels = file[AXES[one.axes[-1]].names].asstr()[:]
-        _describe(dataset, component_units=", ".join(one.unit.of(label) for label in labels))
+        _describe(dataset, component_units=_component_units(one.unit, scales.labels(AXES[one.axes[-1]])))
+
+
+@lru_cache(maxsize=64)
+def _component_units(unit: Unit, labels: tuple[str, ...]) -> str:
+    """Units of the entries with these labels, in a list."""
+    return ", ".join(unit.of(label) for label in labels)
 
 
 def _describe(dataset: h5py.Dataset, **texts: str) -> None:
     """Writes attributes, five times as fast as ``dataset.attrs``: a result has hundreds of them."""
     import h5py
 
-    kind = h5py.h5t.py_create(h5py.string_dtype(), logical=True)
+    dtype, kind, scalar = _text_type()
     for name, text in texts.items():
-        attribute = h5py.h5a.create(dataset.id, name.encode(), kind, h5py.h5s.create(h5py.h5s.SCALAR))
-        attribute.write(np.array(without_noughts(text), dtype=h5py.string_dtype()))
+        attribute = h5py.h5a.create(dataset.id, name.encode(), kind, scalar)
+        attribute.write(np.array(without_noughts(text), dtype=dtype))
+
+
+@cache
+def _text_type() -> tuple[np.dtype, h5py.h5t.TypeID, h5py.h5s.SpaceID]:
+    """Type of a text for NumPy and for HDF5, and the shape of a single one."""
+    import h5py
+
+    dtype = h5py.string_dtype()
+    return dtype, h5py.h5t.py_create(dtype, logical=True), h5py.h5s.create(h5py.h5s.SCALAR)
 
 
 def plain_json(value: object) -> str:

@@ -22,6 +22,7 @@ from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, WrittenFile, array, check_seal, se
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.quantities import Quantity
 from mbkf.io.quantities_h5 import (
+    AxisScales,
     RecordPieces,
     plain_json,
     read_record,
@@ -196,7 +197,7 @@ def _write_covariance(file: h5py.File, known: BodyCovariance | None) -> None:
         strict=True,
     ):
         write_labels(file, AXES[axis].names, labels, AXES[axis].meaning)
-    write_array(file, _COVARIANCE, known.root)
+    write_array(AxisScales(file), _COVARIANCE, known.root)
     for name in ("factors", "markers", "flexions", "centres"):
         file[_COVARIANCE.key].attrs[name] = json.dumps(getattr(known, name))
 

@@ -145,7 +145,7 @@ def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]
         for column in ([c.value for c in curves], [c.sd for c in curves])
     )
 
-    def same(value: float, kind: type) -> Array:
+    def same(value: float | np.bool_, kind: type) -> Array:
         return np.full(n * POINTS, value, kind)
 
     def each(words: list[str]) -> pa.Array:

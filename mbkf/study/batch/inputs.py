@@ -28,7 +28,7 @@ def fingerprint(files: Sequence[Path], settings: Mapping[str, object]) -> dict[s
         OSError: A file cannot be read.
     """
     return {
-        "files": {str(file): _digest(file) for file in files},
+        "files": {str(file): digest(file) for file in files},
         "settings": json.loads(json.dumps(settings, default=str)),
         "version": __version__,
     }
@@ -71,6 +71,11 @@ def _contents(made_from: Mapping[str, object]) -> tuple[list[object], object, ob
     return list(files.values()), made_from["settings"], made_from["version"]
 
 
-def _digest(file: Path) -> str:
+def digest(file: Path) -> str:
+    """A number that stands for a file's content (SHA-256).
+
+    Raises:
+        OSError: It cannot be read.
+    """
     with opened(file) as content:
         return hashlib.file_digest(content, "sha256").hexdigest()

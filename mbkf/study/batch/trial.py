@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 from mbkf.conventions import StageCallback
@@ -12,9 +13,9 @@ from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import LABELS_FILE, RESULT_FILES, read_reconstruction, write_result_files
 from mbkf.io.session import plain_events
-from mbkf.io.subject import read_subject
+from mbkf.io.subject import Subject, read_subject
 from mbkf.study.batch.curves import write_curves
-from mbkf.study.batch.inputs import RECORD, fingerprint, is_made_from, read_record, write_record
+from mbkf.study.batch.inputs import RECORD, digest, fingerprint, is_made_from, read_record, write_record
 from mbkf.study.batch.naming import named
 from mbkf.study.batch.other_person import checked_owner
 from mbkf.study.batch.plan import Trial
@@ -64,7 +65,7 @@ def trial_done(
     if is_made_from(target / RECORD, made_from):
         return curves_anew(trial, out)
     check_folder(target, (*RESULT_FILES, CURVES_FILE))
-    person = read_subject(subject)
+    person = _person(subject, digest(subject))
     given = named(read_capture(trial.path, forces=trial.forces), person)
     doubts = checked_owner(trial, given.capture, person)
     result = reconstruct(given.capture, person, settings=settings, progress=progress)
@@ -78,6 +79,12 @@ def trial_done(
             write_text(partial / LABELS_FILE, labels)
         write_record(partial / RECORD, {**made_from, DOUBTS: doubts} if doubts else made_from)
     return True
+
+
+@lru_cache(maxsize=1)
+def _person(subject: Path, _content: str) -> Subject:
+    """The person in a file of this content; most trials of a worker follow one of the same person."""
+    return read_subject(subject)
 
 
 def trial_doubts(trial: Trial, out: Path) -> str:

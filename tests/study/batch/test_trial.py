@@ -10,7 +10,7 @@ import pytest
 
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
-from mbkf.io.subject import read_subject
+from mbkf.io.subject import read_subject, write_subject
 from mbkf.study.batch import trial as module
 from mbkf.study.batch.curves import read_curves
 from mbkf.study.batch.inputs import RECORD
@@ -66,6 +66,18 @@ def test_doubts_about_the_person_stay_with_a_trial_that_is_done(task, tmp_path, 
     for anew in (True, False):
         assert trial_done(*task, SETTINGS) is anew
         assert trial_doubts(task[0], tmp_path) == "markers were put on anew"
+
+
+def test_a_person_that_was_scaled_anew_in_the_same_file_is_read_again(task, monkeypatch):
+    trial, file, out = task
+    subject, seen = read_subject(file), []
+    monkeypatch.setattr(
+        module, "reconstruct", lambda capture, person, **how: seen.append(person.mass_kg) or walk()
+    )
+    for mass_kg in (70.0, 80.0):
+        write_subject(replace(subject, mass_kg=mass_kg), out / "subject.toml")
+        assert trial_done(trial, out / "subject.toml", out, SETTINGS)
+    assert seen == [70.0, 80.0]
 
 
 @pytest.mark.usefixtures("followed")
