@@ -74,6 +74,15 @@ def window_ends(position: Array | float, half: float) -> tuple[Array, Array]:
     return low, high
 
 
+def window_of(position: float, half: float) -> tuple[float, float]:
+    """:func:`window_ends` of a single window: a stream asks for one with each frame."""
+    low, high = (
+        float(whole) if abs(end - (whole := round(end))) < WHOLE else end
+        for end in (position - half, position + half)
+    )
+    return low, high
+
+
 def integrals_between(samples: Array, low: Array, high: Array, span: float) -> Array:
     """(T, n) integrals, per sample interval, of samples joined by straight lines: Σ f_k ∫ h(x − k) dx with hats h.
 

@@ -133,7 +133,12 @@ def counts(values: Array | np.float64) -> NDArray[np.int64]:
 
 
 def plausible(points_m: Array) -> tuple[Array, int]:
-    """Points (N, 3) with implausible ones replaced by NaN, and their number; NaN points are not counted."""
+    """Points (N, 3) with implausible ones replaced by NaN, and their number; NaN points are not counted.
+
+    Where no coordinate is missing or implausible, the array given is returned.
+    """
+    if np.abs(points_m).max(initial=0.0) <= FARTHEST_M:  # NaN compares as false
+        return points_m, 0
     far = np.abs(points_m) > FARTHEST_M
     missing = np.asarray(np.isnan(points_m).any(axis=1))
     if far.any():

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import IntEnum
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,10 +112,14 @@ def all_possible(readings: Array, weight_n: float, reach_m: Array) -> bool:
     kernel = library()
     if kernel is None:
         return not impossible(readings, weight_n, reach_m).any()
-    limits = PossibleLoads(
+    return kernel.wrenches_possible(np.ascontiguousarray(readings), reach_m, _limits(weight_n))
+
+
+@lru_cache(maxsize=16)
+def _limits(weight_n: float) -> PossibleLoads:
+    return PossibleLoads(
         weight_n=weight_n, most=MOST_WEIGHTS, pull=PULL_WEIGHTS, friction=FRICTION, slack=SLACK_WEIGHTS
     )
-    return kernel.wrenches_possible(np.ascontiguousarray(readings), reach_m, limits)
 
 
 def without_impossible(wrench: Array, plates: Sequence[PlateReadings], weight_n: float) -> Array:

@@ -153,7 +153,8 @@ class FrameAlignment:
         points, wrong, markers = frame.unlabelled_m, 0, None
         if len(points):
             points, wrong = plausible(points)
-            points = points[~np.isnan(points).any(axis=1)]
+            if points is not frame.unlabelled_m:  # some are missing
+                points = points[~np.isnan(points).any(axis=1)]
         if self._columns is not None:
             markers, more = plausible(frame.markers_m[self._columns])
             wrong += more

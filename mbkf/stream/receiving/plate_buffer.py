@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
-from mbkf.io.resample import window_ends, window_weights
+from mbkf.io.resample import window_of, window_weights
 from mbkf.kernel.loading import library
 from mbkf.sensors.contact.cleaning import longest_bridge
 from mbkf.sensors.contact.possible import Fault, all_possible, impossible, reaches
@@ -63,46 +63,50 @@ class PlateBuffer:
         index, wrench = samples.index, samples.wrench
         if not len(index) or not self._count:
             return PlateSamples.none(self._count)
-        if self.newest is not None and index[0] <= self.newest:
+        size, first, last = len(self._values), int(index[0]), int(index[-1])
+        if self.newest is not None and first <= self.newest:
             fresh = index > self.newest
             index, wrench = index[fresh], wrench[fresh]
             if not len(index):
                 return PlateSamples.none(self._count)
-        size, first, last = len(self._values), int(index[0]), int(index[-1])
-        whole = len(index) == last - first + 1
+            first = int(index[0])
+        count = len(index)
+        whole = count == last - first + 1
         if self.newest is None or first - self.newest > size:
             self._values[:] = np.nan
             self._oldest = first
             self._last_good = [-1] * self._count
         elif first > self.newest + 1:
             self._values[np.arange(self.newest + 1, first) % size] = np.nan
-        self.missing += last - (first - 1 if self.newest is None else self.newest) - len(index)
+        self.missing += last - (first - 1 if self.newest is None else self.newest) - count
         if not whole:
             self._values[np.setdiff1d(np.arange(first, last), index) % size] = np.nan
-        wrench, good = self._judged(wrench)
-        self._values[index % size] = wrench.reshape(len(index), -1)
-        self._bridge_gaps(index, good, whole)
+        judged, good = self._judged(wrench)
+        place = first % size
+        if whole and place + count <= size:
+            self._values[place : place + count] = judged.reshape(count, -1)
+        else:
+            self._values[index % size] = judged.reshape(count, -1)
+        if whole and good is None and self._last_good == [first - 1] * self._count:
+            self._last_good = [last] * self._count
+        else:
+            self._bridge_gaps(index, np.ones(judged.shape[:2], dtype=bool) if good is None else good)
         self.newest = last
-        return PlateSamples(index, wrench)
+        return samples if judged is samples.wrench else PlateSamples(index, judged)
 
-    def _judged(self, wrench: Array) -> tuple[Array, BoolArray]:
-        """Readings (S, K, 6) with NaN for impossible ones, and (S, K) true for possible ones."""
+    def _judged(self, wrench: Array) -> tuple[Array, BoolArray | None]:
+        """Readings (S, K, 6) with NaN for impossible ones, and (S, K) true for possible ones; None where all are."""
         if self._weight_n is None:
-            return wrench, np.asarray(np.isfinite(wrench).all(axis=2))
+            good = np.asarray(np.isfinite(wrench).all(axis=2))
+            return wrench, None if good.all() else good
         if all_possible(wrench, self._weight_n, self._reach_m):
-            return wrench, np.ones(wrench.shape[:2], dtype=bool)
+            return wrench, None
         good = impossible(wrench, self._weight_n, self._reach_m) == Fault.NONE
         self.refused += int((~good).sum())
         return np.where(good[:, :, None], wrench, np.nan), good
 
-    def _bridge_gaps(self, index: NDArray[np.int64], good: BoolArray, whole: bool) -> None:
-        """Straight lines over short gaps that good samples (S, K) have ended, for each plate.
-
-        ``whole`` is true where no sample is missing between the first and the last one.
-        """
-        if whole and good.all() and all(known == index[0] - 1 for known in self._last_good):
-            self._last_good = [int(index[-1])] * self._count
-            return
+    def _bridge_gaps(self, index: NDArray[np.int64], good: BoolArray) -> None:
+        """Straight lines over short gaps that good samples (S, K) have ended, for each plate."""
         size = len(self._values)
         for k, own in enumerate(good.T):
             known = index[own]
@@ -128,7 +132,7 @@ class PlateBuffer:
         oldest = max(self._oldest, newest - len(self._values) + 1)
         if not oldest - OUTSIDE <= position <= newest + OUTSIDE:
             return self._unread
-        low, high = (min(max(float(end), oldest), newest) for end in window_ends(position, self._half))
+        low, high = (min(max(end, oldest), newest) for end in window_of(position, self._half))
         if high - low <= 1e-9:
             return self._weighed(round(min(max(position, oldest), newest)), ONE_SAMPLE, 1.0)
         first = floor(low)

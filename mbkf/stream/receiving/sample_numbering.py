@@ -6,6 +6,8 @@ by the time that passed, the newest sample is taken to belong to the end of its 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,11 +55,12 @@ class SampleNumbering:
             wanted: Number of the last sample, if the newest belongs to the end of its frame.
             fitting: Shift that the frames' own count suggests, where that jumped; None where it did not.
         """
-        if not len(index):
+        counts = index.tolist()
+        if not counts:
             return index, None
         passed = (arrival_s - self._newest_s) * self._rate_hz
-        if self._follows(index, passed, wanted):
-            self._newest, self._newest_s = int(index[-1]) + self.shift, arrival_s
+        if self._follows(counts, passed, wanted):
+            self._newest, self._newest_s = counts[-1] + self.shift, arrival_s
             self._behind = 0
             return (index + self.shift if self.shift else index), None
         readable = (index >= -LARGEST_COUNT) & (index <= LARGEST_COUNT)
@@ -74,16 +77,17 @@ class SampleNumbering:
         self._newest_s = arrival_s
         return numbers[readable], readable
 
-    def _follows(self, index: Indices, passed: float, wanted: int) -> bool:
+    def _follows(self, counts: list[int], passed: float, wanted: int) -> bool:
         """True for samples that follow the newest one, each other, the time that passed, and the frames."""
         if self._newest is None:
             return False
-        gap = int(index[0]) + self.shift - self._newest - 1
-        if not 0 <= gap <= passed + self._slack or self._ahead(int(index[-1]), wanted):
+        first, last = counts[0], counts[-1]
+        gap = first + self.shift - self._newest - 1
+        if not 0 <= gap <= passed + self._slack or self._ahead(last, wanted):
             return False
-        steps = index[1:] - index[:-1]
-        whole = int(index[-1]) - int(index[0]) == len(steps)  # with steps of at least 1 each, all are 1
-        return not len(steps) or bool(steps.min() >= 1 and (whole or steps.max() <= self._slack))
+        if last - first == len(counts) - 1:  # with steps of at least 1 each, all are 1
+            return counts == [*range(first, last + 1)]
+        return all(1 <= after - before <= self._slack for before, after in pairwise(counts))
 
     def _ahead(self, last: int, wanted: int) -> bool:
         """True for a sample that is farther ahead of its frame than the first ones were."""

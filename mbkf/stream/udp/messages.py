@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -51,6 +52,18 @@ class UdpDescription:
     metres: float
     newton_metres: float
     rotation: Array
+
+    @cached_property
+    def to_world(self) -> Array:
+        """(3, 3) matrix that takes rows of coordinates, in the stream's unit and axes, to the world's in metres."""
+        return self.metres * self.rotation.T
+
+    def wrenches(self, forces: Array) -> Array:
+        """(S, K, 6) force N and moment N m in world axes, from samples (S, K, 6) in the stream's units and axes."""
+        found: Array = (forces.reshape(-1, 3) @ self.rotation.T).reshape(forces.shape)
+        if self.newton_metres != 1.0:
+            found[:, :, 3:] *= self.newton_metres
+        return found
 
 
 @dataclass(frozen=True)

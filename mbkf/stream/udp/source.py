@@ -153,7 +153,7 @@ class UdpSource:
             self._put_samples(message, self._described, known)
         if message.number is None:
             return
-        turn = self._described.metres * self._described.rotation.T
+        turn = self._described.to_world
         markers = known.by_name(message.markers) @ turn if known.stream.marker_names else NO_POINTS
         points = NO_POINTS if message.points is None else message.points @ turn
         plates = self._samples(len(known.stream.plates))
@@ -182,11 +182,8 @@ class UdpSource:
         if first is None:
             ratio = described.stream.plate_rate_hz / described.stream.rate_hz
             first = round((message.number or 0) * ratio)
-        wrench = forces.reshape(-1, count, 2, 3) @ described.rotation.T
-        wrench[:, :, 1] *= described.newton_metres
         index = np.arange(first, first + len(forces), dtype=np.int64)
-        samples = PlateSamples(index, wrench.reshape(-1, count, 6))
-        self._waiting.append(known.plate_samples(samples))
+        self._waiting.append(known.plate_samples(PlateSamples(index, described.wrenches(forces))))
         while len(self._waiting) > 1 and sum(len(one.index) for one in self._waiting) > HELD_SAMPLES:
             self._waiting.pop(0)
 
