@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -43,6 +44,11 @@ class QtmDescription:
     plate_ids: tuple[int, ...]
     rotation: Array
     left_out: tuple[str, ...] = ()
+
+    @cached_property
+    def to_world(self) -> Array:
+        """(3, 3) matrix that takes rows of coordinates in QTM's axes, mm, to the world's, m."""
+        return MM * self.rotation.T
 
 
 def read_parameters(text: str, up: str | None = None) -> QtmDescription:

@@ -40,6 +40,8 @@ class PlateForceReader:
         self._rotation = described.rotation
         corners = [plate.corners_m for plate in plates if plate.corners_m is not None]
         self._plate_axes = [plate_axes(one) for one in corners]
+        self._on_body_local = [-one.T for one in self._plate_axes]
+        self._on_body = -self._rotation.T
         self._centres = [one.mean(axis=0) for one in corners]
 
     def samples(self, forces: Sequence[PlateForces]) -> PlateSamples:
@@ -55,26 +57,22 @@ class PlateForceReader:
             known, first, last = known[:1], known[0].first, known[0].first + len(known[0].samples)
         wrench = np.full((last - first, count, 6), np.nan)
         for one in known:
-            k = self._ids.index(one.plate)
-            self._decide(one, k)
-            wrench[one.first - first : one.first - first + len(one.samples), k] = self._wrench(
-                one, k, self.axes
-            )
+            k, at = self._ids.index(one.plate), one.first - first
+            if self.axes is None:
+                self._decide(one, k)
+            wrench[at : at + len(one.samples), k] = self._wrench(one, k, self.axes)
         return PlateSamples(np.arange(first, last, dtype=np.int64), wrench)
 
     def _wrench(self, one: PlateForces, k: int, axes: str | None) -> Array:
         """(S, 6) force and moment of the plate on the body."""
-        values = one.samples.astype(float)
-        turn = self._plate_axes[k] if axes in (None, LOCAL) else self._rotation
-        force, moment = values[:, :3] @ turn.T, values[:, 3:6] @ turn.T
+        turn = self._on_body_local[k] if axes in (None, LOCAL) else self._on_body
+        found: Array = (one.samples[:, :6].reshape(-1, 3).astype(float) @ turn).reshape(-1, 6)
         if axes == LABORATORY_ORIGIN:
-            moment = moment - np.cross(self._centres[k], force)
-        return -np.hstack([force, moment])
+            found[:, 3:] -= np.cross(self._centres[k], found[:, :3])
+        return found
 
     def _decide(self, one: PlateForces, k: int) -> None:
         """Decides the axes by the first loaded sample: those whose moment gives its point of application."""
-        if self.axes is not None:
-            return
         values = one.samples.astype(float)
         normal = self._plate_axes[k][:, 2]
         for row in range(len(values)):

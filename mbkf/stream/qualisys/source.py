@@ -161,8 +161,10 @@ class QualisysSource(ReconnectingSource[QtmClient, Packet]):
         markers, residuals = NO_POINTS, NO_RESIDUALS
         if known.stream.marker_names:
             markers, residuals = self._markers(labelled, its_residuals)
-        points = NO_POINTS if bare is None or not len(bare) else self._world(bare)
-        residuals = np.concatenate([residuals, MM * bare_residuals.astype(float)])
+        points = NO_POINTS
+        if bare is not None and len(bare):
+            points = self._world(bare)
+            residuals = np.concatenate([residuals, MM * bare_residuals.astype(float)])
         none = PlateSamples.none(len(known.stream.plates))
         made = SourceFrame(frame.number, arrival_s, markers, points, none, residuals_m=residuals)
         self._waiting.put(made)
@@ -181,7 +183,7 @@ class QualisysSource(ReconnectingSource[QtmClient, Packet]):
 
     def _world(self, points_mm: NDArray[np.float32]) -> Array:
         assert self._described is not None
-        return np.asarray(points_mm.astype(float) @ (MM * self._described.rotation.T))
+        return np.asarray(points_mm.astype(float) @ self._described.to_world)
 
     def _ask_for_parameters(self) -> None:
         now = time.perf_counter()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, InvalidPacket, UnknownName
@@ -26,6 +28,9 @@ MM = 1e-3
 RATES_HZ = (1.0, 100_000.0)
 
 MOST_MARKERS, MOST_PLATES = 5000, 64
+
+LISTS_KEPT = 16
+"""Lists of markers whose places are kept, at most."""
 
 FORCE_NAMES = ("Fx", "Fy", "Fz")
 """Components of the channel by which a device is a force plate."""
@@ -69,6 +74,28 @@ class ViconDescription:
     plates: tuple[ViconPlate, ...]
     rotation: Array
     left_out: tuple[str, ...] = ()
+
+    @cached_property
+    def to_world(self) -> Array:
+        """(3, 3) matrix that takes rows of places in Vicon's axes, mm, to the world's, m."""
+        return MM * self.rotation.T
+
+    @cached_property
+    def columns(self) -> Callable[[bytes], tuple[NDArray[np.intp], NDArray[np.intp]]]:
+        """Function that takes the IDs of markers, as they stand in a packet, to rows of known ones and their places.
+
+        Frames list the same markers most often, so that the latest lists are kept.
+        """
+        return lru_cache(maxsize=LISTS_KEPT)(self._columns)
+
+    def _columns(self, ids: bytes) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Rows (n,) of the known ones among the markers with these IDs, pairs of whole numbers; their places (n,)."""
+        pairs = np.frombuffer(ids, "<u4").reshape(-1, 2).tolist()
+        found = [
+            (row, self.places[pair]) for row, pair in enumerate(map(tuple, pairs)) if pair in self.places
+        ]
+        rows, columns = np.array(found, dtype=np.intp).reshape(-1, 2).T
+        return rows, columns
 
 
 def describe(

@@ -47,9 +47,10 @@ LARGEST = 16 * 1024 * 1024
 MOST_SAMPLES = 20_000
 """Samples of a plate in one packet, at most: a fifth of a second at the highest rate of plates that is read."""
 
+_F4 = np.dtype("<f4")
 _U32, _U64 = struct.Struct("<I"), struct.Struct("<Q")
 _POINT = np.dtype([("radius", "<f8"), ("place", "<f8", (3,)), ("covariance", "<f8", (9,)), ("track", "<u4")])
-_MARKER = np.dtype([("subject", "<u4"), ("marker", "<u4"), *_POINT.descr])
+_MARKER = np.dtype([("ids", "<u4", (2,)), *_POINT.descr])
 
 
 @dataclass(frozen=True)
@@ -203,11 +204,11 @@ def read_plate(data: bytes) -> Plate:
     return Plate(device, translation, rotation, fields.floats(6).reshape(2, 3), fields.floats(3))
 
 
-def read_markers(data: bytes) -> tuple[NDArray, Array]:
+def read_markers(data: bytes) -> tuple[NDArray[np.uint32], Array]:
     """(N, 2) IDs of subjects and markers, and (N, 3) their places, mm."""
     fields = Fields(data)
     rows = fields.rows(_MARKER, fields.count(_MARKER.itemsize))
-    return np.column_stack([rows["subject"], rows["marker"]]), np.array(rows["place"])
+    return rows["ids"], rows["place"]
 
 
 def read_points(data: bytes) -> Array:
@@ -224,7 +225,7 @@ def read_samples(data: bytes) -> DeviceSamples:
     """
     fields = Fields(data)
     frame, device, _ = fields.integer(), fields.integer(), fields.integer()
-    values = fields.rows(np.dtype("<f4"), fields.count(4))
+    values = fields.rows(_F4, fields.count(4))
     if len(values) % 3 or len(values) > 3 * MOST_SAMPLES:
         raise InvalidPacket(
             f"Vicon: {len(values)} numbers are not samples of three components, or more than {MOST_SAMPLES}"

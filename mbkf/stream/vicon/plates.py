@@ -54,6 +54,7 @@ class PlateForceReader:
         """Args: the plates."""
         self.convention: Convention | None = None
         self._plates = tuple(plates)
+        self._turns: dict[tuple[int, Convention], Array] = {}
 
     def samples(
         self,
@@ -78,7 +79,7 @@ class PlateForceReader:
                 continue
             if one.frame * len(one.values) > LARGEST_COUNT:
                 continue
-            own = np.hstack([one.values, moment.values]).astype(float)
+            own = np.concatenate((one.values, moment.values), axis=1, dtype=float)
             centre = beside.get((one.device, one.frame))
             if centre is not None and len(centre.values) == len(own):
                 self._decide(own, centre.values.astype(float), self._plates[k])
@@ -107,11 +108,10 @@ class PlateForceReader:
 
     def _wrench(self, own: Array, plate: ViconPlate, convention: Convention) -> Array:
         """(S, 6) force of the plate on the body and moment about the plate's origin, world axes."""
-        force = convention.sign * own[:, :3] @ plate.rotation.T
-        moment = convention.sign * NEWTON_METRES[convention.unit] * own[:, 3:] @ plate.rotation.T
-        if convention.about == SENSOR:
-            moment = moment + np.cross(plate.sensor_m - plate.origin_m, force)
-        return np.hstack([force, moment])
+        key = plate.device, convention
+        if key not in self._turns:
+            self._turns[key] = _to_body(plate, convention)
+        return np.asarray(own @ self._turns[key])
 
     def _decide(self, own: Array, centres: Array, plate: ViconPlate) -> None:
         """Decides by the first loaded sample: the convention whose moment gives the centre of pressure."""
@@ -136,3 +136,13 @@ class PlateForceReader:
 
         ways = [Convention(sign, unit, about) for about, unit in product((ORIGIN, SENSOR), NEWTON_METRES)]
         self.convention = min(ways, key=apart)
+
+
+def _to_body(plate: ViconPlate, convention: Convention) -> Array:
+    """(6, 6) matrix that takes rows of force and moment by a convention to those on the body, world axes."""
+    found = np.zeros((6, 6))
+    found[:3, :3] = convention.sign * plate.rotation.T
+    found[3:, 3:] = NEWTON_METRES[convention.unit] * found[:3, :3]
+    if convention.about == SENSOR:
+        found[:3, 3:] = np.cross(plate.sensor_m - plate.origin_m, found[:3, :3])
+    return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from mbkf.stream.reconnecting import ReconnectingSource
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
 from mbkf.stream.vicon import objects
 from mbkf.stream.vicon.client import Packet, ViconClient
-from mbkf.stream.vicon.description import MM, ViconDescription, describe
+from mbkf.stream.vicon.description import ViconDescription, describe
 from mbkf.stream.vicon.plates import PlateForceReader
 
 FRAMES_FIRST = 2
@@ -168,19 +167,18 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
     def _read(self, one: Packet, number: int) -> SourceFrame:
         assert self._described is not None and self._known is not None and self._plates is not None
         known, blocks = self._known, one.blocks
-        unchanged = [
-            kind for data in blocks.get(objects.CONTENTS, ()) for kind in objects.read_unchanged(data)
-        ]
         markers = np.full((len(self._described.stream.marker_names), 3), np.nan)
-        if objects.LABELED in blocks:
-            self._place_markers(markers, blocks[objects.LABELED], self._described)
+        for data in blocks.get(objects.LABELED, ()):
+            ids, places = objects.read_markers(data)
+            rows, columns = self._described.columns(ids.tobytes())
+            markers[columns] = self._world(places)[rows]
         shown = known.in_order(markers) if known.stream.marker_names else NO_POINTS
         points = [self._world(objects.read_points(data)) for data in blocks.get(objects.UNLABELED, ())]
         before = self._before
-        if before is not None and objects.LABELED in unchanged and objects.LABELED not in blocks:
+        if before is not None and objects.LABELED not in blocks and objects.LABELED in self._unchanged(one):
             shown = before.markers_m
-        if before is not None and objects.UNLABELED in unchanged and not points:
-            points = [before.unlabelled_m]
+        if before is not None and not points and len(before.unlabelled_m):
+            points = [before.unlabelled_m] * (objects.UNLABELED in self._unchanged(one))
         forces, moments, centres = (
             [objects.read_samples(data) for data in blocks.get(kind, ())]
             for kind in (objects.FORCE, objects.MOMENT, objects.CENTRE_OF_PRESSURE)
@@ -189,22 +187,19 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
         samples = known.plate_samples(self._plates.samples(forces, moments, centres))
         if undecided and self._plates.convention is not None:
             self._news.append(("plates axes", self._plates.convention.sentence))
-        bare = np.vstack(points) if points else NO_POINTS
+        bare = np.vstack(points) if len(points) > 1 else points[0] if points else NO_POINTS
         plates = samples if known.stream.plates else PlateSamples.none(0)
         return SourceFrame(number, one.arrival_s, shown, bare, plates)
 
-    def _place_markers(self, markers: Array, found: Sequence[bytes], described: ViconDescription) -> None:
-        for data in found:
-            ids, places = objects.read_markers(data)
-            world = self._world(places)
-            for (subject, marker), at in zip(ids.tolist(), world, strict=True):
-                column = described.places.get((subject, marker))
-                if column is not None:
-                    markers[column] = at
+    @staticmethod
+    def _unchanged(one: Packet) -> set[int]:
+        """Types that a packet leaves out since they have not changed."""
+        stated = one.blocks.get(objects.CONTENTS, ())
+        return {kind for data in stated for kind in objects.read_unchanged(data)}
 
     def _world(self, places_mm: Array) -> Array:
         assert self._described is not None
-        return np.asarray(places_mm @ (MM * self._described.rotation.T))
+        return np.asarray(places_mm @ self._described.to_world)
 
     def _describe_again(self) -> None:
         """Takes objects that describe the stream anew."""
