@@ -209,6 +209,17 @@ def test_old_samples_are_not_taken_again():
     np.testing.assert_array_equal([buffer.mean(n) for n in range(10)], expected)
 
 
+def test_readings_go_on_where_the_oldest_are_overwritten():
+    plates, chunk = plates_of(1000.0, 2070), 9
+    buffer, values = buffer_of(plates), readings(plates)
+    assert len(buffer._values) == 225 * chunk - 1  # one chunk is a sample too long for the room at the end
+    for begin in range(0, 2070, chunk):
+        samples = np.arange(begin, begin + chunk)
+        buffer.put(PlateSamples(samples, values[samples]))
+    expected = plate_wrenches(plates, np.arange(200, 206) / RATE_HZ, RATE_HZ)
+    np.testing.assert_array_equal([buffer.mean(n) for n in range(200, 206)], expected)
+
+
 def test_after_a_long_silence_what_was_before_is_forgotten():
     plates = plates_of(1000.0, 100)
     buffer, values = buffer_of(plates), readings(plates)

@@ -12,6 +12,7 @@ from benchmarks.streams.vicon_server import PlateConvention, ViconServer, block
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.stream import reconnecting
 from mbkf.stream.played import played
+from mbkf.stream.vicon import objects
 from mbkf.stream.vicon import source as vicon
 from mbkf.stream.vicon.client import Packet
 from mbkf.stream.vicon.source import ViconSource
@@ -182,6 +183,28 @@ def test_plates_that_begin_to_send_with_the_second_frame_are_described(monkeypat
     monkeypatch.setattr(source, "_take", lambda _: waiting.pop(0))
     (plate,) = connected(source).plates
     assert plate.rate_hz == 1000.0
+
+
+def test_markers_stand_where_their_ids_say_and_stay_while_they_are_unchanged(monkeypatch):
+    def labelled(*markers):
+        rows = [struct.pack("<2Id3d9dI", *ids, 7.0, *place, *np.eye(3).ravel(), 0) for ids, place in markers]
+        return struct.pack("<I", len(rows)) + b"".join(rows)
+
+    point = struct.pack("<Id3d9dI", 1, 7.0, 1000.0, 2000.0, 3000.0, *np.eye(3).ravel(), 0)
+    markers = labelled(((2, 0), (9.0, 9.0, 9.0)), ((1, 1), (4.0, 5.0, 6.0)), ((1, 0), (1.0, 2.0, 3.0)))
+    unchanged = struct.pack("<4I", 0, 2, objects.LABELED, objects.UNLABELED)
+    shown = [{}, {}, {"LABELED": [markers], "UNLABELED": [point]}, {"CONTENTS": [unchanged]}, {}]
+    waiting = [
+        Packet(0.0, described(FRAME_INFO=[struct.pack("<I", k)], **one)) for k, one in enumerate(shown)
+    ]
+    source = ViconSource(HERE, 801)
+    monkeypatch.setattr(source, "_take", lambda _: waiting.pop(0))
+    assert connected(source).marker_names == ("LASI", "RASI")
+    first, second, third = (source.read(1.0) for _ in range(3))
+    for frame in (first, second):
+        np.testing.assert_allclose(frame.markers_m, 1e-3 * np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]))
+        np.testing.assert_allclose(frame.unlabelled_m, [[1.0, 2.0, 3.0]])
+    assert np.isnan(third.markers_m).all() and not len(third.unlabelled_m)
 
 
 def test_packets_without_end_that_describe_nothing_end_no_later_than_asked(monkeypatch):
