@@ -16,7 +16,7 @@ from mbkf.app.failures import CONFLICT, Refused
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import flush
 from mbkf.io.files_read import place_of
-from mbkf.io.leftovers import unfinished
+from mbkf.io.leftovers import sweep_folder, unfinished
 from mbkf.study.batch.plan import FORBIDDEN
 
 RESULTS = "results"
@@ -61,6 +61,7 @@ def putting(root: Path, name: str, size: int | None = None) -> Iterator[BinaryIO
             raise _taken(name)
         if shutil.disk_usage(target.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target))
+    sweep_folder(target.parent)  # of a page that was killed, whatever file it was given
     with unfinished(target) as partial:
         with partial.open("wb") as file:
             yield file

@@ -56,6 +56,13 @@ def test_a_broken_off_file_is_not_there(root):
     assert list((root / "P3").iterdir()) == []
 
 
+def test_the_part_of_another_file_that_a_killed_page_left_is_swept(root):
+    left = root / f".video-{32 * 'a'}.mp4"
+    left.write_bytes(b"part")
+    put(root, "walk.c3d")
+    assert [one.name for one in root.iterdir()] == ["walk.c3d"]
+
+
 def test_a_file_is_never_replaced(root):
     put(root, "P1/walk.c3d", b"first")
     put(root, "P1/walk.c3d", b"first", 5)

@@ -8,8 +8,6 @@ offsets by the body, and the verdict are those of the whole trial.
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -76,19 +74,19 @@ def reconstruct_long(
     settings, lengths = settings or ReconstructSettings(), lengths or PieceSettings()
     check_names(settings, subject, sensors=False)
     source = in_axes_of(source, subject, settings)
-    with single_threaded(), _unfinished_beside(folder) as pages:
-        trial = prepared(source, subject, settings, lengths, pages, progress)
-        rows, settled = _filtered(trial, pages, progress)
-        with replacing_folder(folder, last=SUMMARY_FILE) as partial_folder:
+    with single_threaded(), replacing_folder(folder, last=SUMMARY_FILE) as partial_folder:
+        with unfinished(partial_folder / "arrays", folder=True) as pages:
+            trial = prepared(source, subject, settings, lengths, pages, progress)
+            rows, settled = _filtered(trial, pages, progress)
             run_id, written = uuid.uuid4().hex, ResultPieces(partial_folder / MOTION_FILE, source.frames)
             try:
                 last, summary, valid = assembled(trial, rows, settled, written.add, progress)
                 written.finish(last, run_id, valid)
             finally:
                 written.close()
-            write_summary(summary, partial_folder, run_id)
-        for name in OPENSIM_FILES:
-            remove_file(folder / name)
+        write_summary(summary, partial_folder, run_id)
+    for name in OPENSIM_FILES:
+        remove_file(folder / name)
     return summary
 
 
@@ -109,15 +107,6 @@ def in_axes_of(source: CapturePieces, subject: Subject, settings: ReconstructSet
         return replace(source, look=checked)
     turn = axes_matrix(checked.axes) @ axes_matrix(look.axes).T
     return replace(source.turned(np.asarray(turn), checked.axes_source), look=checked)
-
-
-@contextmanager
-def _unfinished_beside(folder: Path) -> Iterator[Path]:
-    """A folder for files of arrays beside the result's, which is removed at the end."""
-    place = folder.absolute()
-    place.parent.mkdir(parents=True, exist_ok=True)
-    with unfinished(place.with_name(f"{place.name}_arrays"), folder=True, shown=place) as pages:
-        yield pages
 
 
 def _filtered(trial: LongTrial, folder: Path, progress: StageCallback | None) -> tuple[PagedArray, Settled]:

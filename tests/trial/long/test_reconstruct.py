@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from mbkf.errors import NotObservable
+from mbkf.io import leftovers
+from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.capture_pieces import CapturePieces
@@ -107,7 +109,7 @@ def test_the_causal_filter_goes_on_over_borders_exactly(walk, tmp_path):
     assert_equal_results(whole, pieces)
 
 
-def test_an_end_on_the_way_leaves_an_earlier_result(walk, tmp_path):
+def test_an_end_on_the_way_leaves_an_earlier_result(walk, tmp_path, monkeypatch):
     path, person = walk
     settings = ReconstructSettings(filter="kinematic", smooth=False, checks=False)
     source, folder = CapturePieces.of(path, LENGTHS.look_frames), tmp_path / "result"
@@ -121,6 +123,14 @@ def test_an_end_on_the_way_leaves_an_earlier_result(walk, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         reconstruct_long(source, person, folder, settings=settings, lengths=LENGTHS, progress=end)
     assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
+    assert [one.name for one in tmp_path.iterdir()] == ["result"]
+
+    with monkeypatch.context() as killed, pytest.raises(KeyboardInterrupt):
+        killed.setattr(leftovers, "_remove", lambda _: None)
+        reconstruct_long(source, person, folder, settings=settings, lengths=LENGTHS, progress=end)
+    assert len(list(tmp_path.iterdir())) == 2
+    with replacing_folder(folder):  # as any run into the folder
+        assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
     assert [one.name for one in tmp_path.iterdir()] == ["result"]
 
 
