@@ -37,7 +37,7 @@ def track(
     keep_covariance: bool = False,
     progress: Callable[[int, int], None] | None = None,
     contacts: ContactWatch | None = None,
-    filtered: Callable[[int, Posterior], None] | None = None,
+    filtered: Callable[[int, Posterior], bool] | None = None,
 ) -> Track:
     """Runs the filter over all frames.
 
@@ -52,7 +52,8 @@ def track(
         progress: Called with frames done and frames in all.
         contacts: Without smoothing, opens contacts of other parts than the feet on the way; None: those of the
             recording.
-        filtered: Called with each frame and its filtered estimate; an error that it raises ends the run.
+        filtered: Called with each frame and its filtered estimate; where it returns False the run ends, and its later
+            frames stay blank.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
@@ -115,7 +116,7 @@ def fill(
     contacts: ContactWatch | None,
     covariance: Array | None = None,
     kept_bytes: int | None = None,
-    filtered: Callable[[int, Posterior], None] | None = None,
+    filtered: Callable[[int, Posterior], bool] | None = None,
 ) -> Settled:
     """Runs a filter over all frames and fills their records.
 
@@ -130,7 +131,8 @@ def fill(
         contacts: Without smoothing, opens contacts of other parts than the feet on the way.
         covariance: (T, 2 nv, 2 nv) receives the full covariances; None: they are not kept.
         kept_bytes: Memory for roots of the errors by the body (:class:`~mbkf.filters.offset_change.OffsetChanges`).
-        filtered: Called with each frame and its filtered estimate; an error that it raises ends the run.
+        filtered: Called with each frame and its filtered estimate; where it returns False the run ends, and its later
+            frames stay blank.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
@@ -157,8 +159,8 @@ def fill(
         recorder.step(row, fresh, seconds)
         recorder.innovation(row, fresh)
         started = started or fresh.started
-        if filtered is not None:
-            filtered(t, fresh)
+        if filtered is not None and not filtered(t, fresh):
+            return Settled((), None)
         keep(later.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)

@@ -67,6 +67,20 @@ def test_a_clean_trial_is_followed_from_the_first_frame(motion, followed):
     assert worst(followed.v - motion[1]) < LAG_S * worst(motion[2])
 
 
+def test_a_run_that_is_ended_leaves_later_frames_blank(motion, followed):
+    seen = []
+
+    def goes_on(t, posterior):
+        seen.append((t, posterior.q))
+        return t < 10
+
+    ended = follow(motion[3], filtered=goes_on)
+    assert [t for t, _ in seen] == list(range(11))
+    np.testing.assert_array_equal([q for _, q in seen], followed.q[:11])
+    np.testing.assert_array_equal(ended.q[:10], followed.q[:10])
+    assert np.isnan(ended.q[11:]).all() and not ended.tracked[11:].any()
+
+
 def test_the_first_frame_already_knows_its_velocity(motion, followed):
     """The warm start's backward run: no transient from rest."""
     error = worst(followed.v[0] - motion[1][0])

@@ -195,10 +195,6 @@ def inertial_motion(
     )
 
 
-class _Reversed(Exception):
-    """Ends a run when its sensors turn out to be mounted the other way round."""
-
-
 def _tracked(
     plan: _Plan, progress: Callable[[int, int], None]
 ) -> tuple[_Plan, SensorMounts, SensorPlacement, Track]:
@@ -219,18 +215,16 @@ def _tracked(
         filter.kalman.follows_spreads = False  # no estimate depends on them
         return misfit(filter, recording, beyond)
 
-    def settle() -> None:
+    def settled() -> SensorPlacement:
         if not found:
             found.append(mounted_reversed(plan.model, plan.segments, named.value, judge))
-            if found[0].turned:
-                raise _Reversed
+        return found[0]
 
-    def look(t: int, posterior: Posterior) -> None:
+    def goes_on(t: int, posterior: Posterior) -> bool:
         named.add(t, posterior)
-        if t >= named.frames - 1:
-            settle()
+        return t < named.frames - 1 or not settled().turned
 
-    def run(filter: TrackingFilter, filtered: Callable[[int, Posterior], None] | None = None) -> Track:
+    def run(filter: TrackingFilter, filtered: Callable[[int, Posterior], bool] | None = None) -> Track:
         return track(
             filter,
             recording,
@@ -240,14 +234,12 @@ def _tracked(
             filtered=filtered,
         )
 
-    try:
-        tracked = run(filter, look)
-        settle()
-    except _Reversed:
-        plan = replace(plan, turned=found[0].turned)
+    tracked, placement = run(filter, goes_on), settled()
+    if placement.turned:
+        plan = replace(plan, turned=placement.turned)
         worn = _worn(plan)
         tracked = run(_filter(plan, worn)[0])
-    return plan, worn, found[0], tracked
+    return plan, worn, placement, tracked
 
 
 def _renamed(plan: _Plan, turned: frozenset[str], names: Mapping[str, str]) -> _Plan:
