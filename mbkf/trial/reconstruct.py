@@ -10,36 +10,22 @@ from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.plant import PlantMaker
 from mbkf.filters.tracking import track
-from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
-from mbkf.scaling.correction import correction
-from mbkf.scaling.trial_lengths import LengthEvidence
 from mbkf.sensors.block import AnyBlock
 from mbkf.trial.axes.captures import checked_for_subject
 from mbkf.trial.checks.in_view import in_view_finding
-from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.gait.convention import convention_of
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
-from mbkf.trial.loads.partners import others_of, with_contacts
-from mbkf.trial.preparation.coverage import use_by_subject
-from mbkf.trial.preparation.entering import without_entering
-from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, renamed_by_filter
-from mbkf.trial.preparation.filters import FILTERS, FilterInputs, standard, tracking_filter
-from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.order import needs_motion, ready, result_of, searches_contacts
+from mbkf.trial.preparation.exchanged import renamed_by_filter
+from mbkf.trial.preparation.filters import FILTERS, standard, tracking_filter
 from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.other_contacts import contact_opener, with_other_contacts
-from mbkf.trial.preparation.selection import (
-    hidden_samples,
-    subject_markers,
-    without_plates,
-    without_samples,
-)
 from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.preparation.shrunken import without_shrunken
-from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.progression import PELVIS_FRAMES
 from mbkf.trial.results.readings import ANGLES, zero_posture
 from mbkf.trial.results.warnings import all_warnings
@@ -82,22 +68,16 @@ def reconstruct(
     check_names(settings, subject, imus is not None)
     with single_threaded():
         capture = checked_for_subject(capture, subject, settings.without_plates)
-        measured, exchanged, remarks = put_right(capture.markers, subject, settings)
-        use = use_by_subject(capture.markers, subject)
-        notes = [*capture.notes, *remarks, *([use.warning] if use.warning else [])]
-        hidden = hidden_samples(measured, settings.hide)
-        shown = without_samples(measured, hidden)
-        plates = without_plates(capture, settings.without_plates).plates
-        notes += plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
-        subject, before, lengths = for_trial(subject, shown, settings)
-        inputs, recording = trial_inputs(shown, plates, subject, settings)
+        trial = ready(capture, subject, settings)
+        inputs, recording, shown = trial.inputs, trial.recording, trial.shown
+        notes = [*capture.notes, *trial.remarks, *trial.notes]
         if imus is not None:
             inputs, recording, of_imus = with_imus(inputs, recording, shown.times_s, imus)
             notes += of_imus
         recording = replace(recording, readings=readings) if readings else recording
         followed = None if progress is None else partial(progress, "Following markers alone")
         alone = markers_alone(inputs, recording, followed) if needs_motion(settings, inputs) else None
-        if alone is not None and settings.other_contacts and settings.filter == "dynamic":
+        if alone is not None and searches_contacts(settings):
             inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone, settings.smooths)
         result = track(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None, plant),
@@ -110,42 +90,24 @@ def reconstruct(
             progress=None if progress is None else partial(progress, "Filtering"),
             contacts=None if settings.smooths or blocks else contact_opener(inputs, settings),
         )
-        measured, taken_up = renamed_by_filter(measured, result.limb_doubts)
+        measured, taken_up = renamed_by_filter(trial.measured, result.limb_doubts)
         capture = replace(capture, notes=tuple(notes))
-        found = assemble(capture, subject, settings, measured, hidden, inputs, result, recording.plates)
-        found = with_contacts(found, inputs.sensor.model, subject, measured, others_of(capture, use.used))
-        seen = (shown, subject, inputs, recording, alone, before, lengths)
-        judged = (*trial_checks(*seen), in_view_finding(capture.markers, use.used)) if settings.checks else ()
+        markers = measured, trial.hidden, trial.use
+        found = result_of(capture, trial.subject, settings, markers, inputs, result, recording.plates)
+        seen = (shown, trial.subject, inputs, recording, alone, trial.before, trial.lengths)
+        judged = (
+            (*trial_checks(*seen), in_view_finding(capture.markers, trial.use.used))
+            if settings.checks
+            else ()
+        )
         return judged_result(
             replace(
                 found,
                 checks=judged,
-                markers_ignored=dict(use.ignored),
-                markers_explained=use.share,
-                warnings=all_warnings(judged, subject, found),
-                names_exchanged=(*exchanged, *taken_up),
+                warnings=all_warnings(judged, trial.subject, found),
+                names_exchanged=(*trial.exchanged, *taken_up),
             )
         )
-
-
-def put_right(
-    markers: MarkerTrajectories, subject: Subject, settings: ReconstructSettings
-) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...], list[str]]:
-    """The subject's markers under their right names, without mixtures and entering frames; the exchanges, and notes.
-
-    Args:
-        markers: All markers of the capture.
-        subject: The person.
-        settings: Settings of the reconstruction.
-
-    Raises:
-        NotObservable: Too few of them are the subject's.
-    """
-    named, exchanged = names_put_right(subject_markers(markers, subject), subject)
-    own, shrunken = without_shrunken(named, subject)
-    start = settings.kinematic
-    measured, entering = without_entering(own, subject, start.min_markers, start.restart_after_s)
-    return measured, exchanged, [*exchange_notes(exchanged), *shrunken, *entering]
 
 
 def check_names(settings: ReconstructSettings, subject: Subject, sensors: bool) -> None:
@@ -171,34 +133,3 @@ def check_names(settings: ReconstructSettings, subject: Subject, sensors: bool) 
     zero_posture(settings.angles_zero, subject)
     if sensors and settings.filter != "dynamic":
         raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
-
-
-def for_trial(
-    subject: Subject, shown: MarkerTrajectories, settings: ReconstructSettings
-) -> tuple[Subject, Subject | None, LengthEvidence | None]:
-    """The subject as it is tracked, the one before and the trial's lengths, both None without a correction.
-
-    Args:
-        subject: The person.
-        shown: The markers that are used.
-        settings: Settings of the reconstruction.
-
-    Raises:
-        NotConverged: The markers do not fit the subject's body.
-    """
-    if not settings.correct_markers:
-        return subject.in_neutral_posture(), None, None
-    found = correction(subject, shown)
-    return found.subject, subject, found.lengths
-
-
-def needs_motion(settings: ReconstructSettings, inputs: FilterInputs) -> bool:
-    """True where checks of plates or the search for other contacts need the motion of markers alone.
-
-    Args:
-        settings: Settings of the reconstruction.
-        inputs: Inputs of the filters.
-    """
-    judges_plates = settings.checks and len(inputs.plates) > 0
-    searches = settings.other_contacts and settings.filter == "dynamic"
-    return judges_plates or (searches and bool(inputs.sensor.model.description.bearings))

@@ -18,15 +18,15 @@ from mbkf.io.quantities_h5 import TIME
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import Summary
 from mbkf.io.unexplained import UnexplainedLoad
-from mbkf.trial.loads.partners import others_of, with_contacts
 from mbkf.trial.long.merging import Remarks, joined_contacts, joined_loads
 from mbkf.trial.long.numbers import KeyNumbers
 from mbkf.trial.long.pieces import Piece
 from mbkf.trial.long.prepared import LongTrial
+from mbkf.trial.order import result_of
 from mbkf.trial.preparation.exchanged import renamed_by_filter
 from mbkf.trial.preparation.selection import hidden_samples
 from mbkf.trial.results import innovations
-from mbkf.trial.results.assembly import assemble, in_time
+from mbkf.trial.results.assembly import in_time
 from mbkf.trial.results.progression import (
     Progression,
     frame_of,
@@ -118,21 +118,18 @@ def _result(
     track = _track(piece, rows, settled, survey)
     capture = replace(trial.capture(piece), notes=())
     later_s = piece.begin / trial.rate_hz
-    measured, _ = renamed_by_filter(
-        trial.markers(piece), [_moved(one, later_s) for one in settled.limb_doubts]
-    )
-    hidden = hidden_samples(measured, trial.settings.hide)
+    named, doubts = trial.markers(piece), [_moved(one, later_s) for one in settled.limb_doubts]
+    hidden = hidden_samples(named, trial.settings.hide)
+    measured, _ = renamed_by_filter(named, doubts)
     plates, _ = trial.plates(capture)
     frame = replace(
         survey.frame,
         heading_rad=survey.frame.heading_rad[piece.whole],
         turning_rad_s=survey.frame.turning_rad_s[piece.whole],
     )
-    inputs, model = replace(trial.inputs, plates=plates), trial.inputs.sensor.model
-    asked = trial.subject, trial.settings, measured, hidden, inputs, track
-    found = assemble(capture, *asked, trial.recording.plates[piece.whole], frame)
-    found = with_contacts(found, model, trial.subject, measured, others_of(capture, trial.use.used))
-    return replace(found, markers_ignored=dict(trial.use.ignored), markers_explained=trial.use.share)
+    inputs = replace(trial.inputs, plates=plates)
+    asked = trial.subject, trial.settings, (measured, hidden, trial.use)
+    return result_of(capture, *asked, inputs, track, trial.recording.plates[piece.whole], frame)
 
 
 def _track(piece: Piece, rows: PagedArray, settled: Settled, survey: Survey) -> Track:

@@ -28,13 +28,12 @@ from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.supports.block import BEARING
 from mbkf.trial.checks.in_view import in_view_finding
-from mbkf.trial.checks.plate_contradictions import plate_contradictions
 from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.long.merging import Remarks, joined_loads, unusual_checks, usual_checks
 from mbkf.trial.long.pieces import Piece, PieceSettings, pieces_of
-from mbkf.trial.preparation.coverage import MarkerUse, use_by_subject
+from mbkf.trial.order import needs_motion, put_right, ready, searches_contacts
+from mbkf.trial.preparation.coverage import MarkerUse
 from mbkf.trial.preparation.filters import FilterInputs
-from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import Motion, fill_motion
 from mbkf.trial.preparation.other_contacts import with_other_contacts
 from mbkf.trial.preparation.selection import (
@@ -44,7 +43,6 @@ from mbkf.trial.preparation.selection import (
     without_samples,
 )
 from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.reconstruct import for_trial, needs_motion, put_right
 
 
 class Alone(NamedTuple):
@@ -162,18 +160,11 @@ def prepared(
         UnknownName: A hidden marker or a withheld plate does not exist.
     """
     look = source.look
-    measured, _, _ = put_right(look.markers, subject, settings)
-    use = use_by_subject(look.markers, subject)
     times_s = look.markers.start_time_s + source.look_frames / look.markers.rate_hz
-    measured = without_samples(measured, hidden_samples(measured, settings.hide, times_s))
-    plates = without_plates(look, settings.without_plates).plates
-    notes = (*look.notes, *([use.warning] if use.warning else []))
-    if settings.checks:
-        notes = (*notes, *plate_contradictions(replace(look, plates=plates)))
-    tracked, before, evidence = for_trial(subject, measured, settings)
-    inputs, _ = trial_inputs(measured, plates, tracked, settings)
+    decided = ready(look, subject, settings, times_s)
+    inputs = decided.inputs
     frames, page = source.frames, lengths.frames
-    markers = (frames, len(measured.names), 3)
+    markers = (frames, len(inputs.names), 3)
     kept = PagedArray.unknown(folder / "measured", markers, page)
     shown = PagedArray.unknown(folder / "shown", markers, page) if settings.hide else kept
     wrenches = PagedArray.unknown(folder / "plates", (frames, len(inputs.plates), 6), page)
@@ -182,14 +173,14 @@ def prepared(
         source,
         lengths,
         settings,
-        tracked,
-        before,
-        evidence,
-        use,
+        decided.subject,
+        decided.before,
+        decided.lengths,
+        decided.use,
         replace(inputs, remarks=()),
         recording,
         kept,
-        notes,
+        (*look.notes, *decided.notes),
     )
     _read(trial, subject, shown, wrenches, progress)
     alone = _alone(trial, folder, progress) if needs_motion(settings, inputs) else None
@@ -257,7 +248,6 @@ def _alone(trial: LongTrial, folder: Path, progress: StageCallback | None) -> Al
 
 def _judge(trial: LongTrial, alone: Alone | None, folder: Path, progress: StageCallback | None) -> None:
     """Adds what markers and plates show: checks, contradictions, contacts of other parts."""
-    searches = alone is not None and trial.settings.other_contacts and trial.settings.filter == "dynamic"
     parts = len(trial.inputs.sensor.model.description.bearings)
     bears = PagedArray(
         folder / "bears", lambda a, b: np.zeros((b - a, parts)), trial.source.frames, trial.lengths.frames
@@ -270,7 +260,7 @@ def _judge(trial: LongTrial, alone: Alone | None, folder: Path, progress: StageC
         plates, _ = trial.plates(trial.capture(piece))
         inputs = replace(trial.inputs, plates=plates)
         recording = Recording(shown.positions_m, trial.recording.plates[piece.whole], inputs.dt_s)
-        if motion is not None and searches:
+        if motion is not None and searches_contacts(trial.settings):
             inputs, recording = with_other_contacts(
                 inputs, recording, times_s, motion, trial.settings.smooths
             )
