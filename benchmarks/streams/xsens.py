@@ -1,6 +1,6 @@
 """Rows of the simulated MVN streamer: a made person turns round in the suit, followed by a live run in this process.
 
-The streamer plays a sample whenever the run wants one, so that no row depends on the machine: frames lost, angles
+The streamer plays a sample whenever the run wants a frame, so that no row depends on the machine: frames lost, angles
 against the true motion, and faults of datagrams, each in a run of its own.
 """
 
@@ -73,23 +73,22 @@ class PlayedSuit:
         return found
 
     def read(self, timeout_s: float) -> SourceFrame | None:
-        """The next frame; those that wait come before another sample is played.
+        """The next frame, after another sample was played: a source without one would not wait for it for ever.
 
         Raises:
             EOFError: The suit has been played.
         """
         del timeout_s
-        found = self._source.read(0.0)
-        if found is not None:
-            return found
-        if self._next >= len(self._server.suit):
-            raise EOFError
         k, self._next = self._next, self._next + 1
-        if self._strike is not None and k >= FIRST_FAULT and k % PERIOD == 0:
-            self._strike(self._server, k, self._rng)
-        else:
-            self._server.play(k)
-        return None
+        if k < len(self._server.suit):
+            if self._strike is not None and k >= FIRST_FAULT and k % PERIOD == 0:
+                self._strike(self._server, k, self._rng)
+            else:
+                self._server.play(k)
+        found = self._source.read(0.0)
+        if found is None and k >= len(self._server.suit):
+            raise EOFError
+        return found
 
     def news(self) -> list[tuple[str, str]]:
         """Events of the stream."""

@@ -345,6 +345,16 @@ class BodyFunctions(Protocol):
             radius: Greatest distance, m.
         """
 
+    def plausible_points(
+        self, points: In[Array, "n 3"], farthest: float, /
+    ) -> tuple[int, Made[int, "absent"], Made[Array, "shown: n 3"]]:
+        """Number of implausible points, that of implausible or missing ones, and the points with NaN for these.
+
+        Args:
+            points: Places, m; NaN where missing.
+            farthest: Bound of a coordinate, m.
+        """
+
     def marker_information(
         self,
         tree: Tree,

@@ -35,6 +35,22 @@ int mbkf_marker_innovations(int M, const double *measured, const double *places,
     return near;
 }
 
+/* plausible (mbkf/stream/source.py). */
+int mbkf_plausible_points(int n, const double *points, double farthest, int *absent, double *shown)
+{
+    int wrong = 0;
+    *absent = 0;
+    for (int i = 0; i < n; i++) {
+        const double *p = points + 3 * i;
+        const int near = fabs(p[0]) <= farthest && fabs(p[1]) <= farthest && fabs(p[2]) <= farthest;
+        wrong += !near && !isnan(p[0]) && !isnan(p[1]) && !isnan(p[2]);
+        *absent += !near;
+        for (int c = 0; c < 3; c++)
+            shown[3 * i + c] = near ? p[c] : NAN;
+    }
+    return wrong;
+}
+
 /* Adds a reading as a point mass at p with force weight y; p is taken from the markers' middle. */
 static void accumulate_reading(Composite *on, double weight, const double *p, const double *y)
 {

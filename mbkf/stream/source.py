@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.io.imu.plausible import MOST_MPS2, MOST_RAD_S
 from mbkf.io.records import PlateReadings
+from mbkf.kernel.loading import library
 
 FARTHEST_M = 100.0
 """Bound of a point's coordinates: camera volumes are smaller."""
@@ -137,8 +138,12 @@ def plausible(points_m: Array) -> tuple[Array, int]:
 
     Where no coordinate is missing or implausible, the array given is returned.
     """
-    if np.abs(points_m).max(initial=0.0) <= FARTHEST_M:  # NaN compares as false
-        return points_m, 0
+    kernel = library()
+    if kernel is not None:
+        wrong_ones, absent, shown = kernel.plausible_points(
+            np.ascontiguousarray(points_m, dtype=np.float64), FARTHEST_M
+        )
+        return shown if absent else points_m, wrong_ones
     far = np.abs(points_m) > FARTHEST_M
     missing = np.asarray(np.isnan(points_m).any(axis=1))
     if far.any():

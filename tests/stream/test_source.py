@@ -1,6 +1,7 @@
 """Frames of a source: points that cannot be true are missing, and plates may have read nothing yet."""
 
 import numpy as np
+import pytest
 
 from mbkf.stream.source import (
     FARTHEST_M,
@@ -12,16 +13,22 @@ from mbkf.stream.source import (
 )
 
 
+@pytest.mark.usefixtures("either_kernel")
 def test_a_point_too_far_away_is_missing_and_counted():
-    points = np.array([[0.0, 1.0, 2.0], [np.nan] * 3, [0.0, 2.0 * FARTHEST_M, 0.0], [np.inf, 0.0, 0.0]])
+    far, lost = -2.0 * FARTHEST_M, np.nan
+    points = np.array(
+        [[0.0, 1.0, FARTHEST_M], [lost] * 3, [0.0, far, 0.0], [np.inf, 0.0, 0.0], [0.0, 0.0, far]]
+        + [[0.0, lost, 1.0], [lost, far, 1.0]]
+    )
     cleaned, wrong = plausible(points)
-    assert wrong == 2
-    np.testing.assert_array_equal(np.isnan(cleaned).all(axis=1), [False, True, True, True])
-    np.testing.assert_array_equal(points[0], cleaned[0])
+    assert wrong == 3
+    np.testing.assert_array_equal(cleaned, [points[0], *[[lost] * 3] * 6])
 
 
-def test_points_that_are_all_there_are_not_copied():
-    points = np.ones((3, 3))
+@pytest.mark.usefixtures("either_kernel")
+@pytest.mark.parametrize("count", [0, 3])
+def test_points_that_are_all_there_are_not_copied(count):
+    points = np.ones((count, 3))
     assert plausible(points)[0] is points
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +43,7 @@ FORCE_NUMBERS = 9
 """Force N, moment N m and point of application mm."""
 
 
-@dataclass(frozen=True)
-class PlateForces:
+class PlateForces(NamedTuple):
     """Samples of one plate.
 
     Attributes:
@@ -58,8 +57,7 @@ class PlateForces:
     samples: NDArray[np.float32]
 
 
-@dataclass(frozen=True)
-class DataFrame:
+class DataFrame(NamedTuple):
     """A data packet.
 
     Attributes:

@@ -40,8 +40,7 @@ class PlateForceReader:
         self._rotation = described.rotation
         corners = [plate.corners_m for plate in plates if plate.corners_m is not None]
         self._plate_axes = [plate_axes(one) for one in corners]
-        self._on_body_local = [-one.T for one in self._plate_axes]
-        self._on_body = -self._rotation.T
+        self._turns: dict[tuple[int, str | None], Array] = {}
         self._centres = [one.mean(axis=0) for one in corners]
 
     def samples(self, forces: Sequence[PlateForces]) -> PlateSamples:
@@ -65,10 +64,17 @@ class PlateForceReader:
 
     def _wrench(self, one: PlateForces, k: int, axes: str | None) -> Array:
         """(S, 6) force and moment of the plate on the body."""
-        turn = self._on_body_local[k] if axes in (None, LOCAL) else self._on_body
-        found: Array = (one.samples[:, :6].reshape(-1, 3).astype(float) @ turn).reshape(-1, 6)
+        if (k, axes) not in self._turns:
+            self._turns[k, axes] = self._to_body(k, axes)
+        return np.asarray(one.samples[:, :6] @ self._turns[k, axes])
+
+    def _to_body(self, k: int, axes: str | None) -> Array:
+        """(6, 6) matrix that takes rows of force and moment on a plate to those on the body."""
+        turn = self._plate_axes[k] if axes in (None, LOCAL) else self._rotation
+        found = np.zeros((6, 6))
+        found[:3, :3] = found[3:, 3:] = -turn.T
         if axes == LABORATORY_ORIGIN:
-            found[:, 3:] -= np.cross(self._centres[k], found[:, :3])
+            found[:3, 3:] = -np.cross(self._centres[k], found[:3, :3])
         return found
 
     def _decide(self, one: PlateForces, k: int) -> None:
