@@ -83,9 +83,10 @@ def run(args: argparse.Namespace) -> int:
             to another format.
     """
     from mbkf.io.atomic import check_file
-    from mbkf.io.results_folder import read_reconstruction
+    from mbkf.io.results_folder import read_blocks, read_reconstruction
     from mbkf.io.subject import read_subject
     from mbkf.trial.exchange.result_bids import write_results_bids
+    from mbkf.trial.exchange.result_csv import write_csv
     from mbkf.trial.export import export_result, export_subject
 
     source, out = Path(args.source), Path(args.out)
@@ -105,6 +106,8 @@ def run(args: argparse.Namespace) -> int:
             write_film(result, args.to, out, progress=report)
     elif args.to == "bids":
         write_results_bids([read_reconstruction(one) for one in _results(source)], out, args.person or "01")
+    elif is_result and args.to == "csv":
+        write_csv(read_blocks(source), out)
     elif is_result:
         export_result(read_reconstruction(source), args.to, out, trial=args.trial, forces=args.forces)
     else:

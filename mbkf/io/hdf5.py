@@ -40,13 +40,16 @@ MOST_COMPRESSED, SPARE_BYTES = 1100, 1 << 20
 """Deflate makes nothing smaller than a thousandth; and room for the rest of a file."""
 
 
-def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> NDArray:
+def array(
+    file: h5py.File, key: str, dtype: np.dtype | type | None = None, rows: slice | None = None
+) -> NDArray:
     """A dataset as an array.
 
     Args:
         file: The file.
         key: Name of the dataset.
         dtype: Type of the array; the dataset's own by default.
+        rows: The rows to read; None for all.
 
     Raises:
         ValueError: It claims to be larger than the file can hold.
@@ -54,7 +57,7 @@ def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> ND
     dataset = file[key]
     if dataset.nbytes > MOST_COMPRESSED * file.id.get_filesize() + SPARE_BYTES:
         raise ValueError(f"'{key}' claims {dataset.nbytes} bytes, more than the file can hold")
-    return np.asarray(dataset[()], dtype=dtype)
+    return np.asarray(dataset[() if rows is None else rows], dtype=dtype)
 
 
 def sealed(made: BytesIO, run_id: str = "") -> memoryview:

@@ -22,6 +22,9 @@ from mbkf.io.dimensions import AXES, ONE, Unit, numbered, shape_of
 
 T = TypeVar("T")
 
+TIME = "time"
+"""Name of the axis of frames."""
+
 LATER = cast(Any, object())
 """Default of a quantity that older files and logs lack; there it is NaN."""
 

@@ -20,7 +20,7 @@ from mbkf.conventions import Array
 from mbkf.io.dimensions import AXES, Axis, Unit, axes_text
 from mbkf.io.hdf5 import array
 from mbkf.io.packed_arrays import packed_dataset, put_packed, write_packed
-from mbkf.io.quantities import Quantity, attributes, quantities
+from mbkf.io.quantities import TIME, Quantity, attributes, quantities
 from mbkf.io.utf8 import without_noughts
 
 if TYPE_CHECKING:
@@ -31,9 +31,6 @@ Fields: TypeAlias = dict[str, Any]
 
 PLAIN = (str, bool, int, float)
 """Attributes that HDF5 holds as they are; others are JSON."""
-
-TIME = "time"
-"""Name of the axis of frames."""
 
 _PACKED_FROM = 256
 """Arrays of more numbers are compressed."""
@@ -137,8 +134,13 @@ def _arrays(record: object) -> list[Quantity]:
     return [one for one in declared if getattr(record, one.name) is not None]
 
 
-def read_record(file: h5py.File, record: type) -> Fields:
+def read_record(file: h5py.File, record: type, frames: slice | None = None) -> Fields:
     """Declared attributes, names and arrays of a type of record, as far as the file has them.
+
+    Args:
+        file: The file.
+        record: The type.
+        frames: The frames to read; None for all.
 
     Raises:
         ValueError: An array claims to be larger than the file can hold.
@@ -148,8 +150,11 @@ def read_record(file: h5py.File, record: type) -> Fields:
     }
     for one in quantities(record).values():
         if one.written and one.key in file:
-            text = one.is_text
-            values[one.name] = tuple(file[one.key].asstr()[:]) if text else array(file, one.key, one.dtype)
+            if one.is_text:
+                values[one.name] = tuple(file[one.key].asstr()[:])
+            else:
+                rows = frames if one.axes[0] == TIME else None
+                values[one.name] = array(file, one.key, one.dtype, rows)
     return values
 
 

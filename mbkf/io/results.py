@@ -7,7 +7,7 @@ changes. That change belongs to the part that varies within the trial.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -17,7 +17,7 @@ from mbkf.errors import UnknownName
 from mbkf.io.contacts import FEET, ContactInterval, Loads, Source, bearing
 from mbkf.io.dimensions import AXES
 from mbkf.io.estimates import Estimates
-from mbkf.io.quantities import check, quantities
+from mbkf.io.quantities import TIME, check, quantities
 from mbkf.io.result_groups import (
     GROUPS,
     Measurements,
@@ -102,6 +102,15 @@ class Reconstruction(
     def frames(self) -> int:
         """Number of frames T."""
         return len(self.times_s)
+
+    def part(self, frames: slice) -> Reconstruction:
+        """These frames of the result; attributes and remarks stay those of the whole."""
+        arrays = {
+            name: getattr(self, name)[frames]
+            for name, one in quantities(Reconstruction).items()
+            if not one.is_text and one.axes[0] == TIME and getattr(self, name) is not None
+        }
+        return replace(self, **arrays)
 
     @property
     def lag_ms(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import uuid
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NotRequired, TypedDict, cast
 
@@ -16,7 +16,7 @@ from mbkf.io.files_read import SETTINGS_BYTES, read_text
 from mbkf.io.hdf5 import run_of
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_h5 import read_h5, write_h5
+from mbkf.io.results_h5 import read_h5, read_h5_blocks, write_h5
 from mbkf.io.results_opensim import OPENSIM_FILES, write_opensim
 from mbkf.io.verdict import VerdictTold
 
@@ -25,6 +25,8 @@ MOTION_FILE = "motion.h5"
 LABELS_FILE = "labels.json"
 """Labelling of the points of a trial, where its own names were not enough."""
 RESULT_FILES = (SUMMARY_FILE, MOTION_FILE, *OPENSIM_FILES)
+BLOCK = 2000
+"""Frames of a block of a long result."""
 RUN_ID = "run_id"
 """Key of summary.json, entry of the tables' headers and second line of motion.h5: the same in files of one run."""
 
@@ -281,14 +283,33 @@ def read_reconstruction(path: str | Path) -> Reconstruction:
     Raises:
         FileFormatError: There is none, it is damaged, or the folder's files are of different runs.
     """
+    return read_h5(_motion_of(path))
+
+
+def read_blocks(path: str | Path) -> Iterator[Reconstruction]:
+    """Reads a reconstruction in blocks of :data:`BLOCK` frames, so that a long one needs little memory.
+
+    Remarks and attributes of each block are those of the whole.
+
+    Args:
+        path: Its folder, or its motion.h5.
+
+    Raises:
+        FileFormatError: There is none, it is damaged, or the folder's files are of different runs.
+    """
+    return read_h5_blocks(_motion_of(path), BLOCK)
+
+
+def _motion_of(path: str | Path) -> Path:
+    """The motion.h5 of a folder, or the file itself."""
     source = Path(path)
     if not source.is_dir():
-        return read_h5(source)
+        return source
     if not (source / MOTION_FILE).is_file():
         raise FileFormatError(source, f"the folder holds no {MOTION_FILE}; make it with 'mbkf reconstruct'")
     if (source / SUMMARY_FILE).is_file():
         read_summary(source)
-    return read_h5(source / MOTION_FILE)
+    return source / MOTION_FILE
 
 
 def read_summary(folder: str | Path) -> Summary:

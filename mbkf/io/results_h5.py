@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import json
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -157,6 +158,16 @@ def read_h5(path: str | Path) -> Reconstruction:
     Raises:
         FileFormatError: The file is missing, damaged or something else.
     """
+    (whole,) = read_h5_blocks(path, None)
+    return whole
+
+
+def read_h5_blocks(path: str | Path, size: int | None) -> Iterator[Reconstruction]:
+    """Reads a file of :func:`write_h5` in blocks of so many frames; None: as one.
+
+    Raises:
+        FileFormatError: The file is missing, damaged or something else.
+    """
     import h5py
 
     source = Path(path)
@@ -168,21 +179,28 @@ def read_h5(path: str | Path) -> Reconstruction:
                 raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
             if file.attrs["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
-            values = read_record(file, Reconstruction)
-            values["subject"] = _subject(json.loads(file.attrs["subject"]), _read_covariance(file))
-        if "measured" not in values:  # in older files only feet bear, and only what is measured is valid
-            values["measured"] = values["valid"]
-            values["foot_source"] = foot_sources(values.get("foot_contact"), values["foot_wrench"])
-            none = np.zeros((len(values["valid"]), 0, 6))
-            values |= {"support_names": (), "support_wrench": none, "support_wrench_sd": none}
-            values["support_point_m"] = none[..., :3]
-        return Reconstruction(**values)
+            subject = _subject(json.loads(file.attrs["subject"]), _read_covariance(file))
+            frames = len(file["valid"])
+            for begin in range(0, max(frames, 1), size or max(frames, 1)):
+                rows = None if size is None else slice(begin, begin + size)
+                yield _result(read_record(file, Reconstruction, rows), subject)
     except FileFormatError:
         raise
     except DAMAGED as error:
         raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error
     except MbkfError as error:
         raise FileFormatError(source, f"damaged: {error}") from error
+
+
+def _result(values: dict[str, Any], subject: Subject) -> Reconstruction:
+    """A result by its fields; in older files only feet bear, and only what is measured is valid."""
+    if "measured" not in values:
+        values["measured"] = values["valid"]
+        values["foot_source"] = foot_sources(values.get("foot_contact"), values["foot_wrench"])
+        none = np.zeros((len(values["valid"]), 0, 6))
+        values |= {"support_names": (), "support_wrench": none, "support_wrench_sd": none}
+        values["support_point_m"] = none[..., :3]
+    return Reconstruction(**values, subject=subject)
 
 
 def _write_covariance(file: h5py.File, known: BodyCovariance | None) -> None:

@@ -9,6 +9,8 @@ from mbkf.errors import FileFormatError
 from mbkf.io import results_folder
 from mbkf.io.atomic import check_folder
 from mbkf.io.hdf5 import run_of
+from mbkf.io.quantities import TIME, quantities
+from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import (
     RESULT_FILES,
     read_reconstruction,
@@ -43,6 +45,26 @@ def test_six_files_are_written_and_read_back(tmp_path):
     np.testing.assert_array_equal(read_reconstruction(folder).q, r.q)
     np.testing.assert_array_equal(read_reconstruction(folder / "motion.h5").tau, r.tau)
     assert told(folder) == {"trial": "walk"}
+
+
+def test_blocks_are_parts_of_the_whole(tmp_path, monkeypatch):
+    made = made_up()
+    write_reconstruction(made, {}, tmp_path)
+    whole = read_reconstruction(tmp_path)
+    monkeypatch.setattr(results_folder, "BLOCK", 2)
+    blocks = list(results_folder.read_blocks(tmp_path))
+    assert sum(one.frames for one in blocks) == whole.frames > blocks[0].frames == 2
+    for begin, block in zip(range(0, whole.frames, 2), blocks, strict=True):
+        part = whole.part(slice(begin, begin + 2))
+        for name, one in quantities(Reconstruction).items():
+            np.testing.assert_array_equal(getattr(block, name), getattr(part, name), err_msg=name)
+            assert (
+                one.is_text
+                or getattr(part, name) is None
+                or one.axes[0] != TIME
+                or len(getattr(part, name)) == block.frames
+            )
+    assert blocks[0].warnings == whole.warnings
 
 
 def test_the_summary_holds_no_nan_and_only_plain_data(tmp_path):

@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.io.atomic import write_text
+from mbkf.io.atomic import replacing_text
 from mbkf.io.contacts import Source
 from mbkf.io.dimensions import ANGLE, AXES
 from mbkf.io.labels import unique_labels
 from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import BLOCK
 
 Column = Array | NDArray[np.str_]
 
@@ -42,16 +43,31 @@ def write_result_csv(r: Reconstruction, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    columns = dict(csv_columns(r))
-    rows = zip(*(_texts(column) for column in columns.values()), strict=True)
-    write_text(path, csv_text(tuple(columns), rows))
+    write_csv((r.part(slice(begin, begin + BLOCK)) for begin in range(0, max(r.frames, 1), BLOCK)), path)
+
+
+def write_csv(blocks: Iterable[Reconstruction], path: str | Path) -> None:
+    """Writes the table of a result that comes in blocks of frames.
+
+    Args:
+        blocks: The blocks, in order.
+        path: The file, replaced whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    with replacing_text(path) as file:
+        for number, block in enumerate(blocks):
+            columns = dict(csv_columns(block))
+            rows = zip(*(_texts(column) for column in columns.values()), strict=True)
+            file.write(csv_text(() if number else tuple(columns), rows))
 
 
 def csv_text(names: Sequence[str], rows: Iterator[Sequence[str]]) -> str:
-    """Lines of a table with a heading, separated by commas."""
+    """Lines of a table with a heading, unless its names are empty; separated by commas."""
     made = io.StringIO()
     writer = csv.writer(made, lineterminator="\n")
-    writer.writerow(names)
+    writer.writerows([names] if names else [])
     writer.writerows(rows)
     return made.getvalue()
 

@@ -13,8 +13,6 @@ from mbkf.filters.tracking import Settled, track_of
 from mbkf.io.contacts import ContactInterval
 from mbkf.io.limb_doubts import LimbDoubt
 from mbkf.io.paged import PagedArray
-from mbkf.io.quantities import quantities
-from mbkf.io.quantities_h5 import TIME
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import Summary
 from mbkf.io.unexplained import UnexplainedLoad
@@ -84,7 +82,7 @@ def assembled(
     for piece in trial.pieces():
         piece_result = _result(trial, piece, rows, settled, survey)
         whole.add_contacts(piece_result, piece.inner)
-        piece_result = without_margins(piece_result, piece.inner)
+        piece_result = piece_result.part(piece.inner)
         write(piece_result)
         whole.add(piece_result)
         if progress is not None:
@@ -148,21 +146,6 @@ def _moved(doubt: LimbDoubt, later_s: float) -> LimbDoubt:
         to_s=doubt.to_s - later_s,
         right_from_s=None if right is None else right - later_s,
     )
-
-
-def without_margins(r: Reconstruction, inner: slice) -> Reconstruction:
-    """The frames of a result that count; attributes and remarks stay.
-
-    Args:
-        r: The result.
-        inner: These frames.
-    """
-    arrays = {
-        name: getattr(r, name)[inner]
-        for name, one in quantities(Reconstruction).items()
-        if not one.is_text and one.axes[0] == TIME and getattr(r, name) is not None
-    }
-    return replace(r, **arrays)
 
 
 class _Whole:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mbkf.io.contacts import Source
 from mbkf.io.written import TABLE, form_of
-from mbkf.trial.exchange.result_csv import leaves, plain, write_result_csv
+from mbkf.trial.exchange.result_csv import leaves, plain, write_csv, write_result_csv
 from tests.recordings import broken_walk, leaning_walk, walk
 
 
@@ -41,6 +41,13 @@ def columns(tmp_path_factory):
     write_result_csv(result(), path)
     assert form_of(path) == TABLE
     return read(path)
+
+
+def test_blocks_make_the_table_of_the_whole(tmp_path):
+    r = result()
+    write_result_csv(r, tmp_path / "whole.csv")
+    write_csv((r.part(slice(begin, begin + 7)) for begin in range(0, r.frames, 7)), tmp_path / "blocks.csv")
+    assert (tmp_path / "blocks.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
 
 
 def test_coordinates_are_in_degrees_and_metres_with_their_loads(columns):

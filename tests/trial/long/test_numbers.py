@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from mbkf.trial.long.assembly import without_margins
 from mbkf.trial.long.numbers import KeyNumbers, Tally
 from mbkf.trial.results.summary import summarise
 from tests.io.reconstructions import made_up_whole
@@ -22,7 +21,7 @@ def test_numbers_of_blocks_are_those_of_the_whole():
     whole = made_up_whole(frames=90)
     numbers = KeyNumbers()
     for block in (slice(0, 40), slice(40, 55), slice(55, 90)):
-        numbers.add(without_margins(whole, block))
+        numbers.add(whole.part(block))
     found, wanted = numbers.summary(whole), summarise(whole)
     assert found.keys() == wanted.keys()
     for key, value in wanted.items():

@@ -16,7 +16,6 @@ from mbkf.io.capture import read_capture
 from mbkf.io.capture_pieces import CapturePieces
 from mbkf.io.results import QUANTITIES
 from mbkf.io.results_folder import read_reconstruction, read_summary, write_reconstruction
-from mbkf.trial.long.assembly import without_margins
 from mbkf.trial.long.pieces import PieceSettings
 from mbkf.trial.long.prepared import prepared
 from mbkf.trial.long.reconstruct import reconstruct_long
@@ -174,7 +173,7 @@ def test_margins_are_cut_off_all_arrays(walk):
     path, person = walk
     settings = ReconstructSettings(filter="kinematic", smooth=False, checks=False)
     whole = reconstruct(read_capture(path), person, settings=settings)
-    cut = without_margins(whole, slice(10, 40))
+    cut = whole.part(slice(10, 40))
     assert cut.frames == 30
     np.testing.assert_array_equal(cut.predicted_m, whole.predicted_m[10:40])
     assert cut.plate_names == whole.plate_names
