@@ -116,7 +116,7 @@ def _result(
     track = _track(piece, rows, settled, survey)
     capture = replace(trial.capture(piece), notes=())
     later_s = piece.begin / trial.rate_hz
-    named, doubts = trial.markers(piece), [_moved(one, later_s) for one in settled.limb_doubts]
+    named, doubts = trial.markers(piece), [in_piece(one, later_s) for one in settled.limb_doubts]
     hidden = hidden_samples(named, trial.settings.hide)
     measured, _ = renamed_by_filter(named, doubts)
     plates, _ = trial.plates(capture)
@@ -137,7 +137,7 @@ def _track(piece: Piece, rows: PagedArray, settled: Settled, survey: Survey) -> 
     return track if settled.changes is None else settled.changes.added_to(track, records, piece.begin)
 
 
-def _moved(doubt: LimbDoubt, later_s: float) -> LimbDoubt:
+def in_piece(doubt: LimbDoubt, later_s: float) -> LimbDoubt:
     """A doubt with its times since the first frame of a piece."""
     right = doubt.right_from_s
     return replace(
