@@ -131,7 +131,7 @@ def followed(trial: Spoilt) -> Found:
             if trial.kind:
                 recorded, fault = KINDS[trial.kind](recorded, np.random.default_rng(trial.seed))
             # Evidence is that of the result before its verdict takes frames away.
-            with _thrown(recorded.thrown), patch("mbkf.trial.reconstruct.judged_result", _as_it_is):
+            with _thrown(recorded.thrown), patch("mbkf.trial.verdict.judge.judged_result", _as_it_is):
                 found = reconstruct(recorded.capture, recorded.person())
         except MbkfError as error:
             return Found(trial, fault, str(error), None, {}, {})

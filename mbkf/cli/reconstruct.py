@@ -159,7 +159,6 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.subject import read_subject
     from mbkf.trial.preparation.settings import ReconstructSettings
     from mbkf.trial.reconstruct import reconstruct
-    from mbkf.trial.results.summary import summarise
     from mbkf.trial.results.truth import truth_beside
 
     hide = tuple(parse_hide(text) for text in args.hide)
@@ -187,6 +186,8 @@ def run(args: argparse.Namespace) -> int:
     if isinstance(trial, Capture):
         with stages() as report:
             result = reconstruct(trial, subject, settings=settings, imus=imus, progress=report)
+        from mbkf.trial.results.summary import summarise  # the first frame need not wait for it
+
         summary = summarise(result, truth)
         write_reconstruction(result, summary, folder)
     else:

@@ -13,7 +13,6 @@ from mbkf.io.subject import Subject
 from mbkf.scaling.correction import correction
 from mbkf.scaling.trial_lengths import LengthEvidence
 from mbkf.trial.checks.plate_contradictions import plate_contradictions
-from mbkf.trial.loads.partners import others_of, with_contacts
 from mbkf.trial.preparation.coverage import MarkerUse, use_by_subject
 from mbkf.trial.preparation.entering import without_entering
 from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right
@@ -27,7 +26,6 @@ from mbkf.trial.preparation.selection import (
 )
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.preparation.shrunken import without_shrunken
-from mbkf.trial.results.assembly import assemble
 from mbkf.trial.results.progression import Progression
 
 
@@ -170,6 +168,10 @@ def result_of(
         wrench: (T, P, 6) wrenches of the plates over the frames.
         frame: Of a part of a trial, the frame of the pelvis's angles by the whole one; None: the motion shows it.
     """
+    # the first frame need not wait for these
+    from mbkf.trial.loads.partners import others_of, with_contacts
+    from mbkf.trial.results.assembly import assemble
+
     measured, hidden, use = markers
     found = assemble(capture, subject, settings, measured, hidden, inputs, track, wrench, frame)
     found = with_contacts(found, inputs.sensor.model, subject, measured, others_of(capture, use.used))

@@ -16,8 +16,6 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.block import AnyBlock
 from mbkf.trial.axes.captures import checked_for_subject
-from mbkf.trial.checks.in_view import in_view_finding
-from mbkf.trial.checks.trial import trial_checks
 from mbkf.trial.gait.convention import convention_of
 from mbkf.trial.inertial.on_body import ImuOnBody, with_imus
 from mbkf.trial.order import needs_motion, ready, result_of, searches_contacts
@@ -28,8 +26,6 @@ from mbkf.trial.preparation.other_contacts import contact_opener, with_other_con
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.results.progression import PELVIS_FRAMES
 from mbkf.trial.results.readings import ANGLES, zero_posture
-from mbkf.trial.results.warnings import all_warnings
-from mbkf.trial.verdict.judge import judged_result
 
 
 def reconstruct(
@@ -90,6 +86,12 @@ def reconstruct(
             progress=None if progress is None else partial(progress, "Filtering"),
             contacts=None if settings.smooths or blocks else contact_opener(inputs, settings),
         )
+        # the first frame need not wait for these
+        from mbkf.trial.checks.in_view import in_view_finding
+        from mbkf.trial.checks.trial import trial_checks
+        from mbkf.trial.results.warnings import all_warnings
+        from mbkf.trial.verdict.judge import judged_result
+
         measured, taken_up = renamed_by_filter(trial.measured, result.limb_doubts)
         capture = replace(capture, notes=tuple(notes))
         markers = measured, trial.hidden, trial.use
