@@ -50,7 +50,7 @@ LONG_FUNCTIONS: dict[str, str] = {}
 """Functions allowed to be longer, each with its reason: {"mbkf/io/c3d.py:read": "why"}."""
 UNTESTED: dict[str, str] = {
     f"mbkf/kernel/{name}_functions.py": "declares functions of the kernel: tests/kernel/test_declaration.py"
-    for name in ("body", "contact", "force", "inertial", "smoothing", "state", "tracking")
+    for name in ("body", "contact", "force", "inertial", "smoothing", "state", "text", "tracking")
 }
 """Modules without a test of their own, each with its reason: {"mbkf/io/x.py": "where it is tested"}."""
 

@@ -12,6 +12,7 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, ShapeError, UnknownName
 from mbkf.io.atomic import replacing_text
+from mbkf.io.number_text import number_rows
 from mbkf.io.text import blank_separated, is_comment, read_text
 from mbkf.io.written import MARK
 
@@ -128,9 +129,9 @@ def write_storage(table: Table, path: str | Path) -> None:
     lines += ["endheader", "\t".join(["time", *table.names])]
     with replacing_text(path) as file:
         file.write("\n".join(lines) + "\n")
-        line = "\t".join(["%.10g", *["%.12g"] * len(table.names)]) + "\n"
-        for time_s, row in zip(table.times_s.tolist(), table.columns, strict=True):
-            file.write(line % (time_s, *row.tolist()))
+        file.writelines(
+            number_rows(np.column_stack([table.times_s, table.columns]), [10, *[12] * len(table.names)])
+        )
 
 
 def _is_end(line: str) -> bool:

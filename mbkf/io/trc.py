@@ -17,6 +17,7 @@ from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world, up_axis
 from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.marker_capture import StatedUnit, marker_capture
+from mbkf.io.number_text import number_rows
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
 from mbkf.io.written import MARK
@@ -139,9 +140,9 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
         file.write(f"{rate}\t{rate}\t{frames}\t{count}\tmm\t{rate}\t1\t{frames}\n")
         file.write("Frame#\tTime\t" + "\t\t\t".join(markers.names) + "\t\t\n")
         file.write("\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(count) for axis in "XYZ") + "\n\n")
-        line = "\t".join(["%.6f"] * (3 * count)) + "\n"
-        for number, (time_s, row) in enumerate(zip(markers.times_s, table, strict=True), start=1):
-            file.write(f"{number}\t{time_s:.8f}\t" + (line % tuple(row.tolist())).replace("nan", "NaN"))
+        numbered = np.column_stack([np.arange(1.0, frames + 1.0), markers.times_s, table])
+        for lines in number_rows(numbered, [0, -8, *[-6] * (3 * count)]):
+            file.write(lines.replace("nan", "NaN"))
 
 
 def _file(path: Path) -> TextFile:

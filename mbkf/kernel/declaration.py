@@ -32,6 +32,7 @@ FILES = (
     "inertial_functions.py",
     "smoothing_functions.py",
     "state_functions.py",
+    "text_functions.py",
     "tracking_functions.py",
 )
 """The declarations, in the kernel's folder, in the order in which they use one another."""

@@ -16,6 +16,7 @@ from mbkf.kernel.force_functions import ForceFunctions
 from mbkf.kernel.inertial_functions import InertialFunctions
 from mbkf.kernel.smoothing_functions import SmoothingFunctions
 from mbkf.kernel.state_functions import StateFunctions
+from mbkf.kernel.text_functions import TextFunctions
 from mbkf.kernel.tracking_functions import TrackingFunctions
 
 SWITCH = "MBKF_KERNEL"
@@ -31,6 +32,7 @@ class Library(
     InertialFunctions,
     SmoothingFunctions,
     StateFunctions,
+    TextFunctions,
     TrackingFunctions,
     Protocol,
 ):
