@@ -94,16 +94,16 @@ def corrected_covariance(
         np.zeros((count - factors,) * 2),
         prior.precision[factors:, factors:],
     )
-    back = np.eye(len(information))
-    back[count:, :factors] = -problem.places_by_unknowns()[factors:, :factors]
-    data = back.T @ (information - precision) @ back
+    by_factors, data = problem.places_by_unknowns()[factors:, :factors], information - precision
+    data[:, :factors] -= data[:, count:] @ by_factors
+    data[:factors] -= by_factors.T @ data[count:]
     precision = precision[found_anew, found_anew]
-    J = data[found_anew, found_anew] + precision
+    alone = inverse(data[found_anew, found_anew] + precision)
     names, segments = zip(*((marker.name, marker.segment) for marker in problem.markers), strict=True)
     skin = slide_covariance(problem.body, segments)[: prior.flexions]
     root = before.rows(names, {marker.name: marker.placement_sd_m for marker in problem.markers}, skin)
-    gain = np.linalg.solve(J, np.hstack([-data[found_anew, :count], precision]))
+    gain = alone @ np.hstack([-data[found_anew, :count], precision])
     moved = np.vstack([root[:count], gain @ root])
     covariance = moved @ moved.T
-    covariance[found_anew, found_anew] += np.linalg.inv(J)
+    covariance[found_anew, found_anew] += alone
     return BodyCovariance.of(before.factors, names, covariance, prior.flexions, before.centres)
