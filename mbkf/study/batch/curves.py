@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import NDArray
 
-from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.files_read import check_input, own_files_read, read_bytes
@@ -145,13 +145,13 @@ def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]
         for column in ([c.value for c in curves], [c.sd for c in curves])
     )
 
-    def same(value: float | np.bool_, kind: type) -> Array:
-        return np.full(n * POINTS, value, kind)
+    def same(value: float | np.bool_, kind: type) -> pa.Array:
+        return _column(np.full(n * POINTS, value, kind))
 
     def each(words: list[str]) -> pa.Array:
         distinct = list(dict.fromkeys(words))
         places = np.repeat([distinct.index(word) for word in words], POINTS).astype(np.int32)
-        return pa.DictionaryArray.from_arrays(pa.array(places), pa.array(distinct))
+        return pa.DictionaryArray.from_arrays(_column(places), _texts(distinct))
 
     return pa.table(
         {
@@ -165,9 +165,22 @@ def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]
             "quantity": each([c.quantity for c in curves]),
             "name": each([c.name for c in curves]),
             "unit": each([c.unit for c in curves]),
-            "percent": np.tile(np.arange(POINTS, dtype=np.int8), n),
-            "value": values.astype(np.float32),
-            "sd": spreads.astype(np.float32),
+            "percent": _column(np.tile(np.arange(POINTS, dtype=np.int8), n)),
+            "value": _column(values.astype(np.float32)),
+            "sd": _column(spreads.astype(np.float32)),
         },
         schema=SCHEMA,
     )
+
+
+def _column(values: NDArray[np.generic]) -> pa.Array:
+    """Numbers (N,) in memory as Arrow has them; ``pa.array`` loads pandas, which takes longer than to read a trial."""
+    bits = np.packbits(values, bitorder="little") if values.dtype == np.bool_ else values
+    return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), [None, pa.py_buffer(bits)])
+
+
+def _texts(words: list[str]) -> pa.Array:
+    """Words as Arrow has them: their bytes, and where each begins (Arrow columnar format, variable-size binary)."""
+    encoded = [word.encode() for word in words]
+    begins = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
+    return pa.StringArray.from_buffers(len(words), pa.py_buffer(begins), pa.py_buffer(b"".join(encoded)))

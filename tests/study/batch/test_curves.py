@@ -1,6 +1,8 @@
 """Curves over cycles: the reconstruction's own numbers at 0 to 100 %, tidy, each with its standard deviation."""
 
 import os
+import subprocess
+import sys
 from dataclasses import replace
 from functools import cache
 
@@ -11,6 +13,7 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io.capture import read_capture
 from mbkf.io.files_read import files_read
+from mbkf.io.results_h5 import write_h5
 from mbkf.io.subject import read_subject
 from mbkf.study.batch.curves import SCHEMA, curves_of, read_curves, write_curves, write_curves_table
 from mbkf.trial.gait.convention import BY_CLINIC, CLINICAL
@@ -161,3 +164,15 @@ def test_a_folder_of_any_bytes_holds_curves(tmp_path):
     assert read_curves(path).equals(table)
     assert files_read().name_of(path) is None, "a batch replaces its own table"
     write_curves_table(table, path)
+
+
+def test_curves_are_made_without_pandas(tmp_path):
+    """A worker would load it for nothing."""
+    write_h5(walked(), tmp_path / "motion.h5")
+    program = (
+        "import sys; from mbkf.io.results_h5 import read_h5; from mbkf.study.batch.curves import curves_of; "
+        "print(len(curves_of(read_h5(sys.argv[1]))), 'pandas' in sys.modules)"
+    )
+    words = [sys.executable, "-c", program, str(tmp_path / "motion.h5")]
+    rows, loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
+    assert int(rows) == len(curves_of(walked())) and loaded == "False"
