@@ -175,7 +175,7 @@ def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]
 
 def _column(values: NDArray[np.generic]) -> pa.Array:
     """Numbers (N,) in memory as Arrow has them; ``pa.array`` loads pandas, which takes longer than to read a trial."""
-    bits = np.packbits(values, bitorder="little") if values.dtype == np.bool_ else values
+    bits = np.packbits(values.astype(bool), bitorder="little") if values.dtype == np.bool_ else values
     return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), [None, pa.py_buffer(bits)])
 
 
