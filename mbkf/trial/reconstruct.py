@@ -97,11 +97,8 @@ def reconstruct(
         markers = measured, trial.hidden, trial.use
         found = result_of(capture, trial.subject, settings, markers, inputs, result, recording.plates)
         seen = (shown, trial.subject, inputs, recording, alone, trial.before, trial.lengths)
-        judged = (
-            (*trial_checks(*seen), in_view_finding(capture.markers, trial.use.used))
-            if settings.checks
-            else ()
-        )
+        view = in_view_finding(capture.markers, trial.use.used)
+        judged = (*trial_checks(*seen), view) if settings.checks else ()
         return judged_result(
             replace(
                 found,
