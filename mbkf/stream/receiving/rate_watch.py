@@ -52,6 +52,8 @@ class RateWatch:
         Frames that are missing irregularly were lost. Where time stamps number the frames, these keep the stated rate:
         frames that come too often share their numbers, and those that come too seldom leave out some every time.
         """
+        if count_hz == 0.0:  # all frames came late, or twice
+            return None
         if abs(count_hz / self._nominal_hz - 1.0) > TOLERANCE:
             return count_hz
         too_often = arrival_hz > (1.0 + TOLERANCE) * self._nominal_hz

@@ -49,3 +49,8 @@ def test_pauses_and_bursts_are_no_other_rate():
     )  # half a second held back, then all at once
     assert told(arrivals_s, range(1000)) == []
     assert told(np.maximum(at, 2.0), range(1000)) == []
+
+
+def test_windows_in_which_no_frame_has_a_number_state_no_rate():
+    watch = RateWatch(100.0)
+    assert [watch.arrived(0.01 * k, 0 if k == 0 else None) for k in range(400)] == [None] * 400
