@@ -16,10 +16,9 @@ from mbkf.stream.source import (
 @pytest.mark.usefixtures("either_kernel")
 def test_a_point_too_far_away_is_missing_and_counted():
     far, lost = -2.0 * FARTHEST_M, np.nan
-    points = np.array(
-        [[0.0, 1.0, FARTHEST_M], [lost] * 3, [0.0, far, 0.0], [np.inf, 0.0, 0.0], [0.0, 0.0, far]]
-        + [[0.0, lost, 1.0], [lost, far, 1.0]]
-    )
+    beyond = [[np.inf, 0.0, 0.0], [0.0, far, 0.0], [0.0, 0.0, far]]
+    absent = [[lost] * 3, [0.0, lost, 1.0], [lost, far, 1.0]]
+    points = np.array([[0.0, 1.0, FARTHEST_M], *beyond, *absent])
     cleaned, wrong = plausible(points)
     assert wrong == 3
     np.testing.assert_array_equal(cleaned, [points[0], *[[lost] * 3] * 6])
