@@ -246,20 +246,26 @@ void mbkf_propagate_forces(int N, int nv, int nu, int J, const double *P, const 
     mirror(N, after);
 }
 
-/* G with G G' = L: lower Cholesky factor; rows and columns of components without information are zero. */
+/* G with G G' = L: upper triangular, as the Cholesky factor of L in reverse order is; rows and columns of components
+ * without information are zero. */
 static int square_root(int n, const double *L, double *G)
 {
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++)
-            G[(long)j * n + i] = i < j ? 0.0 : L[(long)j * n + i];
+    const long last = (long)n * n - 1;
+    for (long i = 0; i <= last; i++)
+        G[i] = L[last - i];
     for (int i = 0; i < n; i++)
-        if (L[(long)i * n + i] == 0.0)
-            G[(long)i * n + i] = 1.0;
+        if (G[(long)i * (n + 1)] == 0.0)
+            G[(long)i * (n + 1)] = 1.0;
     if (factored(n, G))
         return 1;
+    for (long i = 0; i < (last + 1) / 2; i++) {
+        const double kept = G[i];
+        G[i] = G[last - i];
+        G[last - i] = kept;
+    }
     for (int i = 0; i < n; i++)
-        if (L[(long)i * n + i] == 0.0)
-            for (int j = 0; j <= i; j++)
+        if (L[(long)i * (n + 1)] == 0.0)
+            for (int j = i; j < n; j++)
                 G[(long)j * n + i] = 0.0;
     return 0;
 }
@@ -275,18 +281,27 @@ static int half(int N, int m, double *W, double *S)
     return 0;
 }
 
-/* S = G' P G of a lower triangular G (n x n), the part on and below its diagonal; across is G', T: (n x n) to work in. */
+/* C (rows x n) = A K of an upper triangular K (n x n); across is K'. */
+static void by_triangle(int rows, int n, const double *A, int lda, const double *across, double *C)
+{
+    enum { BREADTH = 8 }; /* columns of K whose trailing zeros are left out together */
+    for (int b = 0; b < n; b += BREADTH) {
+        const int columns = n - b < BREADTH ? n - b : BREADTH;
+        product(WHOLE, rows, columns, b + columns, 1.0, A, lda, across + b, n, 0.0, NULL, C + (long)b * rows, rows);
+    }
+}
+
+/* S = G' P G of an upper triangular G (n x n), the part on and below its diagonal; across is G', T: (n x n) to work in. */
 static void squeezed(int n, const double *across, const double *P, int N, double *T, double *S)
 {
-    enum { HEIGHT = 24 }; /* rows of G' whose leading zeros are left out together */
+    enum { HEIGHT = 24 }; /* rows of G' whose trailing zeros are left out together */
     for (int b = 0; b < n; b += HEIGHT) {
         const int rows = n - b < HEIGHT ? n - b : HEIGHT;
-        product(WHOLE, rows, n, n - b, 1.0, across + (long)b * n + b, n, P + (long)b * N, N, 0.0, NULL, T + b, n);
+        product(WHOLE, rows, n, b + rows, 1.0, across + b, n, P, N, 0.0, NULL, T + b, n);
     }
     for (int b = 0; b < n; b += HEIGHT) {
         const int columns = n - b < HEIGHT ? n - b : HEIGHT;
-        const long own = (long)b * n + b;
-        product(LOWER, n - b, columns, n - b, 1.0, T + own, n, across + own, n, 0.0, NULL, S + own, n);
+        product(LOWER, n - b, columns, b + columns, 1.0, T + b, n, across + b, n, 0.0, NULL, S + (long)b * n + b, n);
     }
 }
 
@@ -302,7 +317,7 @@ static int reduced_by_rows(int N, const double *P, int n, const double *across, 
                 R + (long)b.first * m + b.start, m, 0.0, NULL, W + (long)b.start * N, N);
     }
     transposed(n, m, W, N, V);
-    product(WHOLE, m, n, n, 1.0, V, m, across, n, 0.0, NULL, Y, m);
+    by_triangle(m, n, V, m, across, Y);
     product(WHOLE, N, m, n, -1.0, F, N, Y, m, 1.0, W, W, N);
     transposed(N, m, W, N, V);
     for (Band b = {0, 0, 0, 0}; b.end < m;) {
@@ -330,7 +345,7 @@ static int informed(int N, int n, int m, const double *P, const double *informat
     if (half(n, n, G, S))
         return 2;
     transposed(n, n, G, n, across);
-    product(WHOLE, N, n, n, 1.0, P, N, across, n, 0.0, NULL, F, N);
+    by_triangle(N, n, P, N, across, F);
     if (m && reduced_by_rows(N, P, n, across, F, m, rows, W, Y, Q, R, R + (long)m * N))
         return 3;
     product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, after, N);
