@@ -91,11 +91,15 @@ class InnovationSpreads:
             chosen: What the blocks decided.
             said: What they said.
         """
-        mean_square, readings = np.zeros(len(self._kinds)), np.zeros(len(self._kinds), dtype=int)
+        mean_square, readings, kernel = np.zeros(len(self._kinds)), np.zeros(len(self._kinds)), library()
         for k, block, own in self._readers:
-            read = block.channels(chosen[k])
-            if read is None and said[k] is not None:
-                read = _whitened(said[k], own.stop - own.start)
+            read, one = block.channels(chosen[k]), said[k]
+            if read is None and isinstance(one, Rows) and kernel is not None:
+                whitened, count = np.ascontiguousarray(one.innovation, dtype=float), own.stop - own.start
+                kernel.square_channels(whitened, one.readings, own.start, count, mean_square, readings)
+                continue
+            if read is None and one is not None:
+                read = _whitened(one, own.stop - own.start)
             if read is not None:
                 mean_square[own], readings[own] = read
         return Channels(mean_square, readings)
@@ -105,9 +109,16 @@ class InnovationSpreads:
         kernel = library()
         if kernel is None:
             return self.innovations(before, read), self.after(before, read)
-        own, readings, kinds = self._markers, read.readings.astype(float), len(READING_KINDS)
+        own, kinds = self._markers, len(READING_KINDS)
         squared, counted, ratio, variance, *after = kernel.judge_innovations(
-            kinds, read.mean_square, readings, *before, self._least, self._most, self._kinds, self._forget
+            kinds,
+            read.mean_square,
+            read.readings,
+            *before,
+            self._least,
+            self._most,
+            self._kinds,
+            self._forget,
         )
         found = Innovations(squared, counted.astype(int), ratio[own], np.sqrt(variance[own]))
         return found, RunningSpread(*after)
@@ -139,9 +150,6 @@ def _whitened(said: Statement, channels: int) -> Channels:
     if isinstance(said, Information):
         first = np.arange(channels) == 0
         return Channels(first * (said.innovation / max(said.readings, 1)), first * said.readings)
-    if isinstance(said, Rows) and said.readings and said.readings % (3 * channels) == 0:
-        y, each = said.innovation[: said.readings].reshape(-1, channels, 3), said.readings // channels
-        return Channels(np.vecdot(y, y).sum(axis=0) / each, np.full(channels, each))
     squares, readings = [0.0] * channels, [0] * channels
     for rows in (said,) if isinstance(said, Rows) else said or ():
         for k, y in enumerate(rows.innovation[: rows.readings].tolist()):
@@ -149,4 +157,4 @@ def _whitened(said: Statement, channels: int) -> Channels:
             squares[channel] += y * y
             readings[channel] += 1
     mean_square = [total / max(n, 1) for total, n in zip(squares, readings, strict=True)]
-    return Channels(np.array(mean_square), np.array(readings))
+    return Channels(np.array(mean_square), np.array(readings, dtype=float))

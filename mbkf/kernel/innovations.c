@@ -30,3 +30,20 @@ void mbkf_judge_innovations(int n, int kinds, const double *mean_square, const d
         }
     }
 }
+
+void mbkf_square_channels(int k, int n, const double *whitened, int readings, int first, int channels,
+                          double *mean_square, double *counted)
+{
+    (void)k, (void)n;
+    mean_square += first;
+    counted += first;
+    memset(mean_square, 0, sizeof *mean_square * channels);
+    memset(counted, 0, sizeof *counted * channels);
+    for (int i = 0; i < readings; i++) {
+        const int channel = i / 3 % channels;
+        mean_square[channel] += whitened[i] * whitened[i];
+        counted[channel] += 1.0;
+    }
+    for (int i = 0; i < channels; i++)
+        mean_square[i] /= fmax(counted[i], 1.0);
+}

@@ -339,6 +339,26 @@ class StateFunctions(Protocol):
             level: The level.
         """
 
+    @requires("readings >= 0", "readings <= k", "first >= 0", "channels >= 1", "first + channels <= n")
+    def square_channels(
+        self,
+        whitened: In[Array, "k"],
+        readings: int,
+        first: int,
+        channels: int,
+        mean_square: Out[Array, "n"],
+        counted: Out[Array, "n"],
+        /,
+    ) -> None:
+        """Writes mean squares and numbers of whitened readings, which alternate in threes between channels.
+
+        Args:
+            whitened: Innovations.
+            readings: Number of those that count, the first ones.
+            first, channels: First of the channels, and their number.
+            mean_square, counted: Of all channels; others are left as they are.
+        """
+
     def judge_innovations(
         self,
         kinds: int,

@@ -130,7 +130,7 @@ class Channels(NamedTuple):
     """
 
     mean_square: Array
-    readings: NDArray[np.int_]
+    readings: Array
 
 
 Statement = Information | Rows | Sequence[Rows] | None

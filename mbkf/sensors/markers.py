@@ -260,10 +260,11 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def channels(self, decision: MarkerDecision) -> Channels:
         """Innovations by marker, without those of a displaced limb, which are errors of the state."""
-        used = decision.trusted
+        mean_square, readings = decision.squared_m2 / 3.0, 3.0 * decision.trusted
         if len(decision.displaced):
-            used = used & ~self._observed.carried_by(decision.displaced)
-        return Channels(used * decision.squared_m2 / 3.0, 3 * used)
+            mean_square[own := self._observed.carried_by(decision.displaced)] = 0.0
+            readings[own] = 0.0
+        return Channels(mean_square, readings)
 
     def log_noise(self, decision: MarkerDecision) -> float:
         """Log det R of the used markers."""
