@@ -55,6 +55,20 @@ void mbkf_integrate(Tree *tree, const double *q, const double *step, double *mov
     }
 }
 
+void mbkf_move_state(int m, int k, Tree *tree, const double *q, const double *v, const double *a, const double *w,
+                     const double *extra, const double *step, double *q_after, double *v_after, double *a_after,
+                     double *w_after, double *extra_after)
+{
+    const int nv = tree->nv, sizes[4] = {nv, nv, m, k};
+    const double *from[4] = {v, a, w, extra};
+    double *to[4] = {v_after, a_after, w_after, extra_after};
+    mbkf_integrate(tree, q, step, q_after);
+    step += nv;
+    for (int part = 0; part < 4; part++)
+        for (int i = 0; i < sizes[part]; i++)
+            to[part][i] = from[part][i] + *step++;
+}
+
 /* A 3 x 3 block of an nv x nv matrix. */
 static void put(const double *block, double *matrix, long nv, long row, long column)
 {

@@ -13,6 +13,31 @@ from mbkf.kernel.body_functions import Tree
 class TrackingFunctions(Protocol):
     """Steps of filters on a tree of joints."""
 
+    def move_state(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        w: In[Array, "m"],
+        extra: In[Array, "k"],
+        step: In[Array, "3*nv+m+k"],
+        /,
+    ) -> tuple[
+        Made[Array, "q_after: nq"],
+        Made[Array, "v_after: nv"],
+        Made[Array, "a_after: nv"],
+        Made[Array, "w_after: m"],
+        Made[Array, "extra_after: k"],
+    ]:
+        """A state moved along its tangent space.
+
+        Args:
+            tree: The body.
+            q, v, a, w, extra: The state.
+            step: Tangent vector.
+        """
+
     def follow_markers(
         self,
         tree: Tree,

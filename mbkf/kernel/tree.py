@@ -223,6 +223,13 @@ class CompiledTree:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
         return self.kernel.integrate(self.handle, _read(q), _read(dv))
 
+    def moved(
+        self, q: Array, v: Array, a: Array, w: Array, extra: Array, step: Array
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """A state moved along its tangent space. Args: as :meth:`TrackingFunctions.move_state`."""
+        state = _read(q), _read(v), _read(a), _read(w), _read(extra)
+        return self.kernel.move_state(self.handle, *state, _read(step))
+
     def integration_derivatives(self, dv: Array) -> tuple[Array, Array]:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv; the configuration does not matter."""
         return self.kernel.integration_derivatives(self.handle, _read(dv))

@@ -85,6 +85,9 @@ class DynamicState:
             step: (N,) tangent vector.
             P: (N, N) covariance of the moved state.
         """
+        if (tree := model.tree) is not None:
+            q, v, a, wrench, own = tree.moved(self.q, self.v, self.a, self.w, self.extra, step)
+            return DynamicState(q, v, a, wrench, P, own)
         nv = len(self.v)
         w, extra = 3 * nv, 3 * nv + len(self.w)
         return DynamicState(

@@ -42,6 +42,25 @@ class Followed(NamedTuple):
     vector: Array
 
 
+class _Called(NamedTuple):
+    """Results of the kernel (:meth:`mbkf.kernel.tracking_functions.TrackingFunctions.follow_markers`)."""
+
+    follows: bool
+    P_before: Array
+    q_before: Array
+    innovation_m: Array
+    squared_m2: Array
+    seen: BoolArray
+    by_markers: Array
+    towards_markers: Array
+    matrix: Array
+    vector: Array
+    P: Array
+    q: Array
+    v: Array
+    size: float
+
+
 class OneCall:
     """Steps of a kinematic filter by the kernel."""
 
@@ -92,26 +111,18 @@ class OneCall:
             measured_m: (M, 3) markers, NaN where missing.
         """
         read = np.ascontiguousarray
-        (
-            follows,
-            P_before,
-            q_before,
-            innovation_m,
-            squared_m2,
-            seen,
-            by_markers,
-            towards_markers,
-            matrix,
-            vector,
-            P,
-            q,
-            v,
-            size,
-        ) = self._call(state.P, read(state.q), read(state.v), read(measured_m, dtype=float))
-        prior = KinematicState(q_before, state.v, P_before.T)
-        if not follows:
+        found = _Called(*self._call(state.P, read(state.q), read(state.v), read(measured_m, dtype=float)))
+        prior = KinematicState(found.q_before, state.v, found.P_before.T)
+        if not found.follows:
             return prior
-        markers = Information(by_markers, towards_markers, size, 3 * seen.tobytes().count(1))
+        seen = found.seen
         return Followed(
-            prior, KinematicState(q, v, P.T), innovation_m, squared_m2, seen, markers, matrix, vector
+            prior,
+            KinematicState(found.q, found.v, found.P.T),
+            found.innovation_m,
+            found.squared_m2,
+            seen,
+            Information(found.by_markers, found.towards_markers, found.size, 3 * seen.tobytes().count(1)),
+            found.matrix,
+            found.vector,
         )

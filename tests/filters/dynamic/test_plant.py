@@ -4,6 +4,7 @@ That its transition is the derivative of its prediction, tests/test_jacobians.py
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -191,3 +192,12 @@ def test_recent_activity_is_a_running_mean_square():
     assert_near(plant.remember(s, notes, before), after, 1e-12 * worst(after))
     notes.unobserved = np.array([8])
     assert_near(plant.remember(s, notes, None)[8], (MODEL.movement_sd[8] / 6.0) ** 2, 1e-12)
+
+
+def test_the_kernel_moves_a_state_as_the_reference_does():
+    state = random_state(MODEL, np.random.default_rng(8))
+    step = np.random.default_rng(9).normal(size=len(state.P))
+    flat = SimpleNamespace(tree=None, integrate=MODEL.integrate)
+    found, expected = (state.retracted(model, step, state.P) for model in (MODEL, flat))
+    for name in ("q", "v", "a", "w", "extra"):
+        assert_near(getattr(found, name), getattr(expected, name), 1e-13 * worst(getattr(expected, name)))
