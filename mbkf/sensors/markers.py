@@ -260,7 +260,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def channels(self, decision: MarkerDecision) -> Channels:
         """Innovations by marker, without those of a displaced limb, which are errors of the state."""
-        mean_square, readings = decision.squared_m2 / 3.0, 3.0 * decision.trusted
+        mean_square, readings = decision.squared_m2 / 3.0, np.where(decision.trusted, 3.0, 0.0)
         if len(decision.displaced):
             mean_square[own := self._observed.carried_by(decision.displaced)] = 0.0
             readings[own] = 0.0
