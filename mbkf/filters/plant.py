@@ -13,7 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Generic, Protocol, Self, TypeVar, cast
+from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar, cast
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
@@ -41,6 +41,18 @@ class TangentState(State, Protocol):
 StateT = TypeVar("StateT", bound=TangentState)
 NoiseT = TypeVar("NoiseT")
 MemoryT = TypeVar("MemoryT")
+
+
+class DofNoise(NamedTuple):
+    """Independent noise of each dof of a state (q, its rates of rising order, the rest).
+
+    Attributes:
+        share: (k + 1,) by which a dof's noise moves its position and each of k rates.
+        sd: (nv,) standard deviations.
+    """
+
+    share: Array
+    sd: Array
 
 
 class Plant(ABC, Generic[StateT, NoiseT, MemoryT]):
@@ -100,10 +112,20 @@ class Plant(ABC, Generic[StateT, NoiseT, MemoryT]):
         phi = self.transition(state)
         P = phi @ state.P @ phi.T + cast("Array", noise)
         P = 0.5 * (P + P.T)
-        self._add_walk(P)
+        self.add_walk(P)
         return replace(self.move(state), P=P.T)  # type: ignore[type-var]
 
-    def _add_walk(self, P: Array) -> None:
+    def dof_noise(self, noise: NoiseT) -> DofNoise | None:
+        """Process noise as one number per dof, besides that of the added states; None where it is not of this form.
+
+        With it and a transition by its parts, a smoother needs a third of the work.
+
+        Args:
+            noise: Result of :meth:`noise`.
+        """
+        return None
+
+    def add_walk(self, P: Array) -> None:
         """Adds the noise of added states, the last ones, to a covariance in place."""
         if len(self._walk):
             P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk

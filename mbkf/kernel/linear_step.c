@@ -11,27 +11,6 @@
 #include "transition.h"
 #include "vectorised.h"
 
-/* y += Phi x */
-static void add_moved(int N, const Transition *phi, const double *x, double *y)
-{
-    const int nv = phi->nv, orders = phi->orders, rest = (1 + orders) * nv;
-    const double *rates = x + nv;
-    for (int one = 0; one < phi->J; one++)
-        for (int k = phi->joints[2 * one]; k < phi->joints[2 * one + 1]; k++) {
-            double pushed = 0.0;
-            for (int order = 0; order < orders; order++)
-                pushed += phi->push[order] * rates[order * nv + k];
-            for (int i = phi->joints[2 * one]; i < phi->joints[2 * one + 1]; i++)
-                y[i] += phi->A[i * nv + k] * x[k] + phi->B[i * nv + k] * pushed;
-        }
-    for (int order = 0; order < orders; order++)
-        for (int of = 0; of < orders; of++)
-            for (int i = 0; i < nv; i++)
-                y[(1 + order) * nv + i] += phi->rates[order * orders + of] * rates[of * nv + i];
-    for (int i = rest; i < N; i++)
-        y[i] += x[i];
-}
-
 /* y (N) += X' x of X (m x N), row by row. */
 VECTORISED static void add_rows(int N, int m, const double *X, const double *x, double *restrict y)
 {

@@ -13,53 +13,16 @@
 #include "transition.h"
 #include "vectorised.h"
 
-/* x += a l, or x = a l. */
-static inline void plus_row(int N, int is_first, double a, const double *l, double *x)
-{
-    for (int j = 0; j < N; j++)
-        x[j] = is_first ? a * l[j] : x[j] + a * l[j];
-}
-
-/* Rows of one joint and of its rates of Phi' L; a row of B' L stays in `pushed` (N). */
-VECTORISED static void joint_rows_before(int first, int end, int N, const Transition *phi, const double *L, double *out,
-                                         double *pushed)
-{
-    const int nv = phi->nv, orders = phi->orders;
-    for (int i = first; i < end; i++) {
-        for (int k = first; k < end; k++) {
-            plus_row(N, k == first, phi->A[k * nv + i], L + (long)k * N, out + (long)i * N);
-            plus_row(N, k == first, phi->B[k * nv + i], L + (long)k * N, pushed);
-        }
-        for (int order = 0; order < orders; order++) {
-            double *o = out + (long)((1 + order) * nv + i) * N;
-            plus_row(N, 1, phi->push[order], pushed, o);
-            for (int of = 0; of < orders; of++)
-                if (phi->rates[of * orders + order] != 0.0)
-                    plus_row(N, 0, phi->rates[of * orders + order], L + (long)((1 + of) * nv + i) * N, o);
-        }
-    }
-}
-
-/* out = Phi' L, row by row; pushed: (N) to work in. */
-static void rows_before(int N, const double *L, const Transition *phi, double *out, double *pushed)
-{
-    const long rest = (long)(1 + phi->orders) * phi->nv * N;
-    for (int k = 0; k < phi->J; k++)
-        joint_rows_before(phi->joints[2 * k], phi->joints[2 * k + 1], N, phi, L, out, pushed);
-    memcpy(out + rest, L + rest, sizeof(double) * ((long)N * N - rest));
-}
-
 void mbkf_curvature_before_motion(int N, int nv, int J, int orders, const double *L, const double *A, const double *B,
                                   const int *joints, const double *push, const double *rates, double *before)
 {
     const Transition phi = {nv, orders, J, A, B, push, rates, joints};
-    double *turned = are_all_dofs(J, joints, nv) ? workspace((long)N * (N + 1)) : NULL;
+    double *turned = are_all_dofs(J, joints, nv) ? workspace((long)N * N) : NULL;
     if (!turned)
         return;
-    double *pushed = turned + (long)N * N;
-    rows_before(N, L, &phi, before, pushed);
+    rows_before(N, L, &phi, before);
     transposed(N, N, before, N, turned);
-    rows_before(N, turned, &phi, before, pushed);
+    rows_before(N, turned, &phi, before);
 }
 
 /* step -= P gradient and change += P kept, both in one way through P, four of its columns at once. */
@@ -97,29 +60,6 @@ VECTORISED static void without_rows(int N, int m, const double *rows, const doub
     }
 }
 
-/* before = Phi' gradient */
-static void gradient_before_motion(int N, const Transition *phi, const double *gradient, double *before)
-{
-    const int nv = phi->nv, orders = phi->orders;
-    double *rates = before + nv;
-    memcpy(before, gradient, sizeof(double) * N);
-    memset(before, 0, sizeof(double) * (1 + orders) * nv);
-    for (int one = 0; one < phi->J; one++)
-        for (int i = phi->joints[2 * one]; i < phi->joints[2 * one + 1]; i++) {
-            double pushed = 0.0;
-            for (int k = phi->joints[2 * one]; k < phi->joints[2 * one + 1]; k++) {
-                before[i] += phi->A[k * nv + i] * gradient[k];
-                pushed += phi->B[k * nv + i] * gradient[k];
-            }
-            for (int order = 0; order < orders; order++)
-                rates[order * nv + i] = phi->push[order] * pushed;
-        }
-    for (int order = 0; order < orders; order++)
-        for (int of = 0; of < orders; of++)
-            for (int i = 0; i < nv; i++)
-                rates[order * nv + i] += phi->rates[of * orders + order] * gradient[(1 + of) * nv + i];
-}
-
 void mbkf_gradient_before(int N, int n, int m, int nv, int J, int orders, const double *P, const double *gradient,
                           const double *vector, const double *information, const double *rows, const double *A,
                           const double *B, const int *joints, const double *push, const double *rates, double *step,
@@ -139,7 +79,7 @@ void mbkf_gradient_before(int N, int n, int m, int nv, int J, int orders, const 
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++)
             kept[i] -= change[j] * information[(long)j * n + i];
-    gradient_before_motion(N, &phi, kept, before);
+    vector_before(N, &phi, kept, before);
 }
 
 static void smoothed_and_product(int N, const double *P, const double *L, double *smoothed, double *LP, double *turned)

@@ -154,3 +154,75 @@ class SmoothingFunctions(Protocol):
             rows: Whitened Jacobian H of further readings, which add HᵀH to Λ.
             before: Curvature before the readings.
         """
+
+    @requires("nv + orders*nv <= N", "n <= N")
+    def information_forward(
+        self,
+        Y: In[Array, "N N symmetric"],
+        y: In[Array, "N"],
+        offset: In[Array, "N"],
+        A: In[Array, "nv nv"],
+        B: In[Array, "nv nv"],
+        joints: In[Int32Array, "J 2 in 0:nv+1"],
+        push: In[Array, "orders"],
+        rates: In[Array, "orders orders"],
+        share: In[Array, "orders+1"],
+        sd: In[Array, "nv"],
+        noise: In[Array, "N N symmetric"],
+        active: In[Int32Array, "K in 0:N"],
+        information: In[Array, "n n symmetric"],
+        vector: In[Array, "n"],
+        rows: In[Array, "m N"],
+        values: In[Array, "m"],
+        added: In[Array, "N"],
+        after: Out[Array, "N N symmetric"],
+        gain: Out[Array, "N nv+K"],
+        spread: Out[Array, "nv+K nv+K symmetric"],
+        /,
+    ) -> tuple[int, Made[Array, "vector_after: N"], Made[Array, "mean: nv+K"]]:
+        """A frame of an information filter in corrections of a trajectory (``information_smoothing.c``); 0, or failure.
+
+        Noise of the step, given the next error d, is N(G d + mean, spread) with Gᵀ the gain.
+
+        Args:
+            Y, y: P⁻¹ and P⁻¹ δ of the frame before.
+            offset: From the trajectory to its prediction of the frame.
+            A, B, joints, push, rates: Φ, as :meth:`curvature_before_motion` takes it.
+            share: By which a dof's noise moves its position and each of its rates.
+            sd: Standard deviation of each dof's noise.
+            noise: Covariance of the noise of the components ``active``, zero for all others.
+            active: Those components.
+            information, vector: Λ and its λ on the first n components.
+            rows, values: Whitened Jacobian H of further readings and their innovations, which add HᵀH and Hᵀy.
+            added: Added to λ.
+            after: Y of the frame.
+            gain, spread: The noise's.
+        """
+
+    @requires("nv + orders*nv <= N")
+    def information_backward(
+        self,
+        S: In[Array, "N N symmetric"],
+        d: In[Array, "N"],
+        offset: In[Array, "N"],
+        A: In[Array, "nv nv"],
+        B: In[Array, "nv nv"],
+        joints: In[Int32Array, "J 2 in 0:nv+1"],
+        push: In[Array, "orders"],
+        rates: In[Array, "orders orders"],
+        share: In[Array, "orders+1"],
+        active: In[Int32Array, "K in 0:N"],
+        gain: In[Array, "N nv+K"],
+        spread: In[Array, "nv+K nv+K symmetric"],
+        mean: In[Array, "nv+K"],
+        before: Out[Array, "N N symmetric"],
+        /,
+    ) -> tuple[int, Made[Array, "step: N"]]:
+        """The smoothed error of a frame and its covariance ``before`` from the next frame's d and S; 0, or failure.
+
+        Args:
+            S, d: Smoothed covariance and error of the frame after.
+            offset, A, B, joints, push, rates, share, active: As :meth:`information_forward` took them.
+            gain, spread, mean: Its results.
+            before: Smoothed covariance.
+        """

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.plant import Plant
+from mbkf.filters.plant import DofNoise, Plant
 from mbkf.kernel.covariance import joint_ranges
 from mbkf.kernel.loading import library
 from mbkf.kernel.state_functions import Singer
@@ -209,6 +209,12 @@ class SingerPlant(Plant[DynamicState, Array, Array | None]):
         motion = state.P, state.q, state.v, state.a
         P, q, v, a = self._kernel.predict(tree.handle, *motion, *self._constants, sd, self._walk)
         return DynamicState(q, v, a, state.w, P.T, state.extra)
+
+    def dof_noise(self, noise: Array | None) -> DofNoise | None:
+        """σ_a moves position, velocity and acceleration of a dof alike, where its jerk is constant within a frame."""
+        if not self.settings.constant_jerk:
+            return None
+        return DofNoise(np.sqrt(self.covariance.diagonal()), self.acceleration_sd if noise is None else noise)
 
     def process_noise(self, sd: Array) -> Array:
         """(N, N) Q of one step for accelerations of standard deviations (nv,)."""

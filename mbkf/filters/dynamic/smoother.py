@@ -16,6 +16,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.information_pass import InformationPass, NoiseMemory, information_pass
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.filter import Decisions, Readings, Step
 from mbkf.kernel.covariance import informed_with_rows
@@ -44,20 +45,48 @@ class _Frame(NamedTuple):
     transition: Transition | None
 
 
+class _CovariancePass(NamedTuple):
+    """A forward pass that keeps covariances.
+
+    Attributes:
+        frames: Its frames.
+        asked: One of them.
+    """
+
+    frames: Sequence[_Frame]
+    asked: int
+
+    @property
+    def kept(self) -> tuple[Array, Array]:
+        """(N,) correction and (N, N) covariance of the frame ``asked`` by readings up to it."""
+        return self.frames[self.asked].delta, self.frames[self.asked].P
+
+    def backward(self, covariances: int) -> Iterator[tuple[Array, Array | None]]:
+        """From the last frame to the first: correction of the mean, and the smoothed covariance where it is wanted.
+
+        Args:
+            covariances: Of how many frames, from the first on, it is.
+        """
+        return _backward(self.frames, covariances)
+
+
 class WindowMemory:
     """Memory that windows of one run share.
 
     Attributes:
         covariances: Arrays (N, N) to work in: fresh memory costs as much as the products that go there.
+        noises: Memory of passes that keep information.
     """
 
     def __init__(self) -> None:
         self.covariances: list[Array] = []
+        self.noises = NoiseMemory()
         self._kept: tuple[DynamicState, DynamicState] | None = None
 
-    def grow(self, frames: int, shape: tuple[int, ...]) -> None:
-        """Makes covariances for as many frames."""
+    def grow(self, frames: int, shape: tuple[int, ...]) -> Sequence[Array]:
+        """Covariances for as many frames at least."""
         self.covariances += [np.empty(shape) for _ in range(len(self.covariances), frames)]
+        return self.covariances
 
     def keep(self, filtered: DynamicState, linearised: DynamicState) -> None:
         """Keeps the last round's forward estimate of a frame, from which the next window's forward pass goes on.
@@ -98,23 +127,25 @@ def smooth(
     memory = WindowMemory() if memory is None else memory
     begin, decided = memory.start(run[0].state), [step.decisions for step in run]
     means = [step.state for step in run]
-    memory.grow(len(run), begin.P.shape)
-    forward = _filtered(kalman, run)
+    wanted = len(run) if wanted is None else wanted
+    found: _CovariancePass | InformationPass = _CovariancePass(_filtered(kalman, run), wanted - 1)
     for _ in range(rounds - 1):
-        steps = [step for step, _ in _backward(forward)]
+        steps = [step for step, _ in found.backward(0)]
         share = _damping(steps, kalman.layout.nv)
         means = [
             kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
         ]
-        forward = _forward(kalman, begin, means, decided, memory.covariances)
-    last = (len(run) if wanted is None else wanted) - 1
+        by_information = information_pass(kalman, begin, means, decided, wanted - 1, memory.noises)
+        found = by_information or _CovariancePass(
+            _forward(kalman, begin, means, decided, memory.grow(len(run), begin.P.shape)), wanted - 1
+        )
     if rounds > 1:
-        found = forward[last]
-        memory.keep(run[last].state, kalman.plant.retract(means[last], found.delta, found.P.copy()))
-    steps_and_covariances = list(_backward(forward, len(run) if wanted is None else wanted))[::-1]
-    for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
-        if P is not None:
-            yield kalman.plant.retract(mean, step, P)
+        delta, P = found.kept
+        memory.keep(run[wanted - 1].state, kalman.plant.retract(means[wanted - 1], delta, P.copy()))
+    steps_and_covariances = list(found.backward(wanted))[::-1]
+    for mean, (step, P_smoothed) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
+        if P_smoothed is not None:
+            yield kalman.plant.retract(mean, step, P_smoothed)
 
 
 def _damping(steps: Sequence[Array], nv: int) -> float:
