@@ -34,6 +34,10 @@ NO_POINTS = read_only(np.zeros((0, 3)))
 """The points without names of a frame that has none."""
 
 
+NOWHERE = np.zeros(0, dtype=np.intp)
+"""Numbers of no point."""
+
+
 class StreamLayout:
     """Turns a stream's frames into those of a :class:`mbkf.stream.source.FrameSource`.
 
@@ -72,8 +76,9 @@ class StreamLayout:
     def frame(self, frame: Frame, arrival_s: float) -> SourceFrame:
         """One frame in the world's axes; its samples of the plates are numbered from its own number on."""
         with np.errstate(invalid="ignore"):  # numbers of a server may be NaN
-            markers, points = self._points(frame)
-            return SourceFrame(frame.number, arrival_s, markers, points, self._plates(frame))
+            markers, points, residuals = self._points(frame)
+            plates = self._plates(frame)
+            return SourceFrame(frame.number, arrival_s, markers, points, plates, residuals_m=residuals)
 
     def describe(self, described: Descriptions) -> list[tuple[str, str]]:
         """Takes a later description: markers are found by name, plates by where they lie. Returns events."""
@@ -122,8 +127,8 @@ class StreamLayout:
         name = plate.serial or str(plate.number)
         return empty_plate(name, rate_hz, 0.0, origin, DEFAULT_COP_THRESHOLD_N, known)
 
-    def _points(self, frame: Frame) -> tuple[Array, Array]:
-        """(M, 3) named markers and (N, 3) points; positions that Motive only filled in count as missing."""
+    def _points(self, frame: Frame) -> tuple[Array, Array, Array | None]:
+        """(M, 3) named markers, (N, 3) points, and residuals of both; positions that Motive filled in are missing."""
         rows = [self._rows(frame.sets.get(one.name), len(one.markers)) for one in self._sets]
         found = rows[0] if len(rows) == 1 else np.concatenate([*rows, packets.NO_POINTS])
         flags, points, missing = frame.labelled["flags"], frame.points, _at_nought(found)
@@ -135,9 +140,17 @@ class StreamLayout:
             points = frame.labelled["position"][flags & packets.UNLABELLED != 0]
         markers = found.astype(float) @ self._rotation.T
         markers[missing] = np.nan
+        residuals = None
+        if len(frame.labelled):
+            every = np.concatenate([found, points], dtype=np.float32)
+            residuals = _residuals(every, frame.labelled)
+            residuals[: len(found)][missing] = np.nan
         if self._columns is not None:
             markers = np.vstack([markers, np.full(3, np.nan)])[self._columns]
-        return markers, points.astype(float) @ self._rotation.T if len(points) else NO_POINTS
+            if residuals is not None:
+                own = np.append(residuals[: len(found)], np.nan)[self._columns]
+                residuals = np.concatenate([own, residuals[len(found) :]])
+        return markers, points.astype(float) @ self._rotation.T if len(points) else NO_POINTS, residuals
 
     def _rows(self, found: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
         """(count, 3) positions of a set's markers; NaN where their number is not that of the description.
@@ -200,12 +213,32 @@ def _at_nought(points: NDArray[np.float32]) -> BoolArray:
 def _among(found: NDArray[np.float32], others: NDArray[np.float32]) -> BoolArray:
     """(M,) true for points (M, 3) that are among the others (K, 3)."""
     among = np.zeros(len(found), dtype=bool)
-    if not len(others):
-        return among
+    among[_pairs(found, others)[0]] = True
+    return among
+
+
+def _residuals(points: NDArray[np.float32], labelled: NDArray[np.void]) -> Array:
+    """(M,) residuals, m, of points (M, 3) by the labelled markers of their place; NaN without one."""
+    places = labelled["position"]
+    if places.tobytes() == points.tobytes():  # as a rule
+        found = labelled["residual"].astype(float)
+    else:
+        found = np.full(len(points), np.nan)
+        rows, which = _pairs(points, places)
+        found[rows] = labelled["residual"][which]
+    found[~(found >= 0.0)] = np.nan
+    return found
+
+
+def _pairs(
+    found: NDArray[np.float32], others: NDArray[np.float32]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Numbers of points (M, 3) and of the others (K, 3) at the same place."""
+    if not len(found) or not len(others):
+        return NOWHERE, NOWHERE
     rows, which = np.nonzero(found[:, None, 0] == others[:, 0])
     same = (found[rows] == others[which]).all(axis=1)
-    among[rows[same]] = True
-    return among
+    return rows[same], which[same]
 
 
 def _rate(frames: Sequence[Frame]) -> float:

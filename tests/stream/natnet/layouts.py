@@ -38,14 +38,15 @@ def channels(number, samples):
     return integers(number, len(samples)) + b"".join(integers(len(row)) + floats(row) for row in samples)
 
 
-def labelled(identity, position, flags):
-    return integers(identity) + floats(position) + floats([0.014]) + struct.pack("<H", flags) + floats([0.5])
+def labelled(identity, position, flags, residual=0.5):
+    sized = integers(identity) + floats(position) + floats([0.014])
+    return sized + struct.pack("<H", flags) + floats([residual])
 
 
 def frame(version, number=5, time_s=0.5, sets=(), points=(), markers=(), plates=()):
     """A frame with two rigid bodies, two skeletons, an asset and two devices besides what is asked for.
 
-    Sets are pairs of a name and positions, markers are triples as :func:`labelled` takes them, plates are pairs of a
+    Sets are pairs of a name and positions, markers are tuples as :func:`labelled` takes them, plates are pairs of a
     number and channels.
     """
     skeleton = integers(3, 2) + body() + body()

@@ -50,6 +50,33 @@ def one_by_one(described, frame):
     return np.array(rows).reshape(-1, 3) @ ROTATION.T
 
 
+def test_residuals_are_those_of_the_labelled_markers_at_the_places():
+    a, b, c, d, bare = np.arange(1.0, 16.0).reshape(5, 3)
+    markers = [
+        (1, b, 0, 0.25),
+        (2, a, 0, 0.5),
+        (3, c, packets.OCCLUDED, 0.75),
+        (4, bare, packets.UNLABELLED, 0.125),
+    ]
+    markers.append((5, d, 0, -1.0))
+    (frame,) = frames(
+        count=1, sets=[("one", [a, b]), ("two", [c, d])], points=[bare, bare + 1.0], markers=markers
+    )
+    one = layout()
+    found = one.frame(frame, 1.5).residuals_m
+    np.testing.assert_array_equal(found, [0.5, 0.25, math.nan, math.nan, 0.125, math.nan])
+    one.describe(Descriptions((MarkerSet("one", ("B", "A")), MarkerSet("two", ("C", "D"))), ()))
+    np.testing.assert_array_equal(one.frame(frame, 1.5).residuals_m, found[[1, 0, 2, 3, 4, 5]])
+    in_order = [
+        (k, at, 0, residual)
+        for k, (at, residual) in enumerate(zip((a, b, c, d), (1.0, 2.0, -1.0, 4.0), strict=True))
+    ]
+    (rule,) = frames(count=1, sets=[("one", [a, b]), ("two", [c, d])], markers=in_order)
+    np.testing.assert_array_equal(layout().frame(rule, 1.5).residuals_m, [1.0, 2.0, math.nan, 4.0])
+    (without,) = frames(count=1, sets=[("one", [a, b]), ("two", [c, d])])
+    assert one.frame(without, 1.5).residuals_m is None
+
+
 VALUES = st.sampled_from([0.0, -0.0, 1.0, 2.0, 0.5, math.nan])
 POINT = st.tuples(VALUES, VALUES, VALUES)
 
