@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -50,17 +51,19 @@ def write_csv(blocks: Iterable[Reconstruction], path: str | Path) -> None:
     """Writes the table of a result that comes in blocks of frames.
 
     Args:
-        blocks: The blocks, in order.
+        blocks: The blocks, one at least, in order.
         path: The file, replaced whole or not at all.
 
     Raises:
         OSError: The file cannot be written.
     """
+    rest = iter(blocks)
+    first = next(rest)  # a result that cannot be read leaves no folder
     with replacing_text(path) as file:
-        for number, block in enumerate(blocks):
+        for block in chain([first], rest):
             columns = dict(csv_columns(block))
             rows = zip(*(_texts(column) for column in columns.values()), strict=True)
-            file.write(csv_text(() if number else tuple(columns), rows))
+            file.write(csv_text(tuple(columns) if block is first else (), rows))
 
 
 def csv_text(names: Sequence[str], rows: Iterator[Sequence[str]]) -> str:

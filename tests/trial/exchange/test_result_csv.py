@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mbkf.errors import FileFormatError
 from mbkf.io.contacts import Source
+from mbkf.io.results_folder import read_blocks
 from mbkf.io.written import TABLE, form_of
 from mbkf.trial.exchange.result_csv import leaves, plain, write_csv, write_result_csv
 from tests.recordings import broken_walk, leaning_walk, walk
@@ -48,6 +50,12 @@ def test_blocks_make_the_table_of_the_whole(tmp_path):
     write_result_csv(r, tmp_path / "whole.csv")
     write_csv((r.part(slice(begin, begin + 7)) for begin in range(0, r.frames, 7)), tmp_path / "blocks.csv")
     assert (tmp_path / "blocks.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
+def test_a_result_that_cannot_be_read_leaves_no_folder(tmp_path):
+    with pytest.raises(FileFormatError):
+        write_csv(read_blocks(tmp_path / "missing.h5"), tmp_path / "new" / "walk.csv")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_coordinates_are_in_degrees_and_metres_with_their_loads(columns):
