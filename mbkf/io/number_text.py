@@ -25,7 +25,7 @@ def number_rows(values: Array, digits: Sequence[int]) -> Iterator[str]:
     if kernel is None:
         yield from (line % tuple(row.tolist()) for row in values)
         return
-    values, columns = np.ascontiguousarray(values), np.array(digits, dtype=np.int32)
+    values, columns = np.ascontiguousarray(values, dtype=float), np.array(digits, dtype=np.int32)
     text, begin = np.empty(max(BYTES, NUMBER_BYTES * len(columns)), dtype=bool), 0
     while begin < len(values):
         end, size = kernel.number_rows(values, columns, begin, text)

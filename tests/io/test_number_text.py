@@ -30,6 +30,13 @@ def test_rows_are_written_as_python_formats_them(digits):
     assert "".join(number_rows(values, digits)) == "".join(line % tuple(row) for row in values.tolist())
 
 
+@pytest.mark.parametrize("kind", [np.float32, np.int64])
+def test_rows_of_another_type_and_layout_are_written_too(kind):
+    values = (100.0 * np.random.default_rng(6).normal(size=(5, 8))).astype(kind)[::-2, ::2].T
+    line = "%.10g\t%.10g\t%.10g\n"
+    assert "".join(number_rows(values, [10] * 3)) == "".join(line % tuple(row) for row in values.tolist())
+
+
 def test_rows_longer_than_a_piece_of_memory_follow_each_other(monkeypatch):
     values = np.random.default_rng(4).normal(size=(50, 6))
     whole = "".join(number_rows(values, DIGITS))
