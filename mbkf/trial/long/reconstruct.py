@@ -75,7 +75,7 @@ def reconstruct_long(
     check_names(settings, subject, sensors=False)
     source = in_axes_of(source, subject, settings)
     with single_threaded(), replacing_folder(folder, last=SUMMARY_FILE) as partial_folder:
-        with unfinished(partial_folder / "arrays", folder=True) as pages:
+        with unfinished(partial_folder / "arrays", folder=True, shown=partial_folder) as pages:
             trial = prepared(source, subject, settings, lengths, pages, progress)
             rows, settled = _filtered(trial, pages, progress)
             run_id, written = uuid.uuid4().hex, ResultPieces(partial_folder / MOTION_FILE, source.frames)
