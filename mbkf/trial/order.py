@@ -87,8 +87,20 @@ def ready(
     notes += plate_contradictions(replace(capture, plates=plates)) if settings.checks else ()
     tracked, before, lengths = _for_trial(subject, shown, settings)
     inputs, recording = trial_inputs(shown, plates, tracked, settings)
-    decided = use, tuple(notes), tracked, before, lengths, inputs, recording
-    return Ready(measured, hidden, shown, exchanged, tuple(remarks), *decided)
+    return Ready(
+        measured=measured,
+        hidden=hidden,
+        shown=shown,
+        exchanged=exchanged,
+        remarks=tuple(remarks),
+        use=use,
+        notes=tuple(notes),
+        subject=tracked,
+        before=before,
+        lengths=lengths,
+        inputs=inputs,
+        recording=recording,
+    )
 
 
 def put_right(

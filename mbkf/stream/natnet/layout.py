@@ -35,7 +35,7 @@ NO_POINTS = read_only(np.zeros((0, 3)))
 
 
 NOWHERE = np.zeros(0, dtype=np.intp)
-"""Numbers of no point."""
+"""Rows of an empty selection of points."""
 
 
 class StreamLayout:

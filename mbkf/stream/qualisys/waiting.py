@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from math import ceil
 
 import numpy as np
@@ -71,19 +72,8 @@ class WaitingFrames:
         samples, self._samples = self._samples, []
         if not samples:
             return one
-        if len(samples) == 1:
-            return _with_plates(one, samples[0])
-        index = np.concatenate([chunk.index for chunk in samples])
-        wrench = np.concatenate([chunk.wrench for chunk in samples])
-        return _with_plates(one, PlateSamples(index, wrench))
-
-
-def _with_plates(frame: SourceFrame, plates: PlateSamples) -> SourceFrame:
-    return SourceFrame(
-        frame.number,
-        frame.arrival_s,
-        frame.markers_m,
-        frame.unlabelled_m,
-        plates,
-        residuals_m=frame.residuals_m,
-    )
+        plates = samples[0]
+        if len(samples) > 1:
+            index = np.concatenate([chunk.index for chunk in samples])
+            plates = PlateSamples(index, np.concatenate([chunk.wrench for chunk in samples]))
+        return replace(one, plates=plates)

@@ -177,8 +177,9 @@ class ViconSource(ReconnectingSource[ViconClient, Packet]):
         before = self._before
         if before is not None and objects.LABELED not in blocks and objects.LABELED in self._unchanged(one):
             shown = before.markers_m
-        if before is not None and not points and len(before.unlabelled_m):
-            points = [before.unlabelled_m] * (objects.UNLABELED in self._unchanged(one))
+        stood = NO_POINTS if before is None else before.unlabelled_m
+        if len(stood) and not points and objects.UNLABELED in self._unchanged(one):
+            points = [stood]
         forces, moments, centres = (
             [objects.read_samples(data) for data in blocks.get(kind, ())]
             for kind in (objects.FORCE, objects.MOMENT, objects.CENTRE_OF_PRESSURE)
