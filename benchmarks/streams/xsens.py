@@ -73,7 +73,7 @@ class PlayedSuit:
         return found
 
     def read(self, timeout_s: float) -> SourceFrame | None:
-        """The next frame, after another sample was played: a source without one would not wait for it for ever.
+        """The next frame; each call plays one sample, so that the source always has one to read.
 
         Raises:
             EOFError: The suit has been played.

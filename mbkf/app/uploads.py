@@ -61,7 +61,7 @@ def putting(root: Path, name: str, size: int | None = None) -> Iterator[BinaryIO
             raise _taken(name)
         if shutil.disk_usage(target.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(target))
-    sweep_folder(target.parent)  # of a page that was killed, whatever file it was given
+    sweep_folder(target.parent)  # parts of any file that a killed page left
     with unfinished(target) as partial:
         with partial.open("wb") as file:
             yield file
