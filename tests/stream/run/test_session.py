@@ -327,5 +327,5 @@ def test_a_limb_whose_names_are_exchanged_is_reported_as_offline(tmp_path, captu
 def offline_as_live(capture, subject):
     """The causal result without names that the whole trial's geometry puts right."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("mbkf.trial.reconstruct.names_put_right", lambda markers, _: (markers, ()))
+        patched.setattr("mbkf.trial.order.names_put_right", lambda markers, _: (markers, ()))
         return offline(capture, subject)
