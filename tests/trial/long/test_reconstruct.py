@@ -3,6 +3,7 @@
 Two plates are loaded across borders of pieces, and all markers are gone around frame 200, which is one, too.
 """
 
+import errno
 from dataclasses import replace
 
 import numpy as np
@@ -131,6 +132,18 @@ def test_an_end_on_the_way_leaves_an_earlier_result(walk, tmp_path, monkeypatch)
     with replacing_folder(folder):  # as any run into the folder
         assert {one.name: one.read_bytes() for one in folder.iterdir()} == before
     assert [one.name for one in tmp_path.iterdir()] == ["result"]
+
+
+def test_a_full_disk_is_reported_for_the_folder_of_the_result(walk, tmp_path):
+    path, person = walk
+    source = CapturePieces.of(path, LENGTHS.look_frames)
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "full")  # as a write of an array, which names no file
+
+    with pytest.raises(OSError, match="full") as stopped:
+        reconstruct_long(source, person, tmp_path / "result", lengths=LENGTHS, progress=full)
+    assert stopped.value.filename == str(tmp_path / "result")
 
 
 def test_tables_of_an_earlier_result_do_not_stay(walk, tmp_path):
