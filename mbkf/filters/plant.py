@@ -15,6 +15,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar, cast
 
+import numpy as np
+
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.model.layout import Layout
@@ -118,7 +120,7 @@ class Plant(ABC, Generic[StateT, NoiseT, MemoryT]):
     def dof_noise(self, noise: NoiseT) -> DofNoise | None:
         """Process noise as one number per dof, besides that of the added states; None where it is not of this form.
 
-        With it and a transition by its parts, a smoother needs a third of the work.
+        With it and a transition by its parts, a smoother needs a third of the products.
 
         Args:
             noise: Result of :meth:`noise`.
@@ -128,7 +130,7 @@ class Plant(ABC, Generic[StateT, NoiseT, MemoryT]):
     def add_walk(self, P: Array) -> None:
         """Adds the noise of added states, the last ones, to a covariance in place."""
         if len(self._walk):
-            P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
+            np.einsum("ii->i", P)[-len(self._walk) :] += self._walk
 
     def step_transition(self, before: StateT, predicted: StateT) -> Transition:
         """Φ of a step that :meth:`predict` took, in the form that costs a smoother least.

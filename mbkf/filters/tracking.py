@@ -52,8 +52,8 @@ def track(
         progress: Called with frames done and frames in all.
         contacts: Without smoothing, opens contacts of other parts than the feet on the way; None: those of the
             recording.
-        filtered: Called with each frame and its filtered estimate; where it returns False the run ends, and its later
-            frames stay blank.
+        filtered: Called with each frame and its filtered estimate; where it returns False the run ends, and this and
+            later frames, and those that wait to be smoothed, stay blank.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
@@ -131,8 +131,8 @@ def fill(
         contacts: Without smoothing, opens contacts of other parts than the feet on the way.
         covariance: (T, 2 nv, 2 nv) receives the full covariances; None: they are not kept.
         kept_bytes: Memory for roots of the errors by the body (:class:`~mbkf.filters.offset_change.OffsetChanges`).
-        filtered: Called with each frame and its filtered estimate; where it returns False the run ends, and its later
-            frames stay blank.
+        filtered: Called with each frame and its filtered estimate; where it returns False the run ends, and this and
+            later frames, and those that wait to be smoothed, stay blank.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.

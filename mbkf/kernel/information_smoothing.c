@@ -224,7 +224,7 @@ static void half_less(const Noise *g, const double *F, double *X)
         plus(r, -0.5, F + (long)(nv + k) * r, X + (long)g->active[k] * r);
 }
 
-/* Z (N x N), row by row, -= G E of E (r x N), row by row; or a vector, with N = 1 and lengths of Z of `N`. */
+/* Z (N x length) -= G E of E (r x length), both row by row; of vectors with length 1. */
 static void less_noise(const Noise *g, int length, const double *E, double *Z)
 {
     const int nv = g->nv;

@@ -7,7 +7,7 @@
 #include "lanes.h"
 #include "vectorised.h"
 
-enum { TERMS = 24 };
+enum { TERMS = 24 }; /* rows that are added at once */
 
 /* A row `out` (N) as a sum of multiples of others, which are added many at once: rows come from the slower caches. */
 typedef struct {

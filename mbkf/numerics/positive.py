@@ -39,6 +39,26 @@ def inverse(matrix: Array) -> Array:
     return np.asarray(np.tril(found) + np.tril(found, -1).T)
 
 
+def regular_inverse(matrix: Array, least_pivot: float) -> Array | None:
+    """Inverse (n, n) of a symmetric positive definite matrix, exactly symmetric; None where rounding would decide it.
+
+    Args:
+        matrix: (n, n).
+        least_pivot: Least pivot of the matrix with its diagonal scaled to 1: the share of a component that those
+            before it leave open.
+    """
+    diagonal = matrix.diagonal()
+    if not (diagonal > 0.0).all():
+        return None
+    scale = 1.0 / np.sqrt(diagonal)
+    scales = scale * scale[:, None]
+    root, failed = lapack.dpotrf((matrix * scales).T, lower=1)
+    if failed or not root.diagonal().min() ** 2 >= least_pivot:  # also of NaN
+        return None
+    found = np.tril(lapack.dpotri(root, lower=1)[0]) * scales
+    return np.asarray(found + np.tril(found, -1).T)
+
+
 def solved_with_spreads(matrix: Array, right: Array) -> tuple[Array, Array]:
     """Solution (n,) of a symmetric positive definite system, and the diagonal (n,) of the matrix's inverse.
 

@@ -206,7 +206,10 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
         return cast(DecisionT, notes)
 
     def inflate(self, P: Array, decision: DecisionT) -> None:
-        """Process noise that depends on the decision, added in place to the predicted covariance P (N, N)."""
+        """Process noise that depends on the decision, added in place to the predicted covariance P (N, N).
+
+        It does not depend on P: a smoother adds it to zeros.
+        """
 
     @abstractmethod
     def linearise(self, at: OperatingPoint[StateT, PreparedT], decision: DecisionT) -> Statement:

@@ -262,8 +262,8 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         """Innovations by marker, without those of a displaced limb, which are errors of the state."""
         mean_square, readings = decision.squared_m2 / 3.0, np.where(decision.trusted, 3.0, 0.0)
         if len(decision.displaced):
-            mean_square[own := self._observed.carried_by(decision.displaced)] = 0.0
-            readings[own] = 0.0
+            carried = self._observed.carried_by(decision.displaced)
+            mean_square[carried] = readings[carried] = 0.0
         return Channels(mean_square, readings)
 
     def log_noise(self, decision: MarkerDecision) -> float:

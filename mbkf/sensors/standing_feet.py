@@ -210,12 +210,12 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         return found
 
     def _carried(self, q: Array, v: Array, points: Sequence[tuple[int, Array]]) -> Iterator[_Carried]:
-        """Points of feet, by foot and place in the world, as they move.
+        """Points of feet as they move, in order.
 
         Args:
             q: (nq,) configuration.
             v: (nv,) velocity.
-            points: They.
+            points: Foot and (3,) place in the world, m, of each.
         """
         joints = np.array([self._joints[foot] for foot, _ in points], dtype=np.int32)
         places = np.array([place for _, place in points])

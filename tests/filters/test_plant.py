@@ -51,6 +51,13 @@ def test_the_predicted_covariance_is_that_of_the_transition_and_a_noise(name):
     if plant.layout.extras:
         own = plant.layout.extra
         np.testing.assert_allclose(np.diag(Q)[own], plant.layout.walk_variance(plant.dt_s))
+    by_dofs = plant.dof_noise(noise)
+    assert by_dofs is not None or name != "SingerPlant"
+    if by_dofs is not None:
+        G, stated = np.kron(by_dofs.share[:, None], np.diag(by_dofs.sd)), np.zeros_like(Q)
+        stated[: len(G), : len(G)] = G @ G.T
+        plant.add_walk(stated)
+        assert worst(scaled(stated - Q, found)) < 1e-12
 
 
 @each_plant

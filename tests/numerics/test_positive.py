@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from mbkf.numerics.positive import eliminated, inverse, made_positive, solved_with_spreads, whitened
+from mbkf.numerics.positive import (
+    eliminated,
+    inverse,
+    made_positive,
+    regular_inverse,
+    solved_with_spreads,
+    whitened,
+)
 
 SCALES = np.array([1e-4, 1.0, 1e3, 30.0])
 
@@ -38,6 +45,26 @@ def test_the_inverse_is_the_general_one_of_indefinite_matrices_too(columns, shif
     found = inverse(P)
     np.testing.assert_allclose(found, np.linalg.inv(P), rtol=1e-8, atol=1e-10 * np.abs(found).max())
     np.testing.assert_allclose(P @ found, np.eye(6), atol=1e-8)
+
+
+def test_a_regular_inverse_is_exact():
+    rng = np.random.default_rng(3)
+    root = rng.normal(size=(9, 12)) * 10.0 ** rng.integers(-3, 4, 9)[:, None]
+    P = root @ root.T
+    found, sd = regular_inverse(P, 1e-9), np.sqrt(np.diag(P))
+    np.testing.assert_array_equal(found, found.T)
+    assert np.abs((found @ P - np.eye(9)) * sd[:, None] / sd).max() < 1e-9
+
+
+@pytest.mark.parametrize("correlation", [1.0 - 1e-11, 1.5, np.nan])
+def test_a_matrix_that_rounding_would_decide_has_no_regular_inverse(correlation):
+    """Components that depend on others, an indefinite matrix, missing numbers; and a negative or missing variance."""
+    P = np.diag(SCALES**2)
+    P[2, 3] = P[3, 2] = correlation * SCALES[2] * SCALES[3]
+    assert regular_inverse(P, 1e-9) is None
+    assert regular_inverse(np.diag([1.0, 1.0 - correlation - 1e-6]), 1e-9) is None
+    P[2, 3] = P[3, 2] = (1.0 - 1e-7) * SCALES[2] * SCALES[3]
+    assert regular_inverse(P, 1e-9) is not None
 
 
 def test_a_singular_matrix_has_no_inverse():

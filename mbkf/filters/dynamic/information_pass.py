@@ -20,10 +20,14 @@ from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.filter import Decisions
 from mbkf.kernel.loading import Library, library
+from mbkf.numerics.positive import regular_inverse
 from mbkf.numerics.transition import RateTransition
 
-LEAST_PIVOT = 1e-9
-"""Covariances whose correlations have a smaller pivot are not inverted: components are certain, or depend on others."""
+LEAST_PIVOT = 1e-11
+"""Covariances whose correlations have a smaller pivot are not inverted: components are certain, or depend on others.
+
+Rounding, 1e-16 of a component, then stays below 1e-5 of what the others leave of it. Moments about the world's origin
+make pivots small far from it: 70 m away they are 1e-9."""
 
 
 class _Step(NamedTuple):
@@ -50,7 +54,7 @@ class InformationPass(NamedTuple):
     """The forward pass through a window.
 
     Attributes:
-        kernel: Does the arithmetic.
+        kernel: The compiled kernel.
         steps: Steps between its frames.
         last: (N,) error and (N, N) covariance of the last frame.
         kept: (N,) and (N, N) of the frame that was asked for, by readings up to it.
@@ -122,10 +126,10 @@ def information_pass(
         memory: Memory to work in.
 
     Returns:
-        None without the compiled kernel, where a plant has other noise than one number per dof and some for further
-        components, and where components are certain: a covariance smoother takes them all.
+        None without the compiled kernel, where a plant's noise is not :meth:`~mbkf.filters.plant.Plant.dof_noise`, and
+        where rounding would decide an inverse, as of certain components: a covariance smoother takes all of these.
     """
-    plant, Y = kalman.plant, inverse(begin.P)
+    plant, Y = kalman.plant, regular_inverse(begin.P, LEAST_PIVOT)
     kernel, delta = library(), plant.difference(means[0], begin)
     if kernel is None or Y is None:
         return None
@@ -164,22 +168,5 @@ def information_pass(
 
 def _estimate(Y: Array, y: Array) -> tuple[Array, Array] | None:
     """(N,) error and (N, N) covariance; None where Y has no inverse."""
-    P = inverse(Y)
+    P = regular_inverse(Y, LEAST_PIVOT)
     return None if P is None else (P @ y, P)
-
-
-def inverse(P: Array) -> Array | None:
-    """(N, N) inverse of a covariance or its information, exactly symmetric; None where rounding would decide it."""
-    diagonal = P.diagonal()
-    if not (diagonal > 0.0).all():
-        return None
-    scale = 1.0 / np.sqrt(diagonal)
-    try:
-        factor = np.linalg.cholesky(P * scale * scale[:, None])
-    except np.linalg.LinAlgError:
-        return None
-    if factor.diagonal().min() ** 2 < LEAST_PIVOT:
-        return None
-    root = np.linalg.inv(factor) * scale
-    found = root.T @ root
-    return np.asarray(0.5 * (found + found.T))
