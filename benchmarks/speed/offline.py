@@ -1,4 +1,4 @@
-"""Processor time of a frame of `mbkf reconstruct`, and its memory and pace in long trials.
+"""Processor time of a frame of `mbkf reconstruct`, whether its spreads hold, and its memory and pace in long trials.
 
 The command is a process of its own, whose processor time and peak memory the operating system counts, start-up
 included. Long trials are a squat of a minute, played forwards and backwards in turn: backwards it obeys Newton's law as
@@ -20,12 +20,14 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import Capture
+from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import write_subject
 from mbkf.trial.synth import synthesise
 
 MINUTE_S, HOUR_MINUTES = 60.0, 60.0
 MOTIONS = ("squat", "walk")
 FRAME_MS, FRAME_P, CAUSAL_MS = 0.9, 6.0, 0.5
+SPREAD_RATIO = 1.01
 LONG_HZ, LONG_MINUTES = 200.0, 3.0
 PEAK_MB, PACE = 600.0, 1.05
 PRODUCTS = 400
@@ -65,6 +67,7 @@ def rows(folder: Path, minutes: float | None = None) -> list[Check]:
             Check("… in products", in_products, FRAME_P, "<=", "P"),
             Check("… causal", causal.frame_ms, CAUSAL_MS, "<=", "ms"),
             information("… causal, in products", causal.seconds / causal.frames / product, "P"),
+            Check("… smoothed spread of a dof over causal", _spread_ratio(trial), SPREAD_RATIO, "<=", "×"),
         ]
     return checks + long_rows(folder, LONG_MINUTES)
 
@@ -158,6 +161,12 @@ def _frames(trial: Path) -> int:
     from mbkf.io.capture import read_capture
 
     return read_capture(trial).markers.frames
+
+
+def _spread_ratio(trial: Path) -> float:
+    """Largest, over frames and dofs: later readings take no knowledge away, so more than 1 is lost digits."""
+    smoothed, causal = (read_reconstruction(trial.with_name(name)).sd_q for name in ("smooth", "causal"))
+    return float(np.nanmax(smoothed / causal))
 
 
 def product_s() -> float:
