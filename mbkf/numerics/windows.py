@@ -102,13 +102,16 @@ def local_lines(samples: Array, known: BoolArray, dt: float, width: float) -> tu
         return np.convolve(series, kernels[power])[half : half + len(series)]
 
     count, first, second = (sums(known.astype(float), power) for power in range(3))
-    shown = np.where(known[:, None], samples, 0.0)
-    total, moment = (np.column_stack([sums(series, power) for series in shown.T]) for power in range(2))
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean, middle = total / count[:, None], first / count
+        middle = first / count
         variance = second / count - middle**2
-        slope = (moment / count[:, None] - middle[:, None] * mean) / variance[:, None]
-    slope = np.where((variance > (_LEAST_SPREAD * width) ** 2)[:, None], slope, 0.0)
-    value = mean - slope * middle[:, None]
-    around = (count > 0.0)[:, None]
-    return np.where(around, value, np.nan), np.where(around, slope, np.nan)
+    spread, around = variance > (_LEAST_SPREAD * width) ** 2, count > 0.0
+    values, slopes = np.full(samples.shape, np.nan), np.full(samples.shape, np.nan)
+    for series, value, slope in zip(samples.T, values.T, slopes.T, strict=True):
+        shown = np.where(known, series, 0.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = sums(shown, 0) / count
+            fitted = np.where(spread, (sums(shown, 1) / count - middle * mean) / variance, 0.0)
+        slope[around] = fitted[around]
+        value[around] = (mean - fitted * middle)[around]
+    return values, slopes

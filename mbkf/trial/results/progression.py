@@ -135,7 +135,7 @@ def frame_of(path_m: Array, facing: Array, times_s: Array, height_m: float) -> P
         times_s: (T,) times, s.
         height_m: Height of the pelvis in standing, m.
     """
-    known = np.asarray(np.isfinite(np.hstack([path_m, facing])).all(axis=1))
+    known = np.asarray(np.isfinite(path_m).all(axis=1) & np.isfinite(facing).all(axis=1))
     if not known.any():
         return _constant(HEADING, 0.0, len(known))
     dt_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else SMOOTHING_S
