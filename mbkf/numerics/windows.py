@@ -13,6 +13,9 @@ from mbkf.conventions import Array, BoolArray
 _LEAST_SPREAD = 0.2
 """Samples nearer together than this share of a window (standard deviation) say nothing of a slope."""
 
+_BLOCK = 20_000
+"""Samples whose lines are fitted together, so that memory does not grow with the series."""
+
 
 def second_derivative(samples: Array, window: int, dt: float) -> Array:
     """Second derivative of the parabola that fits the samples around each one best (Savitzky and Golay 1964).
@@ -97,21 +100,39 @@ def local_lines(samples: Array, known: BoolArray, dt: float, width: float) -> tu
     half = max(1, round(3.0 * width / dt))
     lag = np.arange(-half, half + 1) * dt
     kernels = [np.exp(-0.5 * (lag / width) ** 2) * (-lag) ** power for power in range(3)]
+    values, slopes = np.empty(samples.shape), np.empty(samples.shape)
+    for begin in range(0, len(samples), _BLOCK):
+        own, first = slice(begin, begin + _BLOCK), max(0, begin - half)
+        read, inner = slice(first, begin + _BLOCK + half), slice(begin - first, begin - first + _BLOCK)
+        found = _lines(samples[read], known[read], kernels, (_LEAST_SPREAD * width) ** 2)
+        values[own], slopes[own] = (one[inner] for one in found)
+    return values, slopes
+
+
+def _lines(
+    samples: Array, known: BoolArray, kernels: list[Array], least_variance: float
+) -> tuple[Array, Array]:
+    """Values and slopes of all samples' lines.
+
+    Args:
+        samples: (T, C) values.
+        known: (T,) which of them to use.
+        kernels: Weights times powers 0, 1 and 2 of the lag.
+        least_variance: Of the lags of known samples; below it a line has no slope.
+    """
+    half = len(kernels[0]) // 2
 
     def sums(series: Array, power: int) -> Array:
         return np.convolve(series, kernels[power])[half : half + len(series)]
 
     count, first, second = (sums(known.astype(float), power) for power in range(3))
+    shown = np.where(known[:, None], samples, 0.0)
+    total, moment = (np.column_stack([sums(series, power) for series in shown.T]) for power in range(2))
     with np.errstate(invalid="ignore", divide="ignore"):
-        middle = first / count
+        mean, middle = total / count[:, None], first / count
         variance = second / count - middle**2
-    spread, around = variance > (_LEAST_SPREAD * width) ** 2, count > 0.0
-    values, slopes = np.full(samples.shape, np.nan), np.full(samples.shape, np.nan)
-    for series, value, slope in zip(samples.T, values.T, slopes.T, strict=True):
-        shown = np.where(known, series, 0.0)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            mean = sums(shown, 0) / count
-            fitted = np.where(spread, (sums(shown, 1) / count - middle * mean) / variance, 0.0)
-        slope[around] = fitted[around]
-        value[around] = (mean - fitted * middle)[around]
-    return values, slopes
+        slope = (moment / count[:, None] - middle[:, None] * mean) / variance[:, None]
+    slope = np.where((variance > least_variance)[:, None], slope, 0.0)
+    value = mean - slope * middle[:, None]
+    around = (count > 0.0)[:, None]
+    return np.where(around, value, np.nan), np.where(around, slope, np.nan)

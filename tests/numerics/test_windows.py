@@ -117,3 +117,13 @@ def test_bridged_is_binary_closing(values, samples):
     inner = slice(samples, max(len(mask) - samples, samples))
     np.testing.assert_array_equal(found[inner], closed[inner])
     assert found[mask].all()
+
+
+def test_lines_do_not_depend_on_the_blocks_that_they_are_fitted_in(monkeypatch):
+    """Samples of neighbouring blocks count at a border, with gaps on either side of it, too."""
+    rng = np.random.default_rng(5)
+    samples, known = rng.normal(size=(300, 2)).cumsum(axis=0), rng.random(300) > 0.2
+    known[[*range(36, 39), *range(140, 190)]] = False
+    whole = local_lines(samples, known, 0.01, 0.05)
+    monkeypatch.setattr("mbkf.numerics.windows._BLOCK", 37)
+    np.testing.assert_allclose(local_lines(samples, known, 0.01, 0.05), whole, rtol=1e-9, atol=1e-11)
