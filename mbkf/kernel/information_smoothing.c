@@ -18,6 +18,7 @@
 #include "symmetric.h"
 #include "transition.h"
 #include "vectorised.h"
+#include "vectors.h"
 
 /* G, and a root of D: sd of each dof, and the lower triangle `root` (K x K), row by row, of the active components. */
 typedef struct {
@@ -27,40 +28,6 @@ typedef struct {
 } Noise;
 
 enum { HEIGHT = 24 }; /* rows of a triangle whose zeros are left out together */
-
-/* y (N) += a x */
-VECTORISED static void plus(int N, double a, const double *x, double *y)
-{
-    for (int i = 0; i < N; i++)
-        y[i] += a * x[i];
-}
-
-/* y (rows) += factor X x, X (rows x columns) column by column. */
-VECTORISED static void times(int rows, int columns, double factor, const double *X, const double *x,
-                             double *restrict y)
-{
-    int k = 0;
-    for (; k + 4 <= columns; k += 4) {
-        const double *c = X + (long)k * rows;
-        const double a = factor * x[k], b = factor * x[k + 1], d = factor * x[k + 2], e = factor * x[k + 3];
-        for (int i = 0; i < rows; i++)
-            y[i] += a * c[i] + b * c[rows + i] + (d * c[2L * rows + i] + e * c[3L * rows + i]);
-    }
-    for (; k < columns; k++)
-        plus(rows, factor * x[k], X + (long)k * rows, y);
-}
-
-VECTORISED static double dot(int N, const double *x, const double *y)
-{
-    double sum[8] = {0.0};
-    int i = 0;
-    for (; i + 8 <= N; i += 8)
-        for (int k = 0; k < 8; k++)
-            sum[k] += x[i + k] * y[i + k];
-    for (; i < N; i++)
-        sum[0] += x[i] * y[i];
-    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7]));
-}
 
 /* root: lower triangle with root root' = the active part of D (N x N); columns without a part of their own are zero. */
 static void noise_root(int N, const double *D, int K, const int *active, double *root)
@@ -196,17 +163,17 @@ int mbkf_information_forward(int N, int nv, int J, int orders, int K, int n, int
     triangle_times(r, nv, X, r, X, spread);
     mirror(r, spread);
     memset(mean, 0, sizeof *mean * r);
-    times(r, r, -1.0, X, part, mean);
-    times(r, N, -1.0, gain, offset, mean);
+    add_columns(r, r, -1.0, X, part, mean);
+    add_columns(r, N, -1.0, gain, offset, mean);
     /* y' = Phi^-T y + M offset - V (C^-1 w + V'offset) + lambda */
     memcpy(vector_after, moved_y, sizeof *vector_after * N);
-    times(N, N, 1.0, M, offset, vector_after);
+    add_columns(N, N, 1.0, M, offset, vector_after);
     for (int k = 0; k < r; k++)
         part[k] += dot(N, U + (long)k * N, offset);
-    times(N, r, -1.0, U, part, vector_after);
+    add_columns(N, r, -1.0, U, part, vector_after);
     plus(n, 1.0, vector, vector_after);
     plus(N, 1.0, added, vector_after);
-    times(N, m, 1.0, rows, values, vector_after);
+    add_columns(N, m, 1.0, rows, values, vector_after);
     product(LOWER, N, N, r, -1.0, U, N, U, N, 1.0, M, after, N);
     add_readings(N, n, m, information, rows, after);
     mirror(N, after);
@@ -267,7 +234,7 @@ int mbkf_information_backward(int N, int nv, int J, int orders, int K, const dou
     rows_after(N, turned, &back, before);
     symmetrise(N, before);
     memcpy(n, mean, sizeof *n * r);
-    times(r, N, 1.0, gain, d, n);
+    add_columns(r, N, 1.0, gain, d, n);
     for (int i = 0; i < N; i++)
         z[i] = d[i] - offset[i];
     less_noise(&g, 1, n, z);
