@@ -27,7 +27,9 @@ from mbkf.trial.synth import synthesise
 MINUTE_S, HOUR_MINUTES = 60.0, 60.0
 MOTIONS = ("squat", "walk")
 FRAME_MS, FRAME_P, CAUSAL_MS = 0.9, 6.0, 0.5
-SPREAD_RATIO = 1.01
+SPREAD_RATIO = 1.002
+"""Later readings take no knowledge away. Smoothing and causal filter are linearised elsewhere: 1.0006 in the walk."""
+
 LONG_HZ, LONG_MINUTES = 200.0, 3.0
 PEAK_MB, PACE = 600.0, 1.05
 PRODUCTS = 400
@@ -164,9 +166,10 @@ def _frames(trial: Path) -> int:
 
 
 def _spread_ratio(trial: Path) -> float:
-    """Largest, over frames and dofs: later readings take no knowledge away, so more than 1 is lost digits."""
+    """Largest over frames and dofs that the causal run knows; NaN where smoothing lost one."""
     smoothed, causal = (read_reconstruction(trial.with_name(name)).sd_q for name in ("smooth", "causal"))
-    return float(np.nanmax(smoothed / causal))
+    known = np.isfinite(causal)
+    return float(np.max(smoothed[known] / causal[known]))
 
 
 def product_s() -> float:
